@@ -1,0 +1,42 @@
+# Two commands matter: `make report` and `make test`. Everything they need goes into .venv.
+PYTHON ?= python3
+VENV   ?= .venv
+BIN    := $(VENV)/bin
+DESIGN ?= mukherjee-ii
+OUT    ?= out
+
+CORE := CMakeLists.txt $(wildcard src/core/*)
+
+.PHONY: report test build lint types bench clean
+
+report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
+	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
+
+test: build ## the whole test suite
+	$(BIN)/python -m pytest
+
+build: $(VENV)/.built
+
+lint: build
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: build
+	$(BIN)/mypy
+
+bench: build ## ratios from one interleaved run
+	$(BIN)/python -m benchmarks
+
+$(VENV)/.tools: pyproject.toml constraints.txt
+	$(PYTHON) -c 'import sys; assert sys.version_info >= (3, 11), "Python 3.11 or newer is needed; pass PYTHON=python3.x"'
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install -q -c constraints.txt pip scikit-build-core nanobind cmake ninja
+	touch $@
+
+# An editable install: Python sources are used in place, the core is rebuilt only when it changes.
+$(VENV)/.built: $(VENV)/.tools $(CORE)
+	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[test,lint]'
+	touch $@
+
+clean:
+	rm -rf $(VENV) build out

@@ -1,0 +1,21 @@
+"""What can go wrong, by name. Every message says the thing, its value, what is required and the remedy."""
+
+
+class FlexapodError(Exception):
+    """Base of all errors that Flexapod raises on purpose."""
+
+
+class DesignError(FlexapodError, ValueError):
+    """A design that cannot be a hexapod: a wrong key, unit, size or value."""
+
+
+class PoseError(FlexapodError, ValueError):
+    """A pose or motion of the wrong shape or with values that are not finite."""
+
+
+class KinematicsError(FlexapodError, ValueError):
+    """Leg lengths that admit no pose, or a search that did not find one."""
+
+
+class SingularPoseError(FlexapodError, ValueError):
+    """A pose at which the legs cannot hold the platform (H is singular)."""
