@@ -1,1 +1,79 @@
-"""Flexapod."""
+"""Flexapod: dynamic stability, vibration and design of flexible 6-UPS Stewart platforms (hexapods).
+
+SI units and rad/s throughout. Names are loaded when first used, so that `import flexapod` is quick.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "errors": ["DesignError", "FlexapodError", "KinematicsError", "PoseError", "SingularPoseError"],
+    "hexapod": ["Damping", "Hexapod", "LegPart", "Legs", "Limits", "load", "packaged_designs", "template"],
+    "pose": ["Motion", "Pose"],
+    "kinematics": [
+        "JointAngles",
+        "LegRates",
+        "LimitsCheck",
+        "check_limits",
+        "condition_number",
+        "force_transformation",
+        "forward_kinematics",
+        "home_pose",
+        "inverse_kinematics",
+        "joint_angles",
+        "leg_distance",
+        "leg_rates",
+    ],
+    "dynamics": [
+        "Energy",
+        "EquationsOfMotion",
+        "Reactions",
+        "energy",
+        "equations_of_motion",
+        "forward_dynamics",
+        "inverse_dynamics",
+        "joint_reactions",
+    ],
+    "statics": ["Equilibrium", "hold", "static_equilibrium"],
+    "modal": [
+        "EnergyShares",
+        "ModeDescription",
+        "NaturalModes",
+        "Sensitivity",
+        "describe_modes",
+        "energy_shares",
+        "frequency_sensitivity",
+        "natural_modes",
+        "near_repeated",
+        "sampling_time",
+        "stability_index",
+    ],
+    "linear": ["DampedModes", "Linearisation", "StateSpace", "linearise"],
+}
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
+__all__ = sorted([*_HOME_OF, "__version__"])
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME_OF:
+        raise AttributeError(f"module 'flexapod' has no attribute {name!r}")
+    value = getattr(import_module(f"flexapod.{_HOME_OF[name]}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return __all__
+
+
+if TYPE_CHECKING:  # what type checkers and editors see
+    from flexapod.dynamics import *  # noqa: F403
+    from flexapod.errors import *  # noqa: F403
+    from flexapod.hexapod import *  # noqa: F403
+    from flexapod.kinematics import *  # noqa: F403
+    from flexapod.linear import *  # noqa: F403
+    from flexapod.modal import *  # noqa: F403
+    from flexapod.pose import *  # noqa: F403
+    from flexapod.statics import *  # noqa: F403

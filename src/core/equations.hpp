@@ -1,0 +1,154 @@
+// The closed-form equations of motion of platform and legs on a moving base (Eq. 34):
+//     J_p [a; alpha] - J_b [a_b; alpha_b] + eta = H F + [R F_ext; R M_ext].
+#pragma once
+
+#include "leg.hpp"
+
+namespace flexapod {
+
+/// Where the legs are: vectors in the axes of the poses given.
+template <class T> struct Geometry {
+  Vec3<T> q_p[6], q_b[6];  // joints from the reference points of platform and base
+  Vec3<T> S[6];            // legs, base joint to platform joint (Eq. 6)
+  Vec3<T> k[6];            // universal axes
+
+  template <class D> Geometry(const Design<D>& d, const Pose<T>& platform, const Pose<T>& base) {
+    const Vec3<T> t = platform.t - base.t;
+    for (int i = 0; i < 6; ++i) {
+      q_p[i] = platform.R * d.p[i];
+      q_b[i] = base.R * d.b[i];
+      S[i] = t + q_p[i] - q_b[i];
+      k[i] = base.R * d.k[i];
+    }
+  }
+};
+
+/// H: column i is the wrench on the platform of a unit force in leg i, [s; q_p x s].
+template <class T> Mat6<T> force_transformation(const Geometry<T>& g) {
+  Mat6<T> H;
+  for (int i = 0; i < 6; ++i) {
+    const Vec3<T> s = (T(1.0) / norm(g.S[i])) * g.S[i];
+    const Vec6<T> h = Vec6<T>::of(s, cross(g.q_p[i], s));
+    for (int r = 0; r < 6; ++r) H[r][i] = h[r];
+  }
+  return H;
+}
+
+/// Adds [Q, -Q q~; q~ Q, -q~ Q q~] with Q symmetric: the inertia Q at the point q.
+template <class T> void add_inertia_at(Mat6<T>& J, const Vec3<T>& q, const Sym3<T>& Q) {
+  const Mat3<T> top{{{Q.xx, Q.xy, Q.xz}, {Q.xy, Q.yy, Q.yz}, {Q.xz, Q.yz, Q.zz}}};
+  const Mat3<T> right{{cross(q, top.row[0]), cross(q, top.row[1]), cross(q, top.row[2])}};
+  const Mat3<T> left = transpose(right);
+  for (int i = 0; i < 3; ++i) {
+    const Vec6<T> upper = Vec6<T>::of(top.row[i], right.row[i]);
+    const Vec6<T> lower = Vec6<T>::of(left.row[i], cross(q, left.row[i]));
+    for (int j = 0; j < 6; ++j) J[i][j] += upper[j], J[3 + i][j] += lower[j];
+  }
+}
+
+/// J_plat of Eq. 34, in the axes of R.
+template <class T, class D> Mat6<T> platform_inertia(const Design<D>& d, const Mat3<T>& R) {
+  const Vec3<T> R_p = R * d.R_0, zero;
+  const T M(d.M);
+  Mat6<T> J;
+  add_inertia_at(J, R_p, Sym3<T>{M, M, M, T(0.0), T(0.0), T(0.0)});
+  const Sym3<T> I = rotate(R, d.I_p);
+  J[3][3] += I.xx, J[4][4] += I.yy, J[5][5] += I.zz;
+  J[3][4] += I.xy, J[4][3] += I.xy, J[3][5] += I.xz, J[5][3] += I.xz, J[4][5] += I.yz, J[5][4] += I.yz;
+  return J;
+}
+
+/// J_p_i of Eq. 34: the inertia of leg i seen at the platform's reference point.
+template <class T, class D>
+void add_leg_inertia(Mat6<T>& J, const Machine<D>& machine, const Geometry<T>& g, int i) {
+  const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
+  add_inertia_at(J, g.q_p[i], rotate(transpose(leg.axes), leg_inertia(leg, machine.inertia[i])));
+}
+
+/// J_p of Eq. 34: the inertia of platform and legs seen at the platform's reference point.
+template <class T, class D> Mat6<T> inertia(const Machine<D>& machine, const Geometry<T>& g, const Mat3<T>& R) {
+  Mat6<T> J = platform_inertia(machine.design, R);
+  for (int i = 0; i < 6; ++i) add_leg_inertia(J, machine, g, i);
+  return J;
+}
+
+/// J_b of Eq. 34: how acceleration of the base enters. In the exact joint model a turning base also spins the legs.
+template <class T, class D> Mat6<T> base_coupling(const Machine<D>& machine, const Geometry<T>& g) {
+  Mat6<T> J;
+  for (int i = 0; i < 6; ++i) {
+    const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
+    const LegInertiaMatrices<T> in = leg_inertia_matrices(leg, machine.inertia[i]);
+    const Mat3<T> Q_b = transpose(leg.axes) * (in.Q_b * leg.axes);
+    const Vec3<T> spin_force = transposed(leg.axes, in.spin);
+    const bool spins = machine.joint == Joint::universal;
+    const Vec3<T> spin = spins ? leg.s() - leg.tau * leg.axes.row[2] : Vec3<T>();  // n / (n.s)
+    const T force[3] = {spin_force.x, spin_force.y, spin_force.z};
+    Vec6<T> top[3];
+    for (int r = 0; r < 3; ++r) top[r] = Vec6<T>::of(Q_b.row[r], cross(g.q_b[i], Q_b.row[r]) - force[r] * spin);
+    for (int j = 0; j < 6; ++j) {
+      const Vec3<T> column(top[0][j], top[1][j], top[2][j]);
+      const Vec6<T> both = Vec6<T>::of(column, cross(g.q_p[i], column));
+      for (int r = 0; r < 6; ++r) J[r][j] += both[r];
+    }
+  }
+  return J;
+}
+
+/// The ends of leg i, resolved in its axes, with the accelerations of the motions given.
+template <class T, class D>
+LegEnds<T> leg_ends(const Machine<D>& machine, const Geometry<T>& g, const LegAxes<T>& leg, int i,
+                    const Motion<T>& platform, const Motion<T>& base) {
+  const auto& gravity = machine.design.gravity;
+  LegEnds<T> end;
+  end.v = leg.axes * (platform.velocity_at(g.q_p[i]) - base.velocity_at(g.q_b[i]));
+  end.a_p = leg.axes * (platform.acceleration_at(g.q_p[i]) - gravity);
+  end.a_b = leg.axes * (base.acceleration_at(g.q_b[i]) - gravity);
+  end.omega_p = leg.axes * platform.w;
+  end.omega_b = leg.axes * base.w;
+  end.alpha_b = leg.axes * base.alpha;
+  return end;
+}
+
+/// Inertia, weight and friction of platform and legs as a wrench at the reference point, for the motions given:
+/// J_p [a; alpha] - J_b [a_b; alpha_b] + eta. With all accelerations zero it is eta.
+template <class T, class D>
+Vec6<T> inverse_wrench(const Machine<D>& machine, const Geometry<T>& g, const Motion<T>& platform,
+                       const Motion<T>& base) {
+  const Design<D>& d = machine.design;
+  const Vec3<T> R_p = platform.pose.R * d.R_0;
+  const Vec3<T> f = d.M * (platform.acceleration_at(R_p) - d.gravity);
+  const Sym3<T> I = rotate(platform.pose.R, d.I_p);
+  Vec6<T> wrench = Vec6<T>::of(f, cross(R_p, f) + I * platform.alpha + cross(platform.w, I * platform.w));
+  for (int i = 0; i < 6; ++i) {
+    const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
+    const LegEnds<T> end = leg_ends(machine, g, leg, i, platform, base);
+    const SphericalLoad<T> load =
+        spherical_load(leg, machine.inertia[i], d.leg[i], end, LegMotion<T>(leg, end, machine.joint));
+    const Vec3<T> force = transposed(leg.axes, load.force), moment = transposed(leg.axes, load.moment);
+    add(wrench, force, cross(g.q_p[i], force) - moment);
+  }
+  return wrench;
+}
+
+/// [R F; R M]: a force and moment given in the platform's frame, as a wrench in inertial axes.
+template <class T> Vec6<T> external_wrench(const Mat3<T>& R, const Vec6<double>& load) {
+  return Vec6<T>::of(R * load.top(), R * load.bottom());
+}
+
+template <class T> Motion<T> unaccelerated(Motion<T> motion) {
+  motion.a = motion.alpha = Vec3<T>();
+  return motion;
+}
+
+/// Eq. 35's accelerations of the platform: J_p^-1 (H F + wrench - eta + J_b [a_b; alpha_b]).
+template <class T, class D>
+Vec6<T> forward_dynamics(const Machine<D>& machine, const Motion<T>& platform, const Motion<T>& base,
+                         const Vec6<T>& leg_force, const Vec6<T>& wrench) {
+  const Geometry<T> g(machine.design, platform.pose, base.pose);
+  const Vec6<T> bias = inverse_wrench(machine, g, unaccelerated(platform), base);
+  Vec6<T> load = force_transformation(g) * leg_force;
+  for (int i = 0; i < 6; ++i) load[i] += wrench[i] - bias[i];
+  return Cholesky<T>(inertia(machine, g, platform.pose.R)).solve(load);
+}
+
+}  // namespace flexapod

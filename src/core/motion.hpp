@@ -1,0 +1,57 @@
+// Where a body is and how it moves, in the inertial frame.
+#pragma once
+
+#include "linear6.hpp"
+
+namespace flexapod {
+
+template <class T> struct Pose {
+  Vec3<T> t;                            // reference point, m
+  Mat3<T> R = Mat3<T>::identity();      // rotation from body to inertial axes
+};
+
+/// 24 scalars in this order; an array of 24 is a motion.
+template <class T> struct Motion {
+  Pose<T> pose;
+  Vec3<T> v, w;      // velocity of the reference point and angular velocity, m/s, rad/s
+  Vec3<T> a, alpha;  // accelerations, m/s2, rad/s2
+
+  /// Acceleration of the body's point at q from its reference point (the terms of Eqs 8 and 9).
+  template <class U> Vec3<T> acceleration_at(const Vec3<U>& q) const {
+    return a + cross(alpha, q) + cross(w, cross(w, q));
+  }
+  template <class U> Vec3<T> velocity_at(const Vec3<U>& q) const { return v + cross(w, q); }
+};
+
+inline constexpr int motion_size = 24;
+static_assert(sizeof(Motion<double>) == motion_size * sizeof(double));
+
+/// The pose moved by a small displacement: t + d, and R turned by the rotation vector e, exact to first order
+/// (all that derivatives need).
+template <class T, class U> Pose<T> displaced(const Pose<U>& pose, const Vec3<T>& d, const Vec3<T>& e) {
+  Pose<T> moved;
+  moved.t = pose.t + d;
+  const Mat3<U> columns = transpose(pose.R);
+  Mat3<T> turned;
+  for (int j = 0; j < 3; ++j) turned.row[j] = columns.row[j] + cross(e, columns.row[j]);
+  moved.R = transpose(turned);
+  return moved;
+}
+
+/// The rotation exp(e) by Rodrigues' formula.
+inline Mat3<double> rotation(const Vec3<double>& e) {
+  const double angle2 = dot(e, e), angle = std::sqrt(angle2);
+  const double a = angle < 1e-4 ? 1.0 - angle2 / 6.0 : std::sin(angle) / angle;
+  const double half = angle < 1e-4 ? 0.5 - angle2 / 24.0 : (1.0 - std::cos(angle)) / angle2;
+  const double c = 1.0 - half * angle2;
+  return {{{c + half * e.x * e.x, half * e.x * e.y - a * e.z, half * e.x * e.z + a * e.y},
+           {half * e.x * e.y + a * e.z, c + half * e.y * e.y, half * e.y * e.z - a * e.x},
+           {half * e.x * e.z - a * e.y, half * e.y * e.z + a * e.x, c + half * e.z * e.z}}};
+}
+
+/// The pose moved by a finite displacement: t + d, exp(e) R.
+inline Pose<double> moved(const Pose<double>& pose, const Vec6<double>& x) {
+  return {pose.t + x.top(), rotation(x.bottom()) * pose.R};
+}
+
+}  // namespace flexapod

@@ -1,0 +1,163 @@
+"""The exact linear dynamics about static equilibrium: geometric stiffness, gravity, damping, moving base."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod import _core
+from flexapod.dynamics import ZERO
+from flexapod.errors import PoseError
+from flexapod.hexapod import Hexapod
+from flexapod.pose import Array, Pose
+from flexapod.statics import Equilibrium, hold
+from flexapod.states import JointModel, is_universal, states, wrench
+
+if TYPE_CHECKING:
+    import control
+
+INPUTS = ("base_acceleration", "leg_force", "wrench", "leg_command")
+OUTPUTS = ("position", "leg_length", "leg_force", "acceleration")
+AXES = ("x", "y", "z", "roll", "pitch", "yaw")
+LEGS = ("1", "2", "3", "4", "5", "6")
+
+
+class DampedModes(NamedTuple):
+    """pole: (6,) complex rad/s (upper half plane, or real), by size. omega: (6,) rad/s, its modulus.
+
+    damping_ratio: (6,), negative if the mode grows. shape: (6, 6) complex twists of the platform as columns, scaled so
+    that shape^T M shape = 1 with a real largest part.
+    """
+
+    pole: Array
+    omega: Array
+    damping_ratio: Array
+    shape: Array
+
+
+class StateSpace(NamedTuple):
+    """x' = A x + B u, y = C x + D u with names for the states, inputs and outputs."""
+
+    A: Array
+    B: Array
+    C: Array
+    D: Array
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Linearisation:
+    """M x'' + C x' + K x + M_b x_b'' + C_b x_b' + K_b x_b = H f + w about `rest`, all matrices (6, 6), inertial axes.
+
+    x, x_b: small displacements (translation of the reference point in m, rotation vector in rad) of platform and base;
+    f: change of the leg forces (N) beside their springs; w: change of the wrench on the platform (N, N m), which, like
+    the static one, turns with the platform. A command that lengthens leg i's unstretched length by d acts as f = K_i d.
+    K holds leg stiffness, the geometric stiffness of loaded legs, gravity and the turning external wrench: it need not
+    be symmetric when there is an external wrench.
+    """
+
+    M: Array
+    C: Array
+    K: Array
+    M_b: Array
+    C_b: Array
+    K_b: Array
+    H: Array
+    leg_stiffness: Array
+    rest: Equilibrium
+    carry: Array  # displacement of a platform that moves rigidly with the base: x = carry x_b
+
+    def modes(self) -> DampedModes:
+        """Complex modes with the base fixed. A pair of real poles (no vibration) is given by the one nearer to zero."""
+        zero, one = np.zeros((6, 6)), np.eye(6)
+        A = np.block([[zero, one], [-np.linalg.solve(self.M, self.K), -np.linalg.solve(self.M, self.C)]])
+        scale = np.sqrt(np.abs(np.linalg.eigvals(A[6:, :6])).max())  # balances displacements against rates
+        balanced = np.block([[zero, scale * one], [A[6:, :6] / scale, A[6:, 6:]]])
+        poles, vectors = np.linalg.eig(balanced)
+        chosen = _one_of_each_pair(poles)
+        pole, shape = poles[chosen], vectors[:6, chosen]
+        shape = shape / np.sqrt(np.einsum("im,ij,jm->m", shape, self.M, shape))
+        largest = shape[np.abs(shape).argmax(axis=0), range(6)]
+        shape = shape * np.where(largest.real < 0, -1.0, 1.0)
+        omega = np.abs(pole)
+        with np.errstate(invalid="ignore"):
+            ratio = -pole.real / omega
+        return DampedModes(pole, omega, ratio, shape)
+
+    def state_space(self) -> StateSpace:
+        """Twelve states: the platform's displacement and velocity relative to a frame carried by the base.
+
+        Inputs (24): base acceleration in the inertial frame (m/s2, rad/s2), leg forces (N), wrench (N, N m), leg length
+        commands (m). Outputs (24): relative displacement (m, rad), change of leg lengths (m) and of the force in the
+        legs' springs and actuators (N), absolute acceleration (m/s2, rad/s2). Exact but for one effect: a tilted base
+        also tilts gravity, which twelve states cannot hold; the frequency response keeps it.
+        """
+        M_inv = np.linalg.inv(self.M)
+        zero, one = np.zeros((6, 6)), np.eye(6)
+        K_legs = np.diag(self.leg_stiffness)
+        force_inputs = [self.H, one, self.H @ K_legs]
+        drive = M_inv @ np.hstack([-self.M_b - self.M @ self.carry, *force_inputs])
+        A = np.block([[zero, one], [-M_inv @ self.K, -M_inv @ self.C]])
+        B = np.vstack([np.zeros((6, 24)), drive])
+        rate = self.H.T  # leg rates from relative twist
+        C = np.block([[one, zero], [rate, zero], [-K_legs @ rate, zero], [A[6:]]])
+        absolute = drive + np.hstack([self.carry, np.zeros((6, 18))])
+        legs = np.hstack([zero, one, zero, K_legs])
+        D = np.vstack([np.zeros((12, 24)), legs, absolute])
+        return StateSpace(A, B, C, D, _labels(("position", "velocity"), ()), _labels(INPUTS, LEGS), _labels(OUTPUTS, LEGS))
+
+    def to_control(self) -> control.StateSpace:
+        """The state space as a `control.StateSpace` with named signals. Needs python-control (extra "control")."""
+        try:
+            import control
+        except ImportError as error:
+            raise ImportError("to_control needs python-control: pip install 'flexapod[control]'") from error
+        s = self.state_space()
+        return control.ss(
+            s.A, s.B, s.C, s.D, states=list(s.states), inputs=list(s.inputs), outputs=list(s.outputs), name="hexapod"
+        )
+
+
+def _labels(groups: tuple[str, ...], legs: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(
+        f"{group}_{part}" for group in groups for part in (legs if legs and group.startswith("leg_") else AXES)
+    )
+
+
+def _one_of_each_pair(poles: Array) -> list[int]:
+    """Indices of six poles out of twelve: the upper one of each complex pair, the slower of real ones; by modulus."""
+    upper = [i for i, p in enumerate(poles) if p.imag > 0]
+    real = sorted((i for i, p in enumerate(poles) if p.imag == 0), key=lambda i: abs(poles[i]))
+    return sorted(upper + real[: 6 - len(upper)], key=lambda i: abs(poles[i]))
+
+
+def linearise(
+    hexapod: Hexapod,
+    pose: Pose,
+    *,
+    base: Pose | None = None,
+    force: ArrayLike = ZERO,
+    moment: ArrayLike = ZERO,
+    joint: JointModel = "universal",
+) -> Linearisation:
+    """The tangent of Eq. 34 at a pose held at rest under gravity and a wrench (platform frame), by exact derivatives.
+
+    Its frequencies approach Eq. 5's as legs stiffen (corrections C). Raises SingularPoseError where no leg forces hold
+    the pose, PoseError for a batch of poses.
+    """
+    if pose.shape:
+        raise PoseError(f"linearise takes one pose; this one has batch axes {pose.shape}. Index it first.")
+    rest = hold(hexapod, pose, base=base, force=force, moment=moment)
+    s = states(hexapod, pose, base)
+    matrices = _core.tangent(
+        hexapod.packed, is_universal(joint), s.platform, s.base, wrench(force, moment, ()), rest.unstretched_length
+    )
+    r = s.platform[0, :3] - s.base[0, :3]
+    carry = np.eye(6)
+    carry[:3, 3:] = [[0, r[2], -r[1]], [-r[2], 0, r[0]], [r[1], -r[0], 0]]
+    return Linearisation(*matrices, leg_stiffness=hexapod.legs.stiffness, rest=rest, carry=carry)

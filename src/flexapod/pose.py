@@ -1,0 +1,183 @@
+"""Where a body is and how it moves: `Pose` and `Motion`, each one or many (leading batch axes)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from flexapod.errors import PoseError
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import Rotation
+
+Array = NDArray[np.float64]
+
+
+def vectors(value: ArrayLike, name: str, width: int = 3) -> Array:
+    """`value` as finite float64 of shape (..., width); raises PoseError otherwise."""
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise PoseError(f"{name} is {value!r}; {width} numbers are needed") from error
+    if array.ndim == 0 or array.shape[-1] != width:
+        raise PoseError(f"{name} has shape {array.shape}; its last axis must hold {width} numbers")
+    if not np.isfinite(array).all():
+        raise PoseError(f"{name} holds NaN or infinity; all its numbers must be finite")
+    return array
+
+
+def _rotation_matrices(rotation: Any) -> Array:
+    matrix = rotation.as_matrix() if hasattr(rotation, "as_matrix") else rotation
+    matrix = np.asarray(matrix, dtype=np.float64)
+    if matrix.ndim < 2 or matrix.shape[-2:] != (3, 3):
+        raise PoseError(f"rotation has shape {matrix.shape}; give a scipy Rotation or matrices of shape (..., 3, 3)")
+    error = np.abs(matrix @ np.swapaxes(matrix, -1, -2) - np.eye(3)).max(initial=0.0)
+    if not error < 1e-9 or np.any(np.linalg.det(matrix) < 0):
+        raise PoseError("rotation is not a rotation matrix: R R^T must be the identity to 1e-9 and det R be +1")
+    return matrix
+
+
+class Pose:
+    """Position of a body's reference point and its orientation.
+
+    position: (..., 3) m. rotation: a scipy `Rotation` (one or many), or matrices (..., 3, 3) that take vectors from
+    body axes to the outer frame; default: none. Raises PoseError for wrong shapes, NaN, or a matrix that is no rotation.
+    """
+
+    __slots__ = ("matrix", "position")
+
+    position: Array
+    matrix: Array
+
+    def __init__(self, position: ArrayLike, rotation: Rotation | ArrayLike | None = None) -> None:
+        p = vectors(position, "position")
+        R = np.eye(3) if rotation is None else _rotation_matrices(rotation)
+        try:
+            shape = np.broadcast_shapes(p.shape[:-1], R.shape[:-2])
+        except ValueError:
+            raise PoseError(
+                f"position {p.shape} and rotation {R.shape} do not fit: their leading axes must be equal or 1"
+            ) from None
+        self.position = np.broadcast_to(p, (*shape, 3))
+        self.matrix = np.broadcast_to(R, (*shape, 3, 3))
+
+    @classmethod
+    def from_rpy(
+        cls, x: ArrayLike, y: ArrayLike, z: ArrayLike, roll: ArrayLike = 0, pitch: ArrayLike = 0, yaw: ArrayLike = 0
+    ) -> Pose:
+        """Pose from metres and radians: turned about the fixed axes x (roll), then y (pitch), then z (yaw)."""
+        numbers = np.broadcast_arrays(*(np.asarray(v, dtype=np.float64) for v in (x, y, z, roll, pitch, yaw)))
+        six = vectors(np.stack(numbers, axis=-1), "pose", 6)
+        return cls(six[..., :3], rpy_matrix(six[..., 3:]))
+
+    @property
+    def rotation(self) -> Rotation:
+        """Orientation as a scipy `Rotation`, flattened over the batch axes."""
+        from scipy.spatial.transform import Rotation
+
+        return Rotation.from_matrix(self.matrix if self.matrix.ndim == 2 else self.matrix.reshape(-1, 3, 3))
+
+    @property
+    def rpy(self) -> Array:
+        """Roll, pitch, yaw in rad, (..., 3): fixed axes x, y, z; pitch within +-pi/2, yaw 0 where pitch is +-pi/2."""
+        R = self.matrix
+        pitch = np.arctan2(-R[..., 2, 0], np.hypot(R[..., 0, 0], R[..., 1, 0]))
+        level = np.hypot(R[..., 0, 0], R[..., 1, 0]) > 1e-12
+        yaw = np.where(level, np.arctan2(R[..., 1, 0], R[..., 0, 0]), 0.0)
+        steep = np.arctan2(-R[..., 1, 2], R[..., 1, 1])
+        roll = np.where(level, np.arctan2(R[..., 2, 1], R[..., 2, 2]), steep)
+        return np.stack([roll, pitch, yaw], axis=-1)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Batch axes; () for one pose."""
+        return self.position.shape[:-1]
+
+    def __getitem__(self, index: Any) -> Pose:
+        return Pose(self.position[index], self.matrix[index])
+
+    def __repr__(self) -> str:
+        if self.shape:
+            return f"<Pose {self.shape}>"
+        x, y, z = self.position
+        roll, pitch, yaw = np.degrees(self.rpy)
+        return f"Pose(x={x:.6g} y={y:.6g} z={z:.6g} m, roll={roll:.5g} pitch={pitch:.5g} yaw={yaw:.5g} deg)"
+
+
+def rpy_matrix(rpy: ArrayLike) -> Array:
+    """Rotation matrices (..., 3, 3) of roll, pitch, yaw (..., 3) in rad about the fixed axes x, y, z, in this order."""
+    angles = np.asarray(rpy, dtype=np.float64)
+    (cr, cp, cy), (sr, sp, sy) = (np.moveaxis(f(angles), -1, 0) for f in (np.cos, np.sin))
+    rows = [
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+        [-sp, cp * sr, cp * cr],
+    ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def orthonormal(matrix: Array) -> Array:
+    """The rotation nearest to a matrix that is one to rounding."""
+    u, _, vt = np.linalg.svd(matrix)
+    return u @ vt
+
+
+class Motion:
+    """Pose, velocity and acceleration of a body, in the inertial frame, at its reference point.
+
+    velocity m/s, angular_velocity rad/s, acceleration m/s2, angular_acceleration rad/s2: (..., 3), default zero.
+    Raises PoseError for wrong shapes or numbers that are not finite.
+    """
+
+    __slots__ = ("acceleration", "angular_acceleration", "angular_velocity", "pose", "velocity")
+
+    pose: Pose
+    velocity: Array
+    angular_velocity: Array
+    acceleration: Array
+    angular_acceleration: Array
+
+    def __init__(
+        self,
+        pose: Pose,
+        velocity: ArrayLike = (0.0, 0.0, 0.0),
+        angular_velocity: ArrayLike = (0.0, 0.0, 0.0),
+        acceleration: ArrayLike = (0.0, 0.0, 0.0),
+        angular_acceleration: ArrayLike = (0.0, 0.0, 0.0),
+    ) -> None:
+        given = {
+            "velocity": velocity,
+            "angular_velocity": angular_velocity,
+            "acceleration": acceleration,
+            "angular_acceleration": angular_acceleration,
+        }
+        checked = {name: vectors(value, name) for name, value in given.items()}
+        try:
+            shape = np.broadcast_shapes(pose.shape, *(v.shape[:-1] for v in checked.values()))
+        except ValueError:
+            raise PoseError("the leading axes of pose, velocities and accelerations must be equal or 1") from None
+        self.pose = Pose(np.broadcast_to(pose.position, (*shape, 3)), np.broadcast_to(pose.matrix, (*shape, 3, 3)))
+        for name, value in checked.items():
+            setattr(self, name, np.broadcast_to(value, (*shape, 3)))
+
+    @classmethod
+    def fixed(cls, pose: Pose | None = None) -> Motion:
+        """At rest, at the inertial frame's origin or at a pose."""
+        return cls(Pose((0.0, 0.0, 0.0)) if pose is None else pose)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Batch axes; () for one motion."""
+        return self.pose.shape
+
+    @property
+    def packed(self) -> Array:
+        """(..., 24): position, rotation by rows, velocity, angular velocity, acceleration, angular acceleration."""
+        flat = self.pose.matrix.reshape(*self.shape, 9)
+        rates = (self.velocity, self.angular_velocity, self.acceleration, self.angular_acceleration)
+        return np.concatenate([self.pose.position, flat, *rates], axis=-1)
+
+    def __repr__(self) -> str:
+        return f"<Motion {self.shape}>" if self.shape else f"Motion({self.pose!r}, v={self.velocity}, ...)"

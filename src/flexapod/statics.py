@@ -1,0 +1,72 @@
+"""Rest: the leg forces that hold a pose, and where the platform settles for given unstretched leg lengths."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from numpy.typing import ArrayLike
+
+from flexapod import _core
+from flexapod.dynamics import ZERO, inverse_dynamics
+from flexapod.errors import KinematicsError, SingularPoseError
+from flexapod.hexapod import Hexapod
+from flexapod.kinematics import forward_kinematics, inverse_kinematics
+from flexapod.pose import Array, Pose, orthonormal, vectors
+from flexapod.states import states, wrench
+
+
+class Equilibrium(NamedTuple):
+    """A pose at rest, its leg forces (..., 6) N (positive: compression), lengths and unstretched lengths (..., 6) m."""
+
+    pose: Pose
+    leg_force: Array
+    leg_length: Array
+    unstretched_length: Array
+
+
+def hold(
+    hexapod: Hexapod, pose: Pose, *, base: Pose | None = None, force: ArrayLike = ZERO, moment: ArrayLike = ZERO
+) -> Equilibrium:
+    """Leg forces and unstretched lengths that hold a pose at rest under gravity and a wrench (platform frame).
+
+    From F = -K (L - L0) (corrections E6). Raises SingularPoseError where no leg forces can.
+    """
+    leg_force = inverse_dynamics(hexapod, pose, base, force, moment)
+    length = inverse_kinematics(hexapod, pose, base)
+    return Equilibrium(pose, leg_force, length, length + leg_force / hexapod.legs.stiffness)
+
+
+def static_equilibrium(
+    hexapod: Hexapod,
+    unstretched_length: ArrayLike,
+    start: Pose | None = None,
+    *,
+    base: Pose | None = None,
+    force: ArrayLike = ZERO,
+    moment: ArrayLike = ZERO,
+) -> Equilibrium:
+    """Where the platform settles under gravity and a wrench (platform frame) for unstretched leg lengths (6,) m.
+
+    Newton's method with the exact tangent, from `start` or from the pose at which the legs have these lengths.
+    Raises KinematicsError where no equilibrium is found, SingularPoseError where the tangent becomes singular.
+    """
+    L_0 = vectors(unstretched_length, "unstretched_length", 6)
+    if start is None:
+        start = forward_kinematics(hexapod, L_0)
+        if base is not None:
+            start = Pose(base.position + base.matrix @ start.position, base.matrix @ start.matrix)
+    s = states(hexapod, start, base)
+    found, outcome = _core.settle(hexapod.packed, s.platform, s.base, wrench(force, moment, ()), L_0)
+    pose = Pose(found[:3], orthonormal(found[3:].reshape(3, 3)))
+    if outcome == "singular":
+        raise SingularPoseError(
+            f"the search for equilibrium met {pose!r}, where the legs have no stiffness in some direction. "
+            "Start nearer to the equilibrium, or stiffen the legs."
+        )
+    if outcome == "not_found":
+        raise KinematicsError(
+            f"no equilibrium was found; the search ended at {pose!r}. The load may be more than the legs can carry "
+            "before they collapse: start nearer, reduce the load, or stiffen the legs."
+        )
+    length = inverse_kinematics(hexapod, pose, base)
+    return Equilibrium(pose, hexapod.legs.stiffness * (L_0 - length), length, L_0)

@@ -1,0 +1,59 @@
+"""Units that a key of a design file may carry in its name: `joints_mm`, `stiffness_N_per_um`, `angles_deg`.
+
+Inside the library everything is SI and radians. A key without a unit is SI.
+"""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+# dimension -> unit -> (multiply by, divide by). Two numbers, because x / 1000 is rounded once and x * 0.001 is not:
+# `radius_mm = 115` then is bit for bit `radius = 0.115`. The first unit of each dimension is the SI one.
+UNITS: dict[str, dict[str, tuple[float, float]]] = {
+    "length": {"m": (1, 1), "cm": (1, 1e2), "mm": (1, 1e3), "um": (1, 1e6), "in": (254, 1e4)},
+    "mass": {"kg": (1, 1), "g": (1, 1e3), "t": (1e3, 1), "lb": (45359237, 1e8)},
+    "inertia": {
+        "kg_m2": (1, 1),
+        "kg_cm2": (1, 1e4),
+        "kg_mm2": (1, 1e6),
+        "g_m2": (1, 1e3),
+        "g_cm2": (1, 1e7),
+        "g_mm2": (1, 1e9),
+    },
+    "stiffness": {
+        "N_per_m": (1, 1),
+        "N_per_mm": (1e3, 1),
+        "N_per_um": (1e6, 1),
+        "N_per_nm": (1e9, 1),
+        "kN_per_m": (1e3, 1),
+        "kN_per_mm": (1e6, 1),
+        "MN_per_m": (1e6, 1),
+    },
+    "damping": {"N_s_per_m": (1, 1), "N_s_per_mm": (1e3, 1), "kN_s_per_m": (1e3, 1)},
+    "angular damping": {
+        "N_m_s_per_rad": (1, 1),
+        "N_mm_s_per_rad": (1, 1e3),
+        "N_m_s_per_deg": (180, math.pi),
+    },
+    "acceleration": {"m_per_s2": (1, 1), "mm_per_s2": (1, 1e3)},
+    "angle": {"rad": (1, 1), "mrad": (1, 1e3), "deg": (math.pi, 180)},
+}
+
+ALL_UNITS = frozenset(unit for units in UNITS.values() for unit in units)
+
+
+def si_unit(dimension: str | None) -> str:
+    """The SI unit of a dimension as it stands in a key; "" for a pure number."""
+    return next(iter(UNITS[dimension])) if dimension else ""
+
+
+def printed(unit: str) -> str:
+    """A unit as people write it: `N_s_per_m` -> `N s/m`."""
+    return unit.replace("_per_", "/").replace("_", " ")
+
+
+def to_si(value: ArrayLike, dimension: str, unit: str) -> NDArray[np.float64]:
+    """Numbers in the SI unit of their dimension."""
+    multiply, divide = UNITS[dimension][unit]
+    return np.asarray(value, dtype=np.float64) * multiply / divide
