@@ -5,6 +5,10 @@ class FlexapodError(Exception):
     """Base of all errors that Flexapod raises on purpose."""
 
 
+class ArgumentError(FlexapodError, ValueError):
+    """A number, table or name given to a study that it cannot work with."""
+
+
 class DesignError(FlexapodError, ValueError):
     """A design that cannot be a hexapod: a wrong key, unit, size or value."""
 
