@@ -134,7 +134,7 @@ def random_response(
 
     Between the frequencies a table is a power law (straight in log-log axes; linear where it touches zero), a matrix
     linear. Resonances are resolved whatever their damping: panels shrink geometrically towards every pole, each with
-    eight Gauss points. `omega` of the result holds the frequencies given and those panels' edges.
+    eight Gauss points. `omega` of the result holds the frequencies given, the panels' other edges and those points.
 
     Quantities: displacement and acceleration of the output point (absolute), relative (displacement less the rigid
     motion with the base), leg_force. For each: psd_<quantity> (omega, ...), rms_<quantity> (...), and
@@ -151,22 +151,20 @@ def random_response(
     spectrum = _spectrum(psd, grid, axis)
     poles = complex_poles(linear, eta)
     _check_damped(poles, grid)
-    edges = _graded(grid, poles)
-    nodes, weights = _gauss(edges)
+    panels = _Panels(_graded(grid, poles))
     filters = _Filters(linear, shift(pose, point), eta, of)
     coordinates = {
-        "omega": ("omega", edges, {"units": "rad/s", "long_name": "frequency"}),
+        "omega": ("omega", panels.omega, {"units": "rad/s", "long_name": "frequency"}),
         "output": list(AXES),
         "output_unit": ("output", list(MOTION_UNITS)),
         "leg": list(LEGS),
     }
     dataset = xr.Dataset(coords=coordinates, attrs=_attributes(hexapod, pose, point, eta))
     dataset.attrs["convention"] = "one-sided spectral density per rad/s: mean square = integral over omega > 0"
-    at_edges, at_nodes = filters.spectra(edges, spectrum(edges)), filters.spectra(nodes, spectrum(nodes))
+    densities = filters.spectra(panels.omega, spectrum(panels.omega))
     for name, (along, unit) in QUANTITIES.items():
-        parts = (at_nodes[name] * weights[:, None]).reshape(edges.size - 1, -1, 6).sum(axis=1)
-        cumulative = np.sqrt(np.concatenate([np.zeros((1, 6)), np.cumsum(parts, axis=0)]))
-        dataset[f"psd_{name}"] = (("omega", along), at_edges[name], {"units": f"({unit})2/(rad/s)"})
+        cumulative = np.sqrt(panels.cumulated(densities[name]))
+        dataset[f"psd_{name}"] = (("omega", along), densities[name], {"units": f"({unit})2/(rad/s)"})
         dataset[f"cumulative_{name}"] = (("omega", along), cumulative, {"units": unit})
         dataset[f"rms_{name}"] = ((along,), cumulative[-1], {"units": unit})
     return dataset
@@ -243,10 +241,29 @@ def _graded(grid: Array, poles: Complex) -> Array:
     return merged[(merged >= low) & (merged <= high)]
 
 
-def _gauss(edges: Array) -> tuple[Array, Array]:
-    x, weight = np.polynomial.legendre.leggauss(_NODES)
-    half = 0.5 * np.diff(edges)[:, None]
-    return (edges[:-1, None] + half * (1 + x)).ravel(), (half * weight).ravel()
+class _Panels:
+    """Gauss quadrature over panels; omega: every panel's lower edge and nodes, then the last edge."""
+
+    def __init__(self, edges: Array) -> None:
+        x, self._weights = np.polynomial.legendre.leggauss(_NODES)
+        self._half = 0.5 * np.diff(edges)
+        nodes = edges[:-1, None] + self._half[:, None] * (1 + x)
+        self.omega = np.append(np.column_stack([edges[:-1], nodes]).ravel(), edges[-1])
+        powers = np.arange(_NODES)  # integral of the nodes' interpolant from the lower edge to each node
+        antiderivative = (x[:, None] ** (powers + 1) - (-1.0) ** (powers + 1)) / (powers + 1)
+        self._to_nodes = antiderivative @ np.linalg.inv(x[:, None] ** powers)
+
+    def cumulated(self, density: Array) -> Array:
+        """Integral (n, 6) of a density (n, 6) from the lowest frequency to each of `omega`."""
+        at_nodes = density[:-1].reshape(self._half.size, _NODES + 1, 6)[:, 1:]
+        scaled = self._half[:, None, None] * at_nodes
+        whole = np.cumsum(np.einsum("k,pkj->pj", self._weights, scaled), axis=0)
+        before = np.concatenate([np.zeros((1, 6)), whole])
+        inside = before[:-1, None] + np.concatenate(
+            [np.zeros((self._half.size, 1, 6)), self._to_nodes @ scaled], axis=1
+        )
+        bounded = np.clip(inside, before[:-1, None], whole[:, None])  # an interpolant may overshoot
+        return np.maximum.accumulate(np.concatenate([bounded.reshape(-1, 6), whole[-1:]]))
 
 
 def _spectrum(psd: Spectrum, grid: Array, axis: str | None) -> Callable[[Array], Complex]:
