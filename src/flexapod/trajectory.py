@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod.errors import ArgumentError, PoseError
-from flexapod.excitation import AXES, Excitation, check_channels
+from flexapod.excitation import AXES, LEGS, Excitation, check_channels
 from flexapod.hexapod import Hexapod
 from flexapod.kinematics import inverse_kinematics
 from flexapod.pose import Array, Motion, Pose, vectors
-from flexapod.statics import hold
 from flexapod.states import JointModel, is_universal
+from flexapod.statics import hold
 
 OUTCOMES = (
     "complete",
@@ -29,7 +29,6 @@ OUTCOMES = (
     "max_steps",
     "stopped",
 )
-LEGS = tuple(range(6))
 
 Load = Excitation | ArrayLike | None
 Start = Literal["rest", "carried"] | Pose | Motion
@@ -40,10 +39,10 @@ class Run:
     """One simulation: a machine at rest in `pose` on its base, and what drives it from t = 0.
 
     pose: the equilibrium, inertial frame; the legs' unstretched lengths are those that hold it there under gravity and
-    the constant loads, unless `unstretched_length` (6,) m gives others (the legs' lengths at the pose let gravity ring).
+    the constant loads, unless `unstretched_length` (6,) m gives others (the lengths at the pose let gravity ring).
     base_motion: `Excitation` of x, y, z, roll, pitch, yaw from the base's pose at rest, `base` (default: the origin).
-    force (N), moment (N m): on the platform, in its axes, at its reference point; constant (3,), or an Excitation, which
-    comes on top of rest. leg_command: Excitation of legs 0 to 5, change of unstretched length, m.
+    force (N), moment (N m): on the platform, in its axes, at its reference point; constant (3,), or an Excitation,
+    which comes on top of rest. leg_command: Excitation of legs "1" to "6", change of unstretched length, m.
     start: "rest" (at the equilibrium, with no velocity in the inertial frame), "carried" (moving rigidly with the base
     as it is at t = 0), or a Pose or Motion of the platform in the inertial frame.
     """
@@ -111,7 +110,7 @@ def integrate(
     times: ArrayLike,
     *,
     joint: JointModel = "universal",
-    method: Method = Method(),  # noqa: B008: frozen
+    method: Method = Method(),
     motions: bool = True,
     works: bool = False,
     progress: Callable[[float], object] | None = None,
@@ -159,9 +158,7 @@ class _Prepared(NamedTuple):
 
 def _prepare(run: Run) -> _Prepared:
     if run.pose.shape or (run.base is not None and run.base.shape):
-        raise PoseError(
-            f"a simulation takes one pose and one base; these have batch axes {run.pose.shape}. Index first."
-        )
+        raise PoseError("a simulation takes one pose and one base; one has batch axes. Index it first.")
     force, force_history = _split(run.force, "force")
     moment, moment_history = _split(run.moment, "moment")
     if run.unstretched_length is None:
@@ -192,7 +189,7 @@ def _split(load: Load, name: str) -> tuple[Array, Array]:
     check_channels(load, name, AXES[:3])
     if name == "force":
         return np.zeros(3), load.packed
-    return np.zeros(3), load.on({axis: turned for axis, turned in zip(AXES[:3], AXES[3:], strict=True)}).packed
+    return np.zeros(3), load.on(dict(zip(AXES[:3], AXES[3:], strict=True))).packed
 
 
 def _start(run: Run) -> tuple[Array, Array]:
