@@ -33,8 +33,8 @@ def time_series(
 
     times: (n,) s, ascending; values: (n,) or (n, k) for k channels. recorded: "value" (the channel's own unit), or its
     "velocity" or "acceleration", integrated from rest at zero. Values are splined by quintics, derivatives by cubics,
-    so that acceleration is smooth. Raises ArgumentError, which names the sample, for NaN, times that do not ascend, gaps,
-    and less than six samples.
+    so that acceleration is smooth. Raises ArgumentError, which names the sample, for NaN, times that do not ascend,
+    gaps, and less than six samples.
     """
     names = [channels] if isinstance(channels, str) else list(channels)
     if recorded not in INTEGRATIONS:
