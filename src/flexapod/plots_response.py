@@ -6,7 +6,7 @@ for in rad/s; the rest is in SI units.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -41,7 +41,7 @@ _VARIABLES = {
 
 
 def frequency_response(
-    dataset: xr.Dataset, variable: str = "absolute", given: str = "z", natural: Sequence[float] = ()
+    dataset: xr.Dataset, variable: str = "absolute", given: str = "z", natural: Iterable[float] = ()
 ) -> Figure:
     """Amplitude and phase of the six outputs for one input of `fx.transmissibility`'s result.
 
@@ -110,7 +110,7 @@ def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figur
     return figure
 
 
-def stepped_ratio(dataset: xr.Dataset, natural: Sequence[float] = (), linear: xr.DataArray | None = None) -> Figure:
+def stepped_ratio(dataset: xr.Dataset, natural: Iterable[float] = (), linear: xr.DataArray | None = None) -> Figure:
     """Fig. 9: ratio of response amplitude to base amplitude against frequency (rad/s), six outputs.
 
     Dots: the non-linear machine (`fx.stepped_sine`); line: the tangent, from `linear` (omega, output; complex) where a
@@ -136,18 +136,14 @@ def stepped_ratio(dataset: xr.Dataset, natural: Sequence[float] = (), linear: xr
     return figure
 
 
-def displacements(
-    times: Array, displacement: Array, bound: Array | None = None, guide: Array | None = None, bound_name: str = ""
-) -> Figure:
-    """Figs 7 and 8: displacement from equilibrium (m, 6) against time (m,) s, six outputs.
+def displacements(times: Array, displacement: Array, bound: Array | None = None, bound_name: str = "bound") -> Figure:
+    """Figs 7 and 8: displacement from equilibrium (m, 6), m and rad, against time (m,) s, six outputs.
 
-    bound: (m, 6), drawn as an envelope on both sides. guide: (m, 6), another solution, drawn dashed on top.
+    bound: (m, 6), drawn on both sides of zero.
     """
     figure = _figure(10.5, 6.2)
     for i, (name, ax) in enumerate(zip(OUTPUT_NAMES, figure.subplots(2, 3, sharex=True).ravel(), strict=True)):
-        ax.plot(times, displacement[:, i], color=COLOURS[0], lw=0.7)
-        if guide is not None:
-            ax.plot(times, guide[:, i], color=COLOURS[1], lw=0.7, ls=(0, (3, 3)))
+        ax.plot(times, displacement[:, i], color=COLOURS[0], lw=0.5)
         if bound is not None:
             ax.plot(times, bound[:, i], color=COLOURS[1], lw=1.1, label=bound_name)
             ax.plot(times, -bound[:, i], color=COLOURS[1], lw=1.1)
@@ -158,8 +154,8 @@ def displacements(
         ax.margins(x=0)
         if i > 2:
             ax.set_xlabel("time, s")
-        if i == 0 and bound is not None:
-            ax.legend(loc="upper left", fontsize=8, framealpha=0.85, edgecolor="none")
+    if bound is not None:
+        figure.legend(*ax.get_legend_handles_labels(), loc="outside lower right", frameon=False, labelcolor=INK)
     return figure
 
 
@@ -180,7 +176,7 @@ def _dress(ax: Axes) -> None:
         axis.label.set_color(INK)
 
 
-def _mark(ax: Axes, natural: Sequence[float], hertz: bool = True) -> None:
+def _mark(ax: Axes, natural: Iterable[float], hertz: bool = True) -> None:
     low, high = ax.get_xlim()
     for omega in natural:
         place = omega / (2 * np.pi) if hertz else omega
