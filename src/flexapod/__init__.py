@@ -65,6 +65,8 @@ _HOMES = {
     "trajectory": ["Run"],
     "simulation": ["simulate", "simulate_many"],
     "response": ["random_response", "transmissibility"],
+    "stepped": ["stepped_sine"],
+    "animate": ["animate_mode", "animate_simulation"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = sorted([*_HOME_OF, "__version__"])
@@ -83,6 +85,7 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:  # what type checkers and editors see
+    from flexapod.animate import *  # noqa: F403
     from flexapod.dynamics import *  # noqa: F403
     from flexapod.errors import *  # noqa: F403
     from flexapod.excitation import *  # noqa: F403
@@ -96,4 +99,5 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.simulation import *  # noqa: F403
     from flexapod.spectra import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403
+    from flexapod.stepped import *  # noqa: F403
     from flexapod.trajectory import *  # noqa: F403

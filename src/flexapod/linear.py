@@ -18,6 +18,8 @@ from flexapod.statics import Equilibrium, hold
 if TYPE_CHECKING:
     import control
 
+__all__ = ["DampedModes", "Linearisation", "StateSpace", "linearise"]
+
 STATES = ("position", "velocity")
 INPUTS = ("base_acceleration", "leg_force", "wrench", "leg_command")
 OUTPUTS = ("position", "leg_length", "leg_force", "acceleration")

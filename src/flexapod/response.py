@@ -17,6 +17,8 @@ from flexapod.pose import Array, Pose, vectors
 from flexapod.spectra import Quantity, Spectrum
 from flexapod.states import ZERO
 
+__all__ = ["random_response", "transmissibility"]
+
 MOTION_UNITS = ("m", "m", "m", "rad", "rad", "rad")
 WRENCH_UNITS = ("N", "N", "N", "N m", "N m", "N m")
 

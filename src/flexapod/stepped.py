@@ -21,6 +21,8 @@ from flexapod.pose import Array, Motion, Pose
 from flexapod.states import JointModel
 from flexapod.trajectory import Method, Run, integrate
 
+__all__ = ["stepped_sine"]
+
 _SAMPLES = 64  # of a period
 _HARMONICS = 6
 _ITERATIONS = 12
