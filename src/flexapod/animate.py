@@ -18,6 +18,7 @@ from scipy.spatial.transform import Rotation
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.hexapod import Hexapod
 from flexapod.modal import describe_modes, natural_modes
+from flexapod.plots import BASE, FAINT, INK, LEG, PLATFORM, VIEW
 from flexapod.pose import Array, Pose
 from flexapod.states import JointModel
 
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 
 __all__ = ["animate_mode", "animate_simulation"]
 
-INK, FAINT, BASE, PLATFORM, LEG = "#20262d", "#8a929b", "#6b7785", "#0072b2", "#4a5460"
 _TRAVEL = 0.12  # of the machine's size: the largest joint motion shown, where no factor is given
 _FPS = 16
 _PER_PERIOD = 16  # frames of a period that show a vibration
@@ -177,7 +177,7 @@ def _stage(top: Array, feet: Array, width: float) -> tuple[Figure, Callable[[Arr
     ax.set(**{f"{axis}lim": (m - spread, m + spread) for axis, m in zip("xyz", middle, strict=True)})
     ax.set_box_aspect((1, 1, 1), zoom=1.35)
     ax.set_proj_type("ortho")
-    ax.view_init(elev=18.0, azim=-62.0)
+    ax.view_init(**VIEW)
     ax.set_axis_off()
 
     def draw(platform: Array, base: Array) -> None:

@@ -162,7 +162,7 @@ def linearise(
     """
     if pose.shape:
         raise PoseError(f"linearise takes one pose; this one has batch axes {pose.shape}. Index it first.")
-    rest = hold(hexapod, pose, base=base, force=force, moment=moment)
+    rest = hold(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
     s = states(hexapod, pose, base)
     M, C, K, M_b, C_b, K_b, H = _core.tangent(
         hexapod.packed, is_universal(joint), s.platform, s.base, wrench(force, moment, ()), rest.unstretched_length

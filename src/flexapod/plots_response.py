@@ -14,13 +14,12 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
+from flexapod.plots import FAINT, INK
 from flexapod.pose import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-INK = "#20262d"
-FAINT = "#8a929b"
 COLOURS = ("#0072b2", "#d55e00", "#009e73")  # Okabe and Ito; line styles tell them apart as well
 STYLES = ("-", (0, (6, 2)), (0, (2, 1.5)))
 _ROUNDING = 1e-9  # of the largest curve beside it: what is smaller is symmetry broken by rounding, and left out

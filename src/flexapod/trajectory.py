@@ -136,7 +136,7 @@ def integrate(
     if not runs:
         raise ArgumentError("there is nothing to simulate: `runs` is empty.")
     t = _times(times, len(runs))
-    prepared = [_prepare(run, until) for run, until in zip(runs, t[:, -1], strict=True)]
+    prepared = [_prepare(run, until, joint) for run, until in zip(runs, t[:, -1], strict=True)]
     options = [
         method.rtol,
         method.atol or 0.0,
@@ -170,13 +170,13 @@ class _Prepared(NamedTuple):
     unstretched_length: Array
 
 
-def _prepare(run: Run, until: float) -> _Prepared:
+def _prepare(run: Run, until: float, joint: JointModel) -> _Prepared:
     if run.pose.shape or (run.base is not None and run.base.shape):
         raise PoseError("a simulation takes one pose and one base; one has batch axes. Index it first.")
     force, force_history = _split(run.force, "force")
     moment, moment_history = _split(run.moment, "moment")
     if run.unstretched_length is None:
-        rest = hold(run.hexapod, run.pose, base=run.base, force=force, moment=moment)
+        rest = hold(run.hexapod, run.pose, base=run.base, force=force, moment=moment, joint=joint)
         leg_force, lengths = rest.leg_force, rest.unstretched_length
     else:
         lengths = vectors(run.unstretched_length, "unstretched_length", 6)
