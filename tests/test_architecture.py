@@ -21,7 +21,7 @@ FLOORS = [
     ["kinematics", "dynamics"],
     ["statics", "modal"],
     ["linear", "excitation"],
-    ["harmonic", "spectra", "recordings", "trajectory"],
+    ["steady", "spectra", "recordings", "trajectory"],
     [STUDIES],
     ["plots"],
     ["plots_response", "animate"],

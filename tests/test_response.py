@@ -7,8 +7,8 @@ from scipy.linalg import solve_continuous_lyapunov
 from tests.states import CENTER
 
 import flexapod as fx
-from flexapod.harmonic import complex_poles, steady_response
 from flexapod.linear import AXES
+from flexapod.steady import complex_poles, steady_response
 
 II = fx.Pose(CENTER["mukherjee-ii"])
 DAMPED = {"legs.damping.prismatic": 2000.0, "legs.damping.universal": 0.3, "legs.damping.spherical": 0.2}

@@ -10,12 +10,12 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from flexapod.errors import ArgumentError, PoseError
-from flexapod.harmonic import Complex, SteadyResponse, complex_poles, frequencies, loss_factors, steady_response
 from flexapod.hexapod import Hexapod
 from flexapod.linear import AXES, LEGS, Linearisation, RestOptions, linearise
 from flexapod.pose import Array, Pose, vectors
 from flexapod.spectra import Quantity, Spectrum
 from flexapod.states import ZERO
+from flexapod.steady import Complex, SteadyResponse, complex_poles, frequencies, loss_factors, steady_response
 
 __all__ = ["random_response", "transmissibility"]
 
@@ -58,12 +58,12 @@ def transmissibility(
     to_point = shift(pose, point)
     steady = steady_response(linear, w, eta)
     relative = to_point @ steady.relative
-    variables = {
-        "absolute": (("omega", "output", "base"), relative + to_point @ linear.carry),
-        "relative": (("omega", "output", "base"), relative),
-        "compliance": (("omega", "output", "wrench"), to_point @ steady.wrench @ to_point.T),
-        "command": (("omega", "output", "leg"), to_point @ steady.command),
-        "leg_force": (("omega", "leg", "base"), _leg_force(linear, steady, eta)),
+    arrays = {
+        "absolute": relative + to_point @ linear.carry,
+        "relative": relative,
+        "compliance": to_point @ steady.wrench @ to_point.T,
+        "command": to_point @ steady.command,
+        "leg_force": _leg_force(linear, steady, eta),
     }
     coordinates = {
         "omega": ("omega", w, {"units": "rad/s", "long_name": "frequency"}),
@@ -73,16 +73,23 @@ def transmissibility(
         "base_unit": ("base", list(MOTION_UNITS)),
         "wrench_unit": ("wrench", list(WRENCH_UNITS)),
     }
-    dataset = xr.Dataset(variables, coordinates, _attributes(hexapod, pose, point, eta))
-    for name, units, long_name in (
-        ("absolute", "output_unit/base_unit", "absolute transmissibility"),
-        ("relative", "output_unit/base_unit", "motion relative to the base per base motion"),
-        ("compliance", "output_unit/wrench_unit", "compliance"),
-        ("command", "output_unit/m", "motion per leg command"),
-        ("leg_force", "N/base_unit", "leg force per base motion"),
-    ):
-        dataset[name].attrs = {"units": units, "long_name": long_name}
-    return dataset
+    variables = {name: (RESPONSES[name][0], array, RESPONSES[name][1]) for name, array in arrays.items()}
+    return xr.Dataset(variables, coordinates, _attributes(hexapod, pose, point, eta))
+
+
+RESPONSES: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {
+    "absolute": (
+        ("omega", "output", "base"),
+        {"units": "output_unit/base_unit", "long_name": "absolute transmissibility"},
+    ),
+    "relative": (
+        ("omega", "output", "base"),
+        {"units": "output_unit/base_unit", "long_name": "motion relative to the base per base motion"},
+    ),
+    "compliance": (("omega", "output", "wrench"), {"units": "output_unit/wrench_unit", "long_name": "compliance"}),
+    "command": (("omega", "output", "leg"), {"units": "output_unit/m", "long_name": "motion per leg command"}),
+    "leg_force": (("omega", "leg", "base"), {"units": "N/base_unit", "long_name": "leg force per base motion"}),
+}
 
 
 def shift(pose: Pose, point: ArrayLike) -> Array:
@@ -158,15 +165,21 @@ def random_response(
     _check_damped(poles, grid)
     panels = _Panels(_graded(grid, poles))
     filters = _Filters(linear, shift(pose, point), eta, of)
+    densities = filters.spectra(panels.omega, spectrum(panels.omega))
+    dataset = _random_dataset(panels, densities)
+    dataset.attrs = _attributes(hexapod, pose, point, eta)
+    dataset.attrs["convention"] = "one-sided spectral density per rad/s: mean square = integral over omega > 0"
+    return dataset
+
+
+def _random_dataset(panels: _Panels, densities: dict[str, Array]) -> xr.Dataset:
     coordinates = {
         "omega": ("omega", panels.omega, {"units": "rad/s", "long_name": "frequency"}),
         "output": list(AXES),
         "output_unit": ("output", list(MOTION_UNITS)),
         "leg": list(LEGS),
     }
-    dataset = xr.Dataset(coords=coordinates, attrs=_attributes(hexapod, pose, point, eta))
-    dataset.attrs["convention"] = "one-sided spectral density per rad/s: mean square = integral over omega > 0"
-    densities = filters.spectra(panels.omega, spectrum(panels.omega))
+    dataset = xr.Dataset(coords=coordinates)
     for name, (along, unit) in QUANTITIES.items():
         cumulative = np.sqrt(panels.cumulated(densities[name]))
         dataset[f"psd_{name}"] = (("omega", along), densities[name], {"units": f"({unit})2/(rad/s)"})

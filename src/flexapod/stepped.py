@@ -14,11 +14,11 @@ from scipy.spatial.transform import Rotation
 
 from flexapod.errors import ArgumentError
 from flexapod.excitation import harmonic
-from flexapod.harmonic import Complex, frequencies, steady_response
 from flexapod.hexapod import Hexapod
 from flexapod.linear import AXES, Linearisation, linearise
 from flexapod.pose import Array, Motion, Pose
 from flexapod.states import JointModel
+from flexapod.steady import Complex, frequencies, steady_response
 from flexapod.trajectory import Method, Run, integrate
 
 __all__ = ["stepped_sine"]

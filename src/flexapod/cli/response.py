@@ -14,9 +14,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from rich.table import Table
 
-    from flexapod.harmonic import Complex
     from flexapod.hexapod import Hexapod
     from flexapod.pose import Array, Pose
+    from flexapod.steady import Complex
 
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 LEGS = ("1", "2", "3", "4", "5", "6")
@@ -142,8 +142,8 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
 
 
 def _case(hexapod: Hexapod, pose: Pose, given: dict[str, Any]) -> _Case:
-    from flexapod.harmonic import complex_poles
     from flexapod.linear import linearise
+    from flexapod.steady import complex_poles
 
     axis, legs = given["axis"], given["source"] == "command"
     if axis is not None and (axis in LEGS) != legs:
