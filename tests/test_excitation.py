@@ -42,7 +42,7 @@ def test_derivatives_are_those_of_the_value(excitation):
     _, rate, acceleration = (v[:, 2] for v in excitation.evaluate(times))
     for order, exact in ((0, rate), (1, acceleration)):
         difference = 8 * (ahead[order] - behind[order]) - (far_ahead[order] - far_behind[order])
-        # Step^4 / 30 times the fifth derivative: (40 rad/s)^4 1e-12 / 30 is 9e-8 of the derivative for the fastest here,
+        # Step^4 / 30 times the fifth derivative: (40 rad/s)^4 1e-12 / 30 is 9e-8 of the derivative for the fastest;
         # the ramps' and splines' jumps in higher derivatives leave about 1e-5 where a stencil spans them.
         np.testing.assert_allclose(difference / (12 * step), exact, atol=1e-4 * np.abs(exact).max())
 
@@ -115,8 +115,8 @@ def test_base_turns_as_its_angles_say(kind, size):
     found = motion.motion(times, rest)
     np.testing.assert_allclose(found.pose.matrix, turn(times).as_matrix(), atol=1e-15)
     np.testing.assert_allclose(found.pose.position, np.tile(rest.position, (30, 1)), rtol=0)
-    # (R(t+h) R(t-h)^T) = exp(2 h w + O(h^3)); rounding 1e-16 / h. Small motions keep relative precision in the core, but
-    # not in this difference of matrices.
+    # R(t+h) R(t-h)^T = exp(2 h w + O(h^3)), rounded by 1e-16 / h: small motions keep relative precision in the core,
+    # but not in this difference of matrices.
     w = (turn(times + step) * turn(times - step).inv()).as_rotvec() / (2 * step)
     np.testing.assert_allclose(found.angular_velocity, w, atol=3e-7 * size + 1e-11)
     ahead, behind = (motion.motion(times + k * step, rest).angular_velocity for k in (1, -1))
@@ -236,7 +236,7 @@ def test_csv_units_and_kinds(tmp_path):
     value = found.evaluate(0.1)[0]
     np.testing.assert_allclose(value[[2, 3]], [np.sin(1.0) * 1e-6, np.radians(10)], rtol=1e-12)
     accelerometer = fx.read_time_series(write(tmp_path / "b.csv", f"time_ms,x_mm_per_s2,y_mm_per_s2\n{ROWS}\n"))
-    value, rate, acceleration = accelerometer.evaluate(0.1)
+    acceleration = accelerometer.evaluate(0.1)[2]
     np.testing.assert_allclose(acceleration[:2], [np.sin(1.0) * 1e-3, 10e-3], rtol=1e-6)
     assert fx.read_time_series(write(tmp_path / "c.csv", f"time_ms,leg1_um,leg6_um\n{ROWS}")).channels == ("1", "6")
 

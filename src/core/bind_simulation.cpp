@@ -110,8 +110,8 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
   std::vector<Excitation> driven;
   for (const Input& e : excitations) driven.emplace_back(e.data(), e.size());
   Output displacement = nan_filled({n, m, 6}), relative = nan_filled({n, m, 6}), work = nan_filled({n, m, 4}), platform = nan_filled({n, kept, 24}),
-         base = nan_filled({n, kept, 24}), outcome({n}), time({n}), last({n, 24}), counts({n, 3});
-  double *x = displacement.data(), *u = relative.data(), *p = platform.data(), *b = base.data(), *W = work.data(), *how = outcome.data();
+         base = nan_filled({n, kept, 24}), leg_force = nan_filled({n, kept, 6}), outcome({n}), time({n}), last({n, 24}), counts({n, 3});
+  double *x = displacement.data(), *u = relative.data(), *p = platform.data(), *b = base.data(), *W = work.data(), *F = leg_force.data(), *how = outcome.data();
   double *ended = time.data(), *c = counts.data();
   auto* final_motion = reinterpret_cast<Motion<double>*>(last.data());
   std::vector<std::atomic<double>> done(n);
@@ -119,8 +119,9 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
   crew.run(n, static_cast<size_t>(o[7]), progress, done, [&](size_t i) {
     Simulation simulation(rig_input(design + i * design_size, universal, setup[i], works), driven[3 * i],
                           driven[3 * i + 1], driven[3 * i + 2], tolerances);
-    const Samples samples{times.data() + i * m, m, x + i * m * 6, u + i * m * 6, kept ? p + i * m * 24 : nullptr,
-                          kept ? b + i * m * 24 : nullptr, W + i * m * 4};
+    const auto part = [&](double* rows, size_t width) { return kept ? rows + i * m * width : nullptr; };
+    const Samples samples{times.data() + i * m, m, x + i * m * 6, u + i * m * 6, W + i * m * 4,
+                          part(p, 24),          part(b, 24),     part(F, 6)};
     how[i] = static_cast<double>(simulation.run(samples, crew.stop, done[i]));
     done[i] = 1.0;
     ended[i] = simulation.time();
@@ -128,7 +129,8 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
     const Counts& count = simulation.counts();
     c[3 * i] = count.accepted, c[3 * i + 1] = count.rejected, c[3 * i + 2] = count.evaluations;
   });
-  return nb::make_tuple(displacement.array(), relative.array(), platform.array(), base.array(), work.array(), outcome.array(),
+  return nb::make_tuple(displacement.array(), relative.array(), work.array(), platform.array(), base.array(),
+                        leg_force.array(), outcome.array(),
                         time.array(), last.array(), counts.array());
 }
 

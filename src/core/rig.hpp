@@ -84,9 +84,10 @@ class Rig {
     return true;
   }
 
-  /// The platform's motion in the inertial frame, with accelerations; that of the base.
-  void motions(double t, const State& y, Motion<double>& platform, Motion<double>& base) {
+  /// The platform's motion in the inertial frame, with accelerations; that of the base; leg forces.
+  void motions(double t, const State& y, Motion<double>& platform, Motion<double>& base, Vec6<double>& leg_force) {
     const Moment now = moment(t, y);
+    leg_force = now.leg_force;
     const Mat3<double>& R_b = now.base.motion.pose.R;
     base = now.base.motion;
     platform.pose = {base.pose.t + R_b * now.platform.pose.t, R_b * now.platform.pose.R};

@@ -16,11 +16,11 @@ struct Tolerances {
   bool stop_at_singular;
 };
 
-/// Where the samples of one simulation go: rows for the instants given. `platform` and `base` may be null.
+/// Where the samples of one simulation go: rows for the instants given. The last three may be null.
 struct Samples {
   const double* times;
   size_t count;
-  double *displacement, *relative, *platform, *base, *work;
+  double *displacement, *relative, *work, *platform, *base, *leg_force;
 };
 
 struct Counts {
@@ -92,7 +92,8 @@ class Simulation {
   /// The platform where the run ended, inertial axes.
   Motion<double> last() {
     Motion<double> platform, base;
-    rig_.motions(time_, last_, platform, base);
+    Vec6<double> leg_force;
+    rig_.motions(time_, last_, platform, base, leg_force);
     return platform;
   }
 
@@ -265,7 +266,8 @@ class Simulation {
       if (!samples_.platform) continue;
       auto* platform = reinterpret_cast<Motion<double>*>(samples_.platform) + next_sample_;
       auto* base = reinterpret_cast<Motion<double>*>(samples_.base) + next_sample_;
-      rig_.motions(at, y, *platform, *base);
+      auto* leg_force = reinterpret_cast<Vec6<double>*>(samples_.leg_force) + next_sample_;
+      rig_.motions(at, y, *platform, *base, *leg_force);
     }
   }
 

@@ -210,12 +210,14 @@ def check_channels(excitation: Excitation, use: str, allowed: Sequence[str]) -> 
             raise ArgumentError(f"{use} drives {channel!r}; its channels are {', '.join(allowed)}.")
 
 
-def sampled_term(channel: str, knots: Array, coefficients: Array, end: float) -> Excitation:
-    """A recording as smoothly joined polynomials: coefficients (n, <= 8) of powers of the time since each knot (n,)."""
+def sampled_term(channel: str, knots: Array, coefficients: Array, spacing: float, end: float) -> Excitation:
+    """A recording as smoothly joined polynomials: coefficients (n, <= 8) of powers of the time since each knot (n,).
+
+    spacing: s between samples; end: s, the last one.
+    """
     pieces = np.zeros((knots.size, 11))
     pieces[:, 0] = knots
     pieces[:, 1 : 1 + coefficients.shape[1]] = coefficients
-    spacing = (end - knots[0]) / knots.size
     numbers = np.concatenate([[0.0], pieces.ravel()])
     return Excitation((Term(_channel(channel), PIECES, numbers, sampled=spacing, last=end),))
 

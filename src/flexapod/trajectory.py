@@ -57,6 +57,14 @@ class Run:
     base: Pose | None = None
     unstretched_length: ArrayLike | None = None
 
+    def __post_init__(self) -> None:
+        for name in ("pose", "base"):
+            value = getattr(self, name)
+            if not (isinstance(value, Pose) or (name == "base" and value is None)):
+                raise PoseError(f"{name} is {value!r}; a simulation takes a Pose")
+            if value is not None and value.shape:
+                raise PoseError(f"{name} has batch axes {value.shape}; a simulation takes one pose. Index it first.")
+
     def histories(self) -> dict[str, Excitation]:
         """What drives the machine in time, by name."""
         uses = {
@@ -73,18 +81,19 @@ class Trajectories(NamedTuple):
 
     displacement: (n, m, 6) of the platform from its equilibrium pose, inertial axes, translation (m) and rotation
     vector (rad), with full relative precision however small. relative: the same seen from the base, in its axes: zero
-    where the platform rides with the base rigidly. platform, base: (n, m, 24) motions as `Motion.packed`
-    (m = 0 unless asked for). work: (n, m, 4) done by base, external wrench, leg commands and friction since t = 0, J
-    (zero unless asked for). status: (n,) of OUTCOMES. end_time: (n,) s. last: (n, 24), the platform's motion then.
-    steps: (n, 3) accepted, rejected, evaluations of the equations of motion. unstretched_length: (n, 6) m, without
-    commands.
+    where the platform rides with the base rigidly. work: (n, m, 4) done by base, external wrench, leg commands and
+    friction since t = 0, J (zero unless asked for). platform, base: (n, m, 24) motions as `Motion.packed`, and
+    leg_force: (n, m, 6) N (m = 0 unless asked for). status: (n,) of OUTCOMES. end_time: (n,) s. last: (n, 24), the
+    platform's motion then. steps: (n, 3) accepted, rejected, evaluations of the equations of motion.
+    unstretched_length: (n, 6) m, without commands.
     """
 
     displacement: Array
     relative: Array
+    work: Array
     platform: Array
     base: Array
-    work: Array
+    leg_force: Array
     status: np.ndarray
     end_time: Array
     last: Array
@@ -156,11 +165,11 @@ def integrate(
         np.array(options, dtype=float),
         progress,
     )
-    displacement, relative, platform, base, work, outcome, end_time, last, counts = found
+    displacement, relative, work, platform, base, leg_force, outcome, end_time, last, counts = found
     status = np.array(OUTCOMES)[outcome.astype(int)]
     lengths = np.stack([p.unstretched_length for p in prepared])
     return Trajectories(
-        displacement, relative, platform, base, work, status, end_time, last, counts.astype(int), lengths
+        displacement, relative, work, platform, base, leg_force, status, end_time, last, counts.astype(int), lengths
     )
 
 
@@ -171,8 +180,6 @@ class _Prepared(NamedTuple):
 
 
 def _prepare(run: Run, until: float, joint: JointModel) -> _Prepared:
-    if run.pose.shape or (run.base is not None and run.base.shape):
-        raise PoseError("a simulation takes one pose and one base; one has batch axes. Index it first.")
     force, force_history = _split(run.force, "force")
     moment, moment_history = _split(run.moment, "moment")
     if run.unstretched_length is None:
