@@ -106,8 +106,9 @@ class Linearisation:
 
         Inputs (24): base acceleration in the inertial frame (m/s2, rad/s2), leg forces (N), wrench (N, N m), leg length
         commands (m). Outputs (24): relative displacement (m, rad), change of leg lengths (m) and of the force in the
-        legs' springs and actuators (N), absolute acceleration (m/s2, rad/s2). Exact but for one effect: a tilted base
-        also tilts gravity, which twelve states cannot hold; the frequency response keeps it.
+        legs' springs and actuators (N), absolute acceleration (m/s2, rad/s2). Exact but for two effects that twelve
+        states cannot hold and `transmissibility` keeps: a tilted base tilts gravity, and in the model "spin_free" a
+        turning base rubs on legs that do not spin with it.
         """
         M_inv = np.linalg.inv(self.M)
         zero, one = np.zeros((6, 6)), np.eye(6)
