@@ -59,7 +59,7 @@ def test_papers_machine_keeps_its_energy():
     hexapod, pose = machine()
     hexapod = hexapod.replace(SMOOTH)
     period = 2 * np.pi / fx.stability_index(hexapod, pose)
-    start = fx.Motion(fx.Pose(pose.position + [1e-4, -5e-5, 2e-5]), [0, 0.01, 0], [0.1, 0.2, -0.3])
+    start = fx.Motion(fx.Pose(pose.position + np.array([1e-4, -5e-5, 2e-5])), [0, 0.01, 0], [0.1, 0.2, -0.3])
     dataset = fx.simulate(hexapod, pose, start=start, duration=100 * period, samples=500, rtol=1e-12)
     assert dataset.attrs["energy_error"] < 1e-9
 
@@ -88,7 +88,7 @@ def test_works_balance_the_energy():
 
 @pytest.mark.parametrize("joint", ["universal", "spin_free"])
 def test_order_of_convergence(joint):
-    """Steps of one length: halving them divides the error by 2^8, while platform and base turn by tenths of a radian."""
+    """Steps of one length: halving them divides the error by 2^8, while platform and base turn by 0.2 rad."""
     hexapod, pose = machine("precision-positioner")
     omega = fx.natural_modes(hexapod, pose).omega
     size = np.linalg.norm(hexapod.platform_joints, axis=1).mean()

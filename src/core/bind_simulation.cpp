@@ -134,6 +134,40 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
                         time.array(), last.array(), counts.array());
 }
 
+/// The equations of one simulation for other integrators: y' = rates(t, y) from y = start().
+class Equations {
+ public:
+  Equations(const Input& design, bool universal, const Input& setup, const std::vector<Input>& excitations) {
+    const auto* s = reinterpret_cast<const Setup*>(rows(setup, 1, setup_size, "setup"));
+    const RigInput input = rig_input(rows(design, 1, design_size, "design"), universal, *s, false);
+    for (const Input& e : excitations) numbers_.emplace_back(e.data(), e.data() + e.size());
+    const auto part = [&](size_t i) { return Excitation(numbers_.at(i).data(), numbers_.at(i).size()); };
+    rig_ = std::make_unique<Rig>(input, part(0), part(1), part(2));
+  }
+  nb::object start() {
+    const Rig::State y = rig_->start();
+    return array(y);
+  }
+  nb::object rates(double t, const Input& given) {
+    const double* numbers = rows(given, 1, Rig::mechanical, "y");
+    Rig::State y{}, rate;
+    std::copy_n(numbers, Rig::mechanical, y.begin());
+    rig_->inside = t;
+    rig_->rates(t, y, rate, false);
+    return array(rate);
+  }
+
+ private:
+  static nb::object array(const Rig::State& y) {
+    Output out({Rig::mechanical});
+    std::copy_n(y.begin(), Rig::mechanical, out.data());
+    return nb::cast(out.array());
+  }
+
+  std::vector<std::vector<double>> numbers_;  // what the excitations point to
+  std::unique_ptr<Rig> rig_;
+};
+
 /// Six channels with their first and second derivatives, (n, 3, 6).
 nb::object excitation(const Input& terms, const Input& times) {
   Excitation e(terms.data(), terms.size());
@@ -169,6 +203,10 @@ nb::object base_motion(const Input& terms, bool roll_pitch_yaw, const Input& res
 void bind_simulation(nb::module_& m) {
   m.attr("setup_size") = setup_size;
   m.def("simulate", &simulate, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none());
+  nb::class_<Equations>(m, "Equations")
+      .def(nb::init<const Input&, bool, const Input&, const std::vector<Input>&>())
+      .def("start", &Equations::start)
+      .def("rates", &Equations::rates);
   m.def("excitation", &excitation);
   m.def("base_motion", &base_motion);
 }

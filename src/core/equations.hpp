@@ -58,11 +58,14 @@ template <class T, class D> Mat6<T> platform_inertia(const Design<D>& d, const M
   return J;
 }
 
-/// J_p_i of Eq. 34: the inertia of leg i seen at the platform's reference point.
+/// J_p_i of Eq. 34: the inertia of a leg, whose platform joint is at q_p, seen at the platform's reference point.
+template <class T, class D>
+void add_leg_inertia(Mat6<T>& J, const LegAxes<T>& leg, const LegInertia<D>& in, const Vec3<T>& q_p) {
+  add_inertia_at(J, q_p, rotate(transpose(leg.axes), leg_inertia(leg, in)));
+}
 template <class T, class D>
 void add_leg_inertia(Mat6<T>& J, const Machine<D>& machine, const Geometry<T>& g, int i) {
-  const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
-  add_inertia_at(J, g.q_p[i], rotate(transpose(leg.axes), leg_inertia(leg, machine.inertia[i])));
+  add_leg_inertia(J, LegAxes<T>(g.S[i], g.k[i], machine.joint), machine.inertia[i], g.q_p[i]);
 }
 
 /// J_p of Eq. 34: the inertia of platform and legs seen at the platform's reference point.
@@ -109,24 +112,36 @@ LegEnds<T> leg_ends(const Machine<D>& machine, const Geometry<T>& g, const LegAx
   return end;
 }
 
+/// The platform's own part of the wrench below.
+template <class T, class D> Vec6<T> platform_wrench(const Design<D>& d, const Motion<T>& platform) {
+  const Vec3<T> R_p = platform.pose.R * d.R_0;
+  const Vec3<T> f = d.M * (platform.acceleration_at(R_p) - d.gravity);
+  const Sym3<T> I = rotate(platform.pose.R, d.I_p);
+  return Vec6<T>::of(f, cross(R_p, f) + I * platform.alpha + cross(platform.w, I * platform.w));
+}
+
+/// What leg i, with the actuator force F, takes from the platform: -[F_s; q_p x F_s - f] of Eqs 30 and 32.
+template <class T, class D>
+void subtract_leg(Vec6<T>& wrench, const Machine<D>& machine, const Geometry<T>& g, const LegAxes<T>& leg, int i,
+                  const Motion<T>& platform, const Motion<T>& base, const T& F) {
+  const LegEnds<T> end = leg_ends(machine, g, leg, i, platform, base);
+  SphericalLoad<T> load =
+      spherical_load(leg, machine.inertia[i], machine.design.leg[i], end, LegMotion<T>(leg, end, machine.joint));
+  load.force.x = F - load.force.x;
+  const Vec3<T> force = transposed(leg.axes, Vec3<T>(load.force.x, -load.force.y, -load.force.z));
+  add(wrench, force, cross(g.q_p[i], force) + transposed(leg.axes, load.moment));
+}
+
 /// Inertia, weight and friction of platform and legs as a wrench at the reference point, for the motions given:
 /// J_p [a; alpha] - J_b [a_b; alpha_b] + eta. With all accelerations zero it is eta.
 template <class T, class D>
 Vec6<T> inverse_wrench(const Machine<D>& machine, const Geometry<T>& g, const Motion<T>& platform,
                        const Motion<T>& base) {
-  const Design<D>& d = machine.design;
-  const Vec3<T> R_p = platform.pose.R * d.R_0;
-  const Vec3<T> f = d.M * (platform.acceleration_at(R_p) - d.gravity);
-  const Sym3<T> I = rotate(platform.pose.R, d.I_p);
-  Vec6<T> wrench = Vec6<T>::of(f, cross(R_p, f) + I * platform.alpha + cross(platform.w, I * platform.w));
-  for (int i = 0; i < 6; ++i) {
-    const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
-    const LegEnds<T> end = leg_ends(machine, g, leg, i, platform, base);
-    const SphericalLoad<T> load =
-        spherical_load(leg, machine.inertia[i], d.leg[i], end, LegMotion<T>(leg, end, machine.joint));
-    const Vec3<T> force = transposed(leg.axes, load.force), moment = transposed(leg.axes, load.moment);
-    add(wrench, force, cross(g.q_p[i], force) - moment);
-  }
+  Vec6<T> wrench = platform_wrench(machine.design, platform);
+  for (T& x : wrench.a) x = -x;
+  for (int i = 0; i < 6; ++i)
+    subtract_leg(wrench, machine, g, LegAxes<T>(g.S[i], g.k[i], machine.joint), i, platform, base, T(0.0));
+  for (T& x : wrench.a) x = -x;
   return wrench;
 }
 
@@ -140,15 +155,22 @@ template <class T> Motion<T> unaccelerated(Motion<T> motion) {
   return motion;
 }
 
-/// Eq. 35's accelerations of the platform: J_p^-1 (H F + wrench - eta + J_b [a_b; alpha_b]).
+/// Eq. 35's accelerations of the platform: J_p^-1 (H F + wrench - eta + J_b [a_b; alpha_b]), leg by leg.
 template <class T, class D>
 Vec6<T> forward_dynamics(const Machine<D>& machine, const Motion<T>& platform, const Motion<T>& base,
                          const Vec6<T>& leg_force, const Vec6<T>& wrench) {
   const Geometry<T> g(machine.design, platform.pose, base.pose);
-  const Vec6<T> bias = inverse_wrench(machine, g, unaccelerated(platform), base);
-  Vec6<T> load = force_transformation(g) * leg_force;
-  for (int i = 0; i < 6; ++i) load[i] += wrench[i] - bias[i];
-  return Cholesky<T>(inertia(machine, g, platform.pose.R)).solve(load);
+  const Motion<T> coasting = unaccelerated(platform);
+  const Vec6<T> own = platform_wrench(machine.design, coasting);
+  Vec6<T> load;
+  for (int i = 0; i < 6; ++i) load[i] = wrench[i] - own[i];
+  Mat6<T> J = platform_inertia(machine.design, platform.pose.R);
+  for (int i = 0; i < 6; ++i) {
+    const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
+    add_leg_inertia(J, leg, machine.inertia[i], g.q_p[i]);
+    subtract_leg(load, machine, g, leg, i, coasting, base, leg_force[i]);
+  }
+  return Cholesky<T>(J).solve(load);
 }
 
 }  // namespace flexapod

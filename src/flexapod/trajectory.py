@@ -173,6 +173,16 @@ def integrate(
     )
 
 
+def equations(run: Run, *, joint: JointModel = "universal") -> _core.Equations:
+    """Eq. 35 of a run for other integrators and controllers: `start()` gives y, `rates(t, y)` its derivative.
+
+    y: (12,) the platform as seen from the base, in its axes: translation from rest (m), rotation vector from rest (rad,
+    below a full turn), velocity, angular velocity.
+    """
+    p = _prepare(run, 0.0, joint)
+    return _core.Equations(run.hexapod.packed, is_universal(joint), p.setup, p.excitations)
+
+
 class _Prepared(NamedTuple):
     setup: Array
     excitations: list[Array]
