@@ -25,7 +25,7 @@ FLOORS = [
     [STUDIES],
     ["plots"],
     ["plots_response", "animate"],
-    ["paper_response"],
+    ["paper"],
     ["report"],
     ["cli"],
     ["__main__"],

@@ -65,18 +65,18 @@ def transmissibility(
         "command": to_point @ steady.command,
         "leg_force": _leg_force(linear, steady, eta),
     }
-    coordinates = {
-        "omega": ("omega", w, {"units": "rad/s", "long_name": "frequency"}),
-        **{axis: (axis, list(AXES)) for axis in ("output", "base", "wrench")},
-        "leg": ("leg", list(LEGS)),
-        "output_unit": ("output", list(MOTION_UNITS)),
-        "base_unit": ("base", list(MOTION_UNITS)),
-        "wrench_unit": ("wrench", list(WRENCH_UNITS)),
-    }
     variables = {name: (RESPONSES[name][0], array, RESPONSES[name][1]) for name, array in arrays.items()}
+    coordinates = {"omega": ("omega", w, {"units": "rad/s", "long_name": "frequency"}), **COORDINATES}
     return xr.Dataset(variables, coordinates, _attributes(hexapod, pose, point, eta))
 
 
+COORDINATES = {
+    **{axis: (axis, list(AXES)) for axis in ("output", "base", "wrench")},
+    "leg": ("leg", list(LEGS)),
+    "output_unit": ("output", list(MOTION_UNITS)),
+    "base_unit": ("base", list(MOTION_UNITS)),
+    "wrench_unit": ("wrench", list(WRENCH_UNITS)),
+}
 RESPONSES: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {
     "absolute": (
         ("omega", "output", "base"),
@@ -166,10 +166,7 @@ def random_response(
     panels = _Panels(_graded(grid, poles))
     filters = _Filters(linear, shift(pose, point), eta, of)
     densities = filters.spectra(panels.omega, spectrum(panels.omega))
-    dataset = _random_dataset(panels, densities)
-    dataset.attrs = _attributes(hexapod, pose, point, eta)
-    dataset.attrs["convention"] = "one-sided spectral density per rad/s: mean square = integral over omega > 0"
-    return dataset
+    return _random_dataset(panels, densities).assign_attrs(_attributes(hexapod, pose, point, eta))
 
 
 def _random_dataset(panels: _Panels, densities: dict[str, Array]) -> xr.Dataset:
@@ -180,6 +177,7 @@ def _random_dataset(panels: _Panels, densities: dict[str, Array]) -> xr.Dataset:
         "leg": list(LEGS),
     }
     dataset = xr.Dataset(coords=coordinates)
+    dataset.attrs["convention"] = "one-sided spectral density per rad/s: mean square = integral over omega > 0"
     for name, (along, unit) in QUANTITIES.items():
         cumulative = np.sqrt(panels.cumulated(densities[name]))
         dataset[f"psd_{name}"] = (("omega", along), densities[name], {"units": f"({unit})2/(rad/s)"})

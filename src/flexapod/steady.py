@@ -85,8 +85,8 @@ class _Modes:
         spring = linear.H * linear.leg_stiffness  # wrench of unit stretches
         self.loss = left @ (spring * eta) @ linear.H.T @ self.shape
         self.friction = left @ linear.C @ self.shape
-        # Rigid motion with the base meets no spring, and a turned base turns gravity: K carry + K_b is known without the
-        # cancellation, which would drown slow motion. It meets no friction either, but in the model "spin_free".
+        # Rigid motion with the base meets no spring, and a turned base turns gravity: K carry + K_b is known without
+        # the cancellation, which would drown slow motion. It meets no friction either, but in the model "spin_free".
         lifted = (linear.M + linear.M_b)[:, :3]
         self.tilt = left @ np.hstack([np.zeros((6, 3)), np.cross(linear.gravity, lifted)])
         rubbed = linear.C @ linear.carry + linear.C_b

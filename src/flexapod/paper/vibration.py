@@ -1,13 +1,12 @@
-"""Figures 7, 8 and 9 of the paper on the machine of its Appendix A.2.
+"""Figures 7-9: the complete machine on a shaking base, in time and by frequency, beside its tangent.
 
-Each function writes a picture and a table into a directory and returns what it found: numbers, and in words what the
-paper shows, what is the same and what differs.
+The paper prints manipulator II's pose, the base's amplitude and two frequencies, of which its data do not give the
+first (corrections E8 and D): the machine's own third natural frequency takes its place. It prints no span of time.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from pathlib import Path
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,95 +17,94 @@ from flexapod.excitation import harmonic
 from flexapod.hexapod import load
 from flexapod.linear import AXES, Linearisation, linearise
 from flexapod.modal import natural_modes
+from flexapod.paper import PaperFigure, Settings
 from flexapod.pose import Array, Pose
 from flexapod.response import transmissibility
+from flexapod.states import JointModel
 from flexapod.steady import complex_poles, steady_response
 from flexapod.stepped import stepped_sine
 from flexapod.trajectory import Method, Run, integrate
 
-POSE = (0.0, 0.0, 0.085)
+DESIGN, POSE = "mukherjee-ii", (0.0, 0.0, 0.085)
 AMPLITUDE = 1e-6  # m, along z
-PRINTED, AWAY = 749.715, 550.136  # rad/s (corrections E8)
-DURATION = 1.0  # s; the paper's is not known
+PRINTED, AWAY = 749.715, 550.136  # rad/s
+DURATION = 1.0  # s
 YAW = AXES.index("yaw")
 
-Progress = Callable[[float], object] | None
+
+def draw(number: int, settings: Settings) -> PaperFigure:
+    """One of Figures 7-9, with what the paper shows, what is the same and what differs."""
+    return {7: _at_resonance, 8: _away, 9: _ratio}[number](settings)
 
 
-def figure_7(out: Path, progress: Progress = None) -> dict[str, Any]:
-    """Fig. 7: the base shaken at the second distinct resonance; writes figure-7.png and .csv."""
-    omega = float(natural_modes(load("mukherjee-ii"), Pose(POSE), "spin_free").omega[2])
-    shaken = _shake(omega, progress)
-    title = f"Fig. 7: base z, 1 µm at the third mode, {omega:.3f} rad/s (paper: {PRINTED:g})"
-    _save(out, "figure-7", shaken, title)
+def _at_resonance(settings: Settings) -> PaperFigure:
+    omega = float(natural_modes(load(DESIGN), Pose(POSE), settings.joint).omega[2])
+    shaken = _shake(omega, settings.joint)
     early, late = _largest(shaken, 0.0, 0.1), _largest(shaken, 0.9, 1.0)
-    return {
+    numbers = {
         "omega_rad_s": omega,
         "omega_printed_rad_s": PRINTED,
-        "omega_universal_rad_s": float(natural_modes(load("mukherjee-ii"), Pose(POSE)).omega[2]),
         "growth_of_yaw": late[YAW] / early[YAW],
         "apart_from_tangent": shaken.apart,
-        "paper": f"At the second natural frequency ({PRINTED:g} 'Hz', meant in rad/s) the oscillation grows.",
-        "same": f"It grows: rotation about z, the third mode's motion, is {late[YAW] / early[YAW]:.1f} times larger in "
-        f"the last tenth of {DURATION:g} s than in the first, in step with the tangent's bound.",
-        "different": f"The frequency: {omega:.3f} rad/s for the data as printed, {omega / PRINTED - 1:.1%} from "
-        f"{PRINTED:g} (see the readings).",
     }
+    caption = (
+        f"Fig. 7: base moved along z, 1 um at {omega:.3f} rad/s, the third mode, second distinct resonance. Paper: at "
+        f"its second natural frequency ({PRINTED:g} 'Hz', meant in rad/s) the oscillation grows. Same here: rotation "
+        f"about z, the third mode's motion, is {late[YAW] / early[YAW]:.1f} times larger in the last tenth of "
+        f"{DURATION:g} s than in the first, in step with the tangent's bound. Different: the frequency, "
+        f"{omega / PRINTED - 1:+.1%} for the data as printed."
+    )
+    title = f"Fig. 7: base z, 1 µm at the third mode, {omega:.3f} rad/s (paper: {PRINTED:g})"
+    return _in_time(7, shaken, title, caption, numbers)
 
 
-def figure_8(out: Path, progress: Progress = None) -> dict[str, Any]:
-    """Fig. 8: the base shaken away from every resonance; writes figure-8.png and .csv."""
-    shaken = _shake(AWAY, progress)
-    _save(out, "figure-8", shaken, f"Fig. 8: base z, 1 µm at {AWAY:g} rad/s, away from every mode")
-    early, late = _largest(shaken, 0.0, 0.5), _largest(shaken, 0.5, 1.0)
-    return {
-        "omega_rad_s": AWAY,
-        "second_half_over_first": late / early,
-        "apart_from_tangent": shaken.apart,
-        "paper": f"At {AWAY:g} rad/s, away from the natural frequencies, the response is of the other nature: bounded.",
-        "same": "It is bounded: forced and free vibration beat, and the largest displacement of the second half is "
-        f"{(late / early).max():.2f} times that of the first half at most.",
-        "different": f"Nothing that can be told: the paper's span of time is not printed, here it is {DURATION:g} s.",
-    }
+def _away(settings: Settings) -> PaperFigure:
+    shaken = _shake(AWAY, settings.joint)
+    ratio = _largest(shaken, 0.5, 1.0) / _largest(shaken, 0.0, 0.5)
+    numbers = {"omega_rad_s": AWAY, "second_half_over_first": ratio, "apart_from_tangent": shaken.apart}
+    caption = (
+        f"Fig. 8: base moved along z, 1 um at {AWAY:g} rad/s. Paper: away from the natural frequencies the response is "
+        "of another nature. Same here: it is bounded, forced and free vibration beat, and the largest displacement of "
+        f"the second half is {ratio.max():.2f} times that of the first half at most. Different: nothing that can be "
+        "told, as the paper's span of time is not printed."
+    )
+    return _in_time(8, shaken, f"Fig. 8: base z, 1 µm at {AWAY:g} rad/s, away from every mode", caption, numbers)
 
 
-def figure_9(out: Path, progress: Progress = None) -> dict[str, Any]:
-    """Fig. 9: response over base amplitude against frequency; writes figure-9.png and .csv."""
-    hexapod, pose = load("mukherjee-ii"), Pose(POSE)
-    poles = complex_poles(linearise(hexapod, pose, joint="spin_free"))
-    resonances = poles.imag[:3]
+def _ratio(settings: Settings) -> PaperFigure:
+    hexapod, pose, joint = load(DESIGN), Pose(POSE), settings.joint
+    resonances = complex_poles(linearise(hexapod, pose, joint=joint)).imag[:3]
     near = resonances[:, None] * (1 + np.array([-4, -2, -1, -0.5, -0.2, 0.2, 0.5, 1, 2, 4]) * 1e-3)
     omega = np.sort(np.concatenate([np.linspace(50.0, 800.0, 170), near.ravel()]))
-    stepped = stepped_sine(hexapod, pose, omega, AMPLITUDE, "z", joint="spin_free", progress=progress)
-    fine = np.union1d(omega, np.concatenate([np.linspace(50, 800, 4000), near.ravel(), resonances]))
-    line = transmissibility(hexapod, pose, fine, joint="spin_free").absolute.sel(base="z")
+    stepped = stepped_sine(hexapod, pose, omega, AMPLITUDE, "z", joint=joint)
+    fine = np.union1d(omega, np.concatenate([np.linspace(50, 800, 4000), resonances]))
+    line = transmissibility(hexapod, pose, fine, joint=joint).absolute.sel(base="z")
     figure = plots_response.stepped_ratio(stepped, resonances, line)
     figure.suptitle(
         "Fig. 9: ratio of response to base amplitude, base z, 1 µm; dotted: the tangent's modes", fontsize=12
     )
-    figure.savefig(out / "figure-9.png")
-    table = stepped.ratio.to_pandas()
-    table.insert(0, "status", stepped.status.values)
-    table.to_csv(out / "figure-9.csv", index_label="omega_rad_s")
-    apart = np.abs(stepped.response - stepped.linear) / np.abs(stepped.linear)
-    found = stepped.status.values == "found"
+    apart = float(np.nanmedian(np.abs(stepped.response - stepped.linear) / np.abs(stepped.linear)))
     peaks = _peaks(omega, stepped.ratio.values)
     elsewhere = [w for w in peaks if np.abs(w / resonances - 1).min() > 1e-3]
-    return {
+    numbers = {
         "frequencies": omega.size,
-        "found": int(found.sum()),
+        "found": int((stepped.status == "found").sum()),
         "resonances_rad_s": resonances,
         "peaks_rad_s": peaks,
         "peaks_elsewhere": len(elsewhere),
-        "median_apart_from_tangent": float(np.nanmedian(apart)),
-        "paper": "Up to a little above the second natural frequency, it peaks at the linear model's frequencies.",
-        "same": f"It peaks at {_words(peaks)} rad/s, {len(elsewhere) or 'none'} of them more than 0.1 % away from the "
-        f"tangent's {_words(resonances)} rad/s, "
-        "of which the first two count as one resonance. The non-linear ratios lie on the tangent's curve: "
-        f"{float(np.nanmedian(apart)):.1g} apart in the median.",
-        "different": f"The second frequency by {resonances[2] / PRINTED - 1:.1%} (see the readings). "
-        "At a peak itself nothing but friction limits the ratio.",
+        "median_apart_from_tangent": apart,
     }
+    caption = (
+        f"Fig. 9: ratio of response to base amplitude at {omega.size} frequencies, base moved along z, 1 um. Paper: up "
+        "to a little above the second natural frequency, it peaks at the linear model's. Same here: it peaks at "
+        f"{_words(peaks)} rad/s, {len(elsewhere) or 'none'} of them more than 0.1 % away from the tangent's "
+        f"{_words(resonances)} rad/s, of which the first two count as one resonance; the non-linear ratios lie on the "
+        f"tangent's curve, {apart:.1g} apart in the median. Different: the second frequency, "
+        f"{resonances[2] / PRINTED - 1:+.1%}."
+    )
+    table = stepped.ratio.to_pandas()
+    table.insert(0, "status", stepped.status.values)
+    return PaperFigure(9, figure, caption, numbers, table.rename_axis("omega_rad_s"))
 
 
 def _words(frequencies: Iterable[float]) -> str:
@@ -117,7 +115,7 @@ def _peaks(omega: Array, ratio: Array) -> list[float]:
     """Frequencies at which the ratio (n, 6) of any output stands out of its neighbours by more than a tenth."""
     inner = ratio[1:-1]
     peak = (inner > 1.1 * ratio[:-2]) & (inner > 1.1 * ratio[2:])
-    return omega[1:-1][peak.any(axis=1)].tolist()
+    return [float(w) for w in omega[1:-1][peak.any(axis=1)]]
 
 
 class _Shaken(NamedTuple):
@@ -127,13 +125,13 @@ class _Shaken(NamedTuple):
     apart: float  # from the tangent's solution, relative to the largest displacement, worst output
 
 
-def _shake(omega: float, progress: Progress) -> _Shaken:
-    hexapod, pose = load("mukherjee-ii"), Pose(POSE)
+def _shake(omega: float, joint: JointModel) -> _Shaken:
+    hexapod, pose = load(DESIGN), Pose(POSE)
     times = np.linspace(0.0, DURATION, 12001)
     run = Run(hexapod, pose, base_motion=harmonic("z", AMPLITUDE, omega))
-    path = integrate([run], times, joint="spin_free", method=Method(rtol=1e-10), motions=False, progress=progress)
+    path = integrate([run], times, joint=joint, method=Method(rtol=1e-10), motions=False)
     found = path.displacement[0]
-    tangent = _FromRest(linearise(hexapod, pose, joint="spin_free"), omega)
+    tangent = _FromRest(linearise(hexapod, pose, joint=joint), omega)
     apart = np.abs(found - tangent.displacement(times)).max(axis=0) / np.abs(found).max(axis=0)
     return _Shaken(times, found, tangent.bound(times), float(apart.max()))
 
@@ -182,11 +180,9 @@ def _largest(shaken: _Shaken, first: float, last: float) -> Array:
     return np.abs(shaken.displacement[int(first * n) : int(last * n)]).max(axis=0)
 
 
-def _save(out: Path, name: str, shaken: _Shaken, title: str) -> None:
+def _in_time(number: int, shaken: _Shaken, title: str, caption: str, numbers: dict[str, Any]) -> PaperFigure:
     figure = plots_response.displacements(shaken.times, shaken.displacement, shaken.bound, "bound by the tangent")
     figure.suptitle(title, fontsize=12)
-    figure.savefig(out / f"{name}.png")
-    table = pd.DataFrame(
-        shaken.displacement, index=shaken.times, columns=[f"{a}_{'rad' if i > 2 else 'm'}" for i, a in enumerate(AXES)]
-    )
-    table.to_csv(out / f"{name}.csv", index_label="time_s")
+    columns = [f"{axis}_{'rad' if i > 2 else 'm'}" for i, axis in enumerate(AXES)]
+    table = pd.DataFrame(shaken.displacement, index=pd.Index(shaken.times, name="time_s"), columns=columns)
+    return PaperFigure(number, figure, caption, numbers, table)
