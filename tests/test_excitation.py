@@ -20,6 +20,7 @@ KINDS = {
     "sweep with held acceleration": fx.sine_sweep("z", 1.0, 5.0, 30.0, 1.5, hold="acceleration"),
     "shock": fx.half_sine_shock("z", 20.0, 0.53),
     "shock with recovery": fx.half_sine_shock("z", 20.0, 0.53, recovery=0.9),
+    "pulse": fx.half_sine_pulse("z", 20.0, 0.53),
     "polynomial": fx.polynomial("z", [0.1, -0.2, 0.3, 0.0, 0.5]),
     "smooth step": fx.smooth_step("z", 0.7, 1.33),
     "recorded values": fx.time_series(RECORD, np.sin(5 * RECORD), "z"),

@@ -370,7 +370,7 @@ def test_many_runs_are_the_single_ones_whatever_the_threads():
     hexapod, pose = machine()
     other, elsewhere = machine("cubic-isolator")
     runs = [fx.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, w)) for w in (300.0, 500.0, 800.0)]
-    runs.append(fx.Run(other, elsewhere, force=fx.half_sine_shock("x", 3.0, 0.01)))
+    runs.append(fx.Run(other, elsewhere, force=fx.half_sine_pulse("x", 3.0, 0.01)))
     many = fx.simulate_many(runs, 0.05, samples=40)
     alone = fx.simulate_many(runs, 0.05, samples=40, threads=1)
     assert many.sizes["run"] == 4

@@ -59,7 +59,7 @@ _HOMES = {
         "stability_index",
     ],
     "linear": ["DampedModes", "Linearisation", "StateSpace", "linearise"],
-    "excitation": ["Excitation", "half_sine_shock", "harmonic", "polynomial", "sine_sweep", "smooth_step"],
+    "excitation": ["Excitation", "half_sine_pulse", "half_sine_shock", "harmonic", "polynomial", "sine_sweep", "smooth_step"],
     "recordings": ["read_time_series", "time_series"],
     "spectra": ["Spectrum", "flat_spectrum", "ground_noise", "random_motion", "sea_motion", "sea_spectrum", "vc_curve"],
     "trajectory": ["Run"],

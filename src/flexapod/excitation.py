@@ -167,7 +167,7 @@ def sine_sweep(
 
 
 def half_sine_shock(channel: str, acceleration: float, duration: float, recovery: float | None = None) -> Excitation:
-    """A half-sine pulse of acceleration (peak m/s2 or rad/s2, `duration` s), from rest.
+    """A base's half-sine pulse of acceleration (peak m/s2 or rad/s2, `duration` s), from rest.
 
     The pulse leaves the velocity 2 acceleration duration / pi. With `recovery` a second half sine of that duration (s),
     opposite and as strong as needed, brings it to rest again; without, the motion goes on at this speed.
@@ -184,6 +184,13 @@ def half_sine_shock(channel: str, acceleration: float, duration: float, recovery
         T, speed = T + T_2, 0.0
     pieces.append(_piece(T, [travel, speed]))
     return _one(channel, PIECES, _pieces(pieces, corners=True))
+
+
+def half_sine_pulse(channel: str, peak: float, duration: float) -> Excitation:
+    """A half-sine pulse of the value itself, as of a force: peak in the channel's unit, `duration` s, nothing after."""
+    _finite(np.array([peak]), "peak")
+    T = _positive(duration, "duration", "s")
+    return _one(channel, PIECES, _pieces([_piece(0.0, [0.0], peak, np.pi / T), _piece(T, [0.0])], corners=True))
 
 
 def polynomial(channel: str, coefficients: ArrayLike) -> Excitation:

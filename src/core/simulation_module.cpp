@@ -1,5 +1,5 @@
 // Simulations as Python sees them: many at once on all threads, stopped by an interrupt.
-#include "bind_simulation.hpp"
+#include "simulation_module.hpp"
 
 #include <nanobind/stl/vector.h>
 
