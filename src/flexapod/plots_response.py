@@ -7,7 +7,7 @@ for in rad/s; the rest is in SI units.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -48,7 +48,7 @@ def frequency_response(
     frequencies in rad/s to mark.
     """
     dimension, words = _VARIABLES[variable]
-    response = dataset[variable].sel({dimension: given})
+    natural, response = list(natural), dataset[variable].sel({dimension: given})
     hertz = dataset.omega.values / (2 * np.pi)
     unit = "m" if dimension == "leg" else str(dataset[f"{dimension}_unit"].sel({dimension: given}).values)
     figure = _figure(10, 6.2)
@@ -109,20 +109,33 @@ def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figur
     return figure
 
 
-def stepped_ratio(dataset: xr.Dataset, natural: Iterable[float] = (), linear: xr.DataArray | None = None) -> Figure:
+def stepped_ratio(
+    dataset: xr.Dataset,
+    natural: Iterable[float] = (),
+    linear: xr.DataArray | None = None,
+    scale: Literal["linear", "log"] = "linear",
+) -> Figure:
     """Fig. 9: ratio of response amplitude to base amplitude against frequency (rad/s), six outputs.
 
     Dots: the non-linear machine (`fx.stepped_sine`); line: the tangent, from `linear` (omega, output; complex) where a
-    finer one is at hand. natural: frequencies in rad/s to mark.
+    finer one is at hand. natural: frequencies in rad/s to mark. scale: of the frequencies.
     """
     line = dataset["linear"] if linear is None else linear
+    natural, least = list(natural), _ROUNDING * float(np.abs(line).max())
     figure = _figure(10.5, 6.2)
     for i, (name, ax) in enumerate(zip(OUTPUT_NAMES, figure.subplots(2, 3, sharex=True).ravel(), strict=True)):
         smooth = np.abs(line.sel(output=name).values)
         dots = dataset.ratio.sel(output=name).values
+        if smooth.max() <= least:
+            smooth, dots = np.full_like(smooth, np.nan), np.full_like(dots, np.nan)
+            ax.text(0.5, 0.5, "none", transform=ax.transAxes, ha="center", color=FAINT)
+            ax.yaxis.set_visible(False)
+        ax.set_xscale(scale)
         ax.semilogy(line.omega.values, _positive(smooth), color=FAINT, lw=1.2, label="tangent")
         ax.semilogy(dataset.omega.values, _positive(dots), "o", color=COLOURS[0], ms=2.6, mew=0, label="non-linear")
         _span(ax)
+        if scale == "log":
+            _plain_decades(ax)
         _mark(ax, natural, hertz=False)
         _dress(ax)
         _name(ax, i, name)
@@ -130,8 +143,8 @@ def stepped_ratio(dataset: xr.Dataset, natural: Iterable[float] = (), linear: xr
         ax.set_ylabel(f"ratio, {_ratio_unit(unit, dataset.attrs['amplitude_unit'])}")
         if i > 2:
             ax.set_xlabel("base frequency, rad/s")
-        if i == 0:
-            ax.legend(loc="upper left", fontsize=8, framealpha=0.85, edgecolor="none")
+    handles = ax.get_legend_handles_labels()
+    figure.legend(*handles, loc="outside lower right", ncols=2, frameon=False, labelcolor=INK)
     return figure
 
 

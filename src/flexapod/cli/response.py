@@ -297,7 +297,12 @@ def _figure(case: _Case, name: str, dataset: xr.Dataset, response: xr.Dataset) -
         return plots.frequency_response(dataset, case.variable, case.axis, natural)
     if name == "random":
         return plots.random_spectra(dataset)
-    return plots.stepped_ratio(dataset, natural, response.absolute.sel(base=case.axis))
+    figure = plots.stepped_ratio(dataset, natural, response.absolute.sel(base=case.axis), scale="log")
+    amplitude = f"{dataset.attrs['amplitude']:g} {dataset.attrs['amplitude_unit']}"
+    figure.suptitle(
+        f"{case.hexapod.name}: non-linear stepped sine, base {case.axis}, amplitude {amplitude}", fontsize=12
+    )
+    return figure
 
 
 def _peaks(case: _Case) -> Array:
