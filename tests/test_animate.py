@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 from PIL import Image
+from tests.states import CENTER
 
 import flexapod as fx
 from flexapod import animate
-from tests.states import CENTER
 
 II = fx.Pose(CENTER["mukherjee-ii"])
 

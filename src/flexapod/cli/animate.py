@@ -45,7 +45,7 @@ def command(
     out: Path | None,
     as_json: bool,
 ) -> None:
-    """Animate a mode of DESIGN at a pose. Simulations are animated by `flexapod simulate`."""
+    """Animate a mode of DESIGN at a pose. (A simulation: `animate_simulation` of the library.)"""
     hexapod = common.load_design(design, changes)
     where = common.chosen_pose(hexapod, pose)
     from flexapod.animate import animate_mode
