@@ -97,19 +97,23 @@ template <class T, class D> Mat6<T> base_coupling(const Machine<D>& machine, con
   return J;
 }
 
-/// The ends of leg i, resolved in its axes, with the accelerations of the motions given.
-template <class T, class D>
-LegEnds<T> leg_ends(const Machine<D>& machine, const Geometry<T>& g, const LegAxes<T>& leg, int i,
-                    const Motion<T>& platform, const Motion<T>& base) {
-  const auto& gravity = machine.design.gravity;
+/// The ends of a leg whose joints are at q_p and q_b, resolved in its axes, with the accelerations of the motions given.
+template <class T, class U, class G>
+LegEnds<T> leg_ends(const LegAxes<T>& leg, const Vec3<T>& q_p, const Vec3<T>& q_b, const Motion<U>& platform,
+                    const Motion<U>& base, const Vec3<G>& gravity) {
   LegEnds<T> end;
-  end.v = leg.axes * (platform.velocity_at(g.q_p[i]) - base.velocity_at(g.q_b[i]));
-  end.a_p = leg.axes * (platform.acceleration_at(g.q_p[i]) - gravity);
-  end.a_b = leg.axes * (base.acceleration_at(g.q_b[i]) - gravity);
+  end.v = leg.axes * (platform.velocity_at(q_p) - base.velocity_at(q_b));
+  end.a_p = leg.axes * (platform.acceleration_at(q_p) - gravity);
+  end.a_b = leg.axes * (base.acceleration_at(q_b) - gravity);
   end.omega_p = leg.axes * platform.w;
   end.omega_b = leg.axes * base.w;
   end.alpha_b = leg.axes * base.alpha;
   return end;
+}
+template <class T, class D>
+LegEnds<T> leg_ends(const Machine<D>& machine, const Geometry<T>& g, const LegAxes<T>& leg, int i,
+                    const Motion<T>& platform, const Motion<T>& base) {
+  return leg_ends(leg, g.q_p[i], g.q_b[i], platform, base, machine.design.gravity);
 }
 
 /// The platform's own part of the wrench below.
@@ -120,28 +124,20 @@ template <class T, class D> Vec6<T> platform_wrench(const Design<D>& d, const Mo
   return Vec6<T>::of(f, cross(R_p, f) + I * platform.alpha + cross(platform.w, I * platform.w));
 }
 
-/// What leg i, with the actuator force F, takes from the platform: -[F_s; q_p x F_s - f] of Eqs 30 and 32.
-template <class T, class D>
-void subtract_leg(Vec6<T>& wrench, const Machine<D>& machine, const Geometry<T>& g, const LegAxes<T>& leg, int i,
-                  const Motion<T>& platform, const Motion<T>& base, const T& F) {
-  const LegEnds<T> end = leg_ends(machine, g, leg, i, platform, base);
-  SphericalLoad<T> load =
-      spherical_load(leg, machine.inertia[i], machine.design.leg[i], end, LegMotion<T>(leg, end, machine.joint));
-  load.force.x = F - load.force.x;
-  const Vec3<T> force = transposed(leg.axes, Vec3<T>(load.force.x, -load.force.y, -load.force.z));
-  add(wrench, force, cross(g.q_p[i], force) + transposed(leg.axes, load.moment));
-}
-
 /// Inertia, weight and friction of platform and legs as a wrench at the reference point, for the motions given:
 /// J_p [a; alpha] - J_b [a_b; alpha_b] + eta. With all accelerations zero it is eta.
 template <class T, class D>
 Vec6<T> inverse_wrench(const Machine<D>& machine, const Geometry<T>& g, const Motion<T>& platform,
                        const Motion<T>& base) {
   Vec6<T> wrench = platform_wrench(machine.design, platform);
-  for (T& x : wrench.a) x = -x;
-  for (int i = 0; i < 6; ++i)
-    subtract_leg(wrench, machine, g, LegAxes<T>(g.S[i], g.k[i], machine.joint), i, platform, base, T(0.0));
-  for (T& x : wrench.a) x = -x;
+  for (int i = 0; i < 6; ++i) {
+    const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
+    const LegEnds<T> end = leg_ends(machine, g, leg, i, platform, base);
+    const SphericalLoad<T> load =
+        spherical_load(leg, machine.inertia[i], machine.design.leg[i], end, LegMotion<T>(leg, end, machine.joint));
+    const Vec3<T> force = transposed(leg.axes, load.force), moment = transposed(leg.axes, load.moment);
+    add(wrench, force, cross(g.q_p[i], force) - moment);
+  }
   return wrench;
 }
 
@@ -153,24 +149,6 @@ template <class T> Vec6<T> external_wrench(const Mat3<T>& R, const Vec6<double>&
 template <class T> Motion<T> unaccelerated(Motion<T> motion) {
   motion.a = motion.alpha = Vec3<T>();
   return motion;
-}
-
-/// Eq. 35's accelerations of the platform: J_p^-1 (H F + wrench - eta + J_b [a_b; alpha_b]), leg by leg.
-template <class T, class D>
-Vec6<T> forward_dynamics(const Machine<D>& machine, const Motion<T>& platform, const Motion<T>& base,
-                         const Vec6<T>& leg_force, const Vec6<T>& wrench) {
-  const Geometry<T> g(machine.design, platform.pose, base.pose);
-  const Motion<T> coasting = unaccelerated(platform);
-  const Vec6<T> own = platform_wrench(machine.design, coasting);
-  Vec6<T> load;
-  for (int i = 0; i < 6; ++i) load[i] = wrench[i] - own[i];
-  Mat6<T> J = platform_inertia(machine.design, platform.pose.R);
-  for (int i = 0; i < 6; ++i) {
-    const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
-    add_leg_inertia(J, leg, machine.inertia[i], g.q_p[i]);
-    subtract_leg(load, machine, g, leg, i, coasting, base, leg_force[i]);
-  }
-  return Cholesky<T>(J).solve(load);
 }
 
 }  // namespace flexapod
