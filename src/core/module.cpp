@@ -1,10 +1,12 @@
 // The core as Python sees it: functions of a design (211 numbers) and motions (n rows of 24 numbers) that return
 // arrays with n rows. Shapes and values are checked in Python; here only sizes are.
 #include "arrays.hpp"
+#include "simulation_module.hpp"
 #include "energy.hpp"
 #include "kinematics.hpp"
 #include "modes.hpp"
 #include "reactions.hpp"
+#include "six_legs.hpp"
 #include "statics.hpp"
 
 namespace flexapod {
@@ -116,14 +118,14 @@ nb::tuple equations_of_motion(const Input& design, bool universal, const Input& 
 
 nb::object forward_dynamics_(const Input& design, bool universal, const Input& platforms, const Input& bases,
                              const Input& leg_forces, const Input& wrenches) {
-  const Machine<double> machine = machine_of(design, universal);
+  const SixLegs legs(machine_of(design, universal));
   const States s(platforms, bases);
   const double *F = rows(leg_forces, s.n, 6, "leg_force"), *load = rows(wrenches, s.n, 6, "wrench");
   Output acceleration({s.n, 6});
   double* out = acceleration.data();
   for (size_t i = 0; i < s.n; ++i) {
     const Vec6<double> wrench = external_wrench(s.platform[i].pose.R, vec6(load + 6 * i));
-    write(out, forward_dynamics(machine, s.platform[i], s.base[i], vec6(F + 6 * i), wrench));
+    write(out, forward_dynamics(legs, s.platform[i], s.base[i], vec6(F + 6 * i), wrench));
   }
   return nb::cast(acceleration.array());
 }
@@ -158,7 +160,7 @@ nb::tuple joint_reactions(const Input& design, bool universal, const Input& plat
   double *leg_out = legs.data(), *total_out = total.data();
   for (size_t i = 0; i < s.n; ++i) {
     const Reactions r = reactions(machine, s.platform[i], s.base[i], vec6(F + 6 * i), section);
-    for (const LegReactions& leg : r.leg)
+    for (const LegReactions<double>& leg : r.leg)
       for (const auto& v : {leg.spherical_force, leg.spherical_moment, leg.prismatic_force, leg.prismatic_moment,
                             leg.universal_force, leg.universal_moment})
         write(leg_out, v);
@@ -286,4 +288,5 @@ NB_MODULE(_core, m) {
   m.def("frequency_derivatives", &frequency_derivatives);
   m.def("tangent", &tangent_);
   m.def("settle", &settle_);
+  bind_simulation(m);
 }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,11 +18,22 @@ from flexapod.statics import Equilibrium, hold
 if TYPE_CHECKING:
     import control
 
+__all__ = ["DampedModes", "Linearisation", "StateSpace", "linearise"]
+
 STATES = ("position", "velocity")
 INPUTS = ("base_acceleration", "leg_force", "wrench", "leg_command")
 OUTPUTS = ("position", "leg_length", "leg_force", "acceleration")
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 LEGS = ("1", "2", "3", "4", "5", "6")
+
+
+class RestOptions(TypedDict, total=False):
+    """What `linearise` takes beside the hexapod and the pose, for the studies that pass it on."""
+
+    base: Pose | None
+    force: ArrayLike
+    moment: ArrayLike
+    joint: JointModel
 
 
 class DampedModes(NamedTuple):
@@ -71,6 +82,7 @@ class Linearisation:
     leg_stiffness: Array
     rest: Equilibrium
     carry: Array  # displacement of a platform that moves rigidly with the base: x = carry x_b
+    gravity: Array
 
     def modes(self) -> DampedModes:
         """Complex modes with the base fixed. Of a pair of real poles (no vibration), the slower or growing one."""
@@ -94,8 +106,9 @@ class Linearisation:
 
         Inputs (24): base acceleration in the inertial frame (m/s2, rad/s2), leg forces (N), wrench (N, N m), leg length
         commands (m). Outputs (24): relative displacement (m, rad), change of leg lengths (m) and of the force in the
-        legs' springs and actuators (N), absolute acceleration (m/s2, rad/s2). Exact but for one effect: a tilted base
-        also tilts gravity, which twelve states cannot hold; the frequency response keeps it.
+        legs' springs and actuators (N), absolute acceleration (m/s2, rad/s2). Exact but for two effects that twelve
+        states cannot hold and `transmissibility` keeps: a tilted base tilts gravity, and in the model "spin_free" a
+        turning base rubs on legs that do not spin with it.
         """
         M_inv = np.linalg.inv(self.M)
         zero, one = np.zeros((6, 6)), np.eye(6)
@@ -161,4 +174,4 @@ def linearise(
     r = s.platform[0, :3] - s.base[0, :3]
     carry = np.eye(6)
     carry[:3, 3:] = [[0, r[2], -r[1]], [-r[2], 0, r[0]], [r[1], -r[0], 0]]
-    return Linearisation(M, C, K, M_b, C_b, K_b, H, hexapod.legs.stiffness, rest, carry)
+    return Linearisation(M, C, K, M_b, C_b, K_b, H, hexapod.legs.stiffness, rest, carry, hexapod.gravity)
