@@ -19,3 +19,11 @@ class KinematicsError(FlexapodError, ValueError):
 
 class SingularPoseError(FlexapodError, ValueError):
     """A pose at which the legs cannot hold the platform (H is singular)."""
+
+
+class OutputError(FlexapodError, OSError):
+    """A file or store that cannot be written, read, or taken up again."""
+
+
+class ClusterError(FlexapodError, RuntimeError):
+    """A cluster of computers that cannot be reached, or that gave up."""
