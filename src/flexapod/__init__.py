@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOMES = {
-    "errors": ["DesignError", "FlexapodError", "KinematicsError", "PoseError", "SingularPoseError"],
+    "errors": [
+        "ClusterError",
+        "DesignError",
+        "FlexapodError",
+        "KinematicsError",
+        "OutputError",
+        "PoseError",
+        "SingularPoseError",
+    ],
     "hexapod": ["Damping", "Hexapod", "LegPart", "Legs", "Limits", "load", "packaged_designs", "template"],
     "pose": ["Motion", "Pose"],
     "kinematics": [
@@ -51,6 +59,12 @@ _HOMES = {
         "stability_index",
     ],
     "linear": ["DampedModes", "Linearisation", "StateSpace", "linearise"],
+    "posesets": ["Box", "PoseSet", "low_discrepancy", "pose_grid", "pose_path", "random_poses"],
+    "sweeps.dataset": ["sweep"],
+    "sweeps.store": ["SweepStore", "open_sweep"],
+    "sweeps.summary": ["SweepSummary", "summarise"],
+    "sweeps.worst": ["WorstPose", "worst_pose"],
+    "sweeps.cluster": ["cluster"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = sorted([*_HOME_OF, "__version__"])
@@ -76,4 +90,10 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.linear import *  # noqa: F403
     from flexapod.modal import *  # noqa: F403
     from flexapod.pose import *  # noqa: F403
+    from flexapod.posesets import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403
+    from flexapod.sweeps.cluster import *  # noqa: F403
+    from flexapod.sweeps.dataset import *  # noqa: F403
+    from flexapod.sweeps.store import *  # noqa: F403
+    from flexapod.sweeps.summary import *  # noqa: F403
+    from flexapod.sweeps.worst import *  # noqa: F403

@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from flexapod import _core
-from flexapod.blocks import Block, Blocks
 from flexapod.errors import OutputError
 from flexapod.hexapod import Hexapod
 from flexapod.pose import Array, Pose
 from flexapod.posesets import COORDINATES, PoseSet
 from flexapod.quantities import QUANTITIES, evaluate
 from flexapod.states import JointModel
+from flexapod.sweeps.blocks import Block, Blocks
 
 if TYPE_CHECKING:
     import zarr

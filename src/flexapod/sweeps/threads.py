@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 
 from flexapod.quantities import thread_count
-from flexapod.sweepjob import Finished, Job, compute_block
+from flexapod.sweeps.job import Finished, Job, compute_block
 
 _POLL = 0.2  # s between looks at whether to stop
 
 
 class Threads:
-    """See `flexapod.sweepjob.Workers`. Default: all cores that this process may use."""
+    """See `flexapod.sweeps.job.Workers`. Default: all cores that this process may use."""
 
     def __init__(self, count: int | None = None) -> None:
         self.count = thread_count(count)
