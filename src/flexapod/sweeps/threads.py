@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 
 from flexapod.quantities import thread_count
-from flexapod.sweeps.job import Finished, Job, compute_block
+from flexapod.sweeps.job import Finished, Job, flush_block, write_block
 
 _POLL = 0.2  # s between looks at whether to stop
 
@@ -23,21 +23,27 @@ class Threads:
             return
         job = job._replace(threads=max(1, self.count // len(todo)))
         waiting = iter(todo)
-        running: set[Future[Finished]] = set()
-        with ThreadPoolExecutor(self.count) as pool:
+        computing: set[Future[Finished]] = set()
+        flushing: dict[Future[None], Finished] = {}  # written; the disk takes them while others are computed
+        with ThreadPoolExecutor(self.count) as pool, ThreadPoolExecutor(1) as flusher:
             try:
                 while True:
-                    while len(running) < 2 * self.count and not stop():
+                    while len(computing) + len(flushing) < 2 * self.count and not stop():
                         number = next(waiting, None)
                         if number is None:
                             break
-                        running.add(pool.submit(compute_block, job, number))
-                    if not running:
+                        computing.add(pool.submit(write_block, job, number))
+                    if not computing and not flushing:
                         return
                     if stop():
-                        running = {future for future in running if not future.cancel()}
-                    done, running = wait(running, _POLL, FIRST_COMPLETED)
-                    for future in done:
-                        yield future.result()
+                        computing = {future for future in computing if not future.cancel()}
+                    wait([*computing, *flushing], _POLL, FIRST_COMPLETED)
+                    for future in [future for future in computing if future.done()]:
+                        computing.remove(future)
+                        block = future.result()
+                        flushing[flusher.submit(flush_block, job, block.number)] = block
+                    for flushed in [flushed for flushed in flushing if flushed.done()]:
+                        flushed.result()
+                        yield flushing.pop(flushed)
             finally:
                 pool.shutdown(cancel_futures=True)
