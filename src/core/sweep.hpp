@@ -19,7 +19,7 @@ using sweep_task::Task;
 struct SweptMachine {
   Machine<double> machine;
   Machine<double> weightless;  // gravity enters as an acceleration of platform and base
-  Mat6<double> J_platform;     // platform axes
+  SpatialInertia<double> J_platform;  // platform axes
   double root_K[6];
   double size;  // of the platform: makes rows of forces and of moments comparable
 
@@ -37,24 +37,34 @@ struct SweptMachine {
   }
 };
 
+/// A fault is a status as a number in a lane.
+template <class T> FLEXAPOD_INLINE T worse(const mask_t<T>& bad, sweep_task::Status status, const T& fault) {
+  return select(bad & (fault <= 0.0), T(status), fault);
+}
+
+/// The value, or NaN in lanes where it has no meaning.
+template <class T> FLEXAPOD_INLINE T unless(const mask_t<T>& bad, const T& value) {
+  return select(bad, T(std::numeric_limits<double>::quiet_NaN()), value);
+}
+
 /// A pack of poses and how the machine stands there, in the platform's axes.
 template <class T> struct Stance {
-  using M = mask_t<T>;
-
-  Pose<T> pose;                // of the platform in the base
   Vec3<T> roll_axis, pitch_axis;  // where poses are given by angles
+  Pose<T> pose;                   // of the platform in the base
   Geometry<T, double> g;
-  M finite, legs;  // lanes with a pose, and with legs
+  T fault;
 
   Stance(const SweptMachine& m, const double (*rows)[T::lanes], int width)
-      : pose(read(rows, width)), g(m.machine.design, Pose<T>{-transposed(pose.R, pose.t), transpose(pose.R)}) {
-    T sum(0.0);
-    for (int i = 0; i < width; ++i) sum += T::load(rows[i]) * 0.0;
-    finite = sum <= 0.0;  // infinity and NaN times zero are NaN
-    legs = finite;
+      : pose(read(rows, width)), g(m.machine.design, base()) {
+    T zero(0.0);
+    for (int i = 0; i < width; ++i) zero += T::load(rows[i]) * 0.0;
+    fault = worse(!(zero <= 0.0), sweep_task::not_finite, T(0.0));  // infinity and NaN times zero are NaN
     const T least(1e-24 * m.size * m.size);
-    for (const Vec3<T>& S : g.S) legs = legs & (dot(S, S) > least);
+    for (const Vec3<T>& S : g.S) fault = worse(!(dot(S, S) > least), sweep_task::no_leg, fault);
   }
+
+  /// The base seen from the platform.
+  Pose<T> base() const { return {-transposed(pose.R, pose.t), transpose(pose.R)}; }
 
  private:
   Pose<T> read(const double (*rows)[T::lanes], int width) {
@@ -73,149 +83,148 @@ template <class T> struct Stance {
   }
 };
 
-/// H, J_p = L L^T and B = L^-1 H K^1/2, in the platform's axes.
+/// What vibrates: J_p and H, in the platform's axes.
 template <class T> struct Dynamics {
+  SpatialInertia<T> J;
   Mat6<T> H;
-  mask_t<T> legs;  // lanes where no leg lies along its universal axis
-  Cholesky<T> L;
+  T fault;
 
-  Dynamics(const SweptMachine& m, const Stance<T>& at) : L(assemble(m, at)) {}
-
-  Mat6<T> B(const SweptMachine& m) const {
-    Mat6<T> B;
-    for (int j = 0; j < 6; ++j) {
-      Vec6<T> h;
-      for (int i = 0; i < 6; ++i) h[i] = m.root_K[j] * H[i][j];
-      h = L.forward(h);
-      for (int i = 0; i < 6; ++i) B[i][j] = h[i];
+  /// With lengths and directions only: J is left.
+  void set_legs(const Stance<T>& at) {
+    fault = at.fault;
+    for (int i = 0; i < 6; ++i) {
+      const Vec3<T>& S = at.g.S[i];
+      set_column(i, leg_wrench(at.g.q_p[i], rsqrt(dot(S, S)) * S));
     }
+  }
+  void set(const SweptMachine& m, const Stance<T>& at) {
+    const auto axes = [&](int i) { return LegAxes<T>(at.g.S[i], at.g.k[i], m.machine.joint); };
+    const LegAxes<T> legs[6] = {axes(0), axes(1), axes(2), axes(3), axes(4), axes(5)};  // together: six long chains
+    J = pack(m.J_platform);
+    fault = at.fault;
+    for (int i = 0; i < 6; ++i) {
+      add_leg_inertia(J, legs[i], m.machine.inertia[i], at.g.q_p[i]);
+      set_column(i, leg_wrench(at.g.q_p[i], legs[i].s()));
+      fault = worse(!(legs[i].cosecant < 1e7), sweep_task::no_leg, fault);
+    }
+  }
+  /// B = L^-1 H K^1/2.
+  Mat6<T> B(const SweptMachine& m, const Cholesky<T>& L) const {
+    Mat6<T> B;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) B[i][j] = m.root_K[j] * H[i][j];
+    L.forward_all(B);
     return B;
   }
 
  private:
-  Mat6<T> assemble(const SweptMachine& m, const Stance<T>& at) {
-    Mat6<T> J;
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) J[i][j] = T(m.J_platform[i][j]);
-    legs = at.legs;
-    for (int i = 0; i < 6; ++i) {
-      const LegAxes<T> leg(at.g.S[i], at.g.k[i], m.machine.joint);
-      add_inertia_at(J, at.g.q_p[i], rotate(transpose(leg.axes), leg_inertia(leg, m.machine.inertia[i])));
-      const Vec6<T> h = leg_wrench(at.g.q_p[i], leg.s());
-      for (int r = 0; r < 6; ++r) H[r][i] = h[r];
-      legs = legs & (leg.cosecant < 1e7);
-    }
-    return J;
+  void set_column(int i, const Vec6<T>& h) {
+    for (int r = 0; r < 6; ++r) H[r][i] = h[r];
+  }
+  static SpatialInertia<T> pack(const SpatialInertia<double>& J) {
+    const auto sym = [](const Sym3<double>& m) { return Sym3<T>{m.xx, m.yy, m.zz, m.xy, m.xz, m.yz}; };
+    return {sym(J.top), {{J.bottom_left.row[0], J.bottom_left.row[1], J.bottom_left.row[2]}}, sym(J.bottom)};
   }
 };
 
-template <class T> Mat6<T> force_transformation(const Stance<T>& at) {
-  Mat6<T> H;
-  for (int i = 0; i < 6; ++i) {
-    const Vec6<T> h = leg_wrench(at.g.q_p[i], rsqrt(dot(at.g.S[i], at.g.S[i])) * at.g.S[i]);
-    for (int r = 0; r < 6; ++r) H[r][i] = h[r];
-  }
-  return H;
-}
+/// Writes results of a pack of poses: rows `first` on, `count` of them.
+struct Rows {
+  size_t first;
+  int count;
 
-/// A pack of a task: computes what is asked for and writes it to the task's arrays.
-template <class T> class SweepPack {
-  using M = mask_t<T>;
-  const SweptMachine& machine;
-  const Task& task;
-  const size_t first;
-  const int count;  // lanes that are poses of the task; the rest repeat the last
-  const Stance<T> at;
-  M singular, no_leg, no_inertia;
-
- public:
-  SweepPack(const SweptMachine& m, const Task& t, const double (*rows)[T::lanes], size_t first_, int count_)
-      : machine(m), task(t), first(first_), count(count_), at(m, rows, t.width) {
-    singular = no_inertia = T(1.0) < T(0.0);
-    no_leg = !at.legs;
-    const unsigned asked = task.quantities;
-    if (asked & (Quantity::omega_1 | Quantity::omega | Quantity::omega_1_gradient)) {
-      const Dynamics<T> dynamics(m, at);
-      no_leg = no_leg | (!dynamics.legs);
-      if (asked & (Quantity::omega_1 | Quantity::omega)) frequencies(dynamics);
-      if (asked & Quantity::omega_1_gradient) gradient(dynamics);
-      if (asked & Quantity::cond_H) condition(dynamics.H);
-    } else if (asked & Quantity::cond_H) {
-      condition(force_transformation(at));
-    }
-    if (asked & (Quantity::leg_length | Quantity::joint_angle | Quantity::leg_distance | Quantity::within_limits))
-      geometry();
-    if (asked & Quantity::leg_force) static_force();
-    if (asked & Quantity::lowest_stiffness) stiffness();
-    write_status();
-  }
-
- private:
-  void put(double* to, const T& value, int column = 0, int columns = 1) const {
+  template <class T> FLEXAPOD_INLINE void put(double* to, const T& value, int column = 0, int columns = 1) const {
     double x[T::lanes];
     value.store(x);
     for (int l = 0; l < count; ++l) to[(first + l) * columns + column] = x[l];
   }
-  /// The value, or NaN in lanes where it has no meaning.
-  static T unless(const M& bad, const T& value) {
-    return select(bad, T(std::numeric_limits<double>::quiet_NaN()), value);
+};
+
+/// Quantities that need no modes.
+template <class T> struct SweepPart {
+  const SweptMachine& machine;
+  const Task& task;
+  const Rows rows;
+  const Stance<T>& at;
+
+  void geometry() const {
+    const unsigned asked = task.quantities;
+    const sweep_task::Limits& limits = *task.limits;
+    const auto bad = at.fault > 0.0;
+    const bool check = asked & Quantity::within_limits;
+    auto within = !bad;
+    const auto bound = [&](const T& value, double low, double high) {
+      within = within & (value >= low) & (value <= high);
+    };
+    const bool angles = asked & Quantity::joint_angle;
+    const bool limited = limits.universal_angle < 1e300 || limits.spherical_angle < 1e300;
+    for (int i = 0; i < 6; ++i) {
+      if ((asked & Quantity::leg_length) || check) {
+        const T L = norm(at.g.S[i]);
+        if (asked & Quantity::leg_length) rows.put(task.leg_length_, unless(bad, L), i, 6);
+        if (check) bound(L, limits.length[i][0], limits.length[i][1]);
+      }
+      if (angles || (check && limited)) {
+        const T universal = angle_to(transposed(at.pose.R, direction(limits.neutral[0][i])), i);
+        const T spherical = angle_to(direction(limits.neutral[1][i]), i);
+        if (angles) rows.put(task.universal_angle_, unless(bad, universal), i, 6);
+        if (angles) rows.put(task.spherical_angle_, unless(bad, spherical), i, 6);
+        if (check) bound(universal, -1.0, limits.universal_angle), bound(spherical, -1.0, limits.spherical_angle);
+      }
+    }
+    if ((asked & Quantity::leg_distance) || (check && limits.leg_distance > -1e300)) {
+      const T distance = least_leg_distance(at.g);
+      if (asked & Quantity::leg_distance) rows.put(task.leg_distance_, unless(bad, distance));
+      if (check) bound(distance, limits.leg_distance, std::numeric_limits<double>::infinity());
+    }
+    if (check) {
+      double yes[T::lanes];
+      select(within, T(1.0), T(0.0)).store(yes);
+      for (int l = 0; l < rows.count; ++l) task.within_limits_[rows.first + l] = yes[l] != 0.0;
+    }
   }
 
-  void frequencies(const Dynamics<T>& dynamics) {
-    Mat6<T> B = dynamics.B(machine);
-    SquaredBidiagonal<6, T> b = bidiagonalise(B);
-    const T scale = normalise(b);
-    const M bad = no_leg | (!(scale < 1e300));
-    no_inertia = no_inertia | bad;
-    M failed;
-    T value[6];
-    const bool all = task.quantities & Quantity::omega;
-    if (all) all_six(b, value, failed);
-    else value[0] = lowest(b, T(0.0), failed);
-    failed = failed & (!bad);
-    if (any(failed)) [[unlikely]] {
-      T exact[6];
-      squared_singular_values(dynamics.B(machine), exact);
-      for (int i = 0; i < (all ? 6 : 1); ++i) value[i] = select(failed, exact[i] / scale, value[i]);
-    }
-    singular = singular | (value[0] < 1e-26);
-    for (int i = 0; i < (all ? 6 : 1); ++i) {
-      const T omega = unless(bad, sqrt(scale * value[i]));
-      if (all) put(task.omega_, omega, i, 6);
-      if (i == 0 && task.omega_1_ != nullptr) put(task.omega_1_, omega);
-    }
+  /// The largest leg force at rest: weight is the same as no gravity and an acceleration of everything against it.
+  T static_force() const {
+    Motion<T> platform, base;
+    platform.a = base.a = -transposed(at.pose.R, machine.machine.design.gravity);
+    base.pose = at.base();
+    const Geometry<T> g(machine.weightless.design, platform.pose, base.pose);
+    Vec6<T> load[1] = {inverse_wrench(machine.weightless, g, platform, base)};
+    for (int i = 3; i < 6; ++i) load[0][i] *= 1.0 / machine.size;
+    const T weak = solve(load);
+    T most = abs(load[0][0]);
+    for (int i = 1; i < 6; ++i) most = max(most, abs(load[0][i]));
+    return finish(task.leg_force_, most, weak);
   }
 
-  void condition(Mat6<T> H) {
-    const Mat6<T> kept = H;
-    SquaredBidiagonal<6, T> b = bidiagonalise(H);
-    normalise(b);
-    M open_low, open_high;
-    T low = lowest(b, T(0.0), open_low), high = highest(b, open_high);
-    const M failed = (open_low | open_high) & at.legs;
-    if (any(failed)) [[unlikely]] {
-      T exact[6];
-      squared_singular_values(kept, exact);
-      low = select(failed, exact[0], low), high = select(failed, exact[5], high);
-    }
-    singular = singular | (low < 1e-26 * high);
-    put(task.cond_H_, unless(!at.legs, sqrt(high / low)));
+  /// The least translational stiffness: 1 / largest eigenvalue of the block of translations of (H K H^T)^-1, which is
+  /// Y^T Y with Y = K^-1/2 H^-1 [E; 0].
+  T stiffness() const {
+    Vec6<T> side[3];
+    for (int i = 0; i < 3; ++i) side[i][i] = T(1.0);
+    const T weak = solve(side);
+    T Y[3][6];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 6; ++j) Y[i][j] = side[i][j] * (1.0 / machine.root_K[j]);
+    orthogonalise_rows<3, 6, T>(Y, nullptr);
+    const T most = max(max(row_square(Y[0]), row_square(Y[1])), row_square(Y[2]));
+    return finish(task.lowest_stiffness_, 1.0 / most, weak);
   }
 
   /// Derivatives of the lowest frequency by the pose: those of omega^2 are v^T (dK - omega^2 dJ) v for its mode v.
-  void gradient(const Dynamics<T>& dynamics) {
+  T gradient() const {
     using D = Dual<6, T>;
+    Dynamics<T> dynamics;
+    dynamics.set(machine, at);
+    const Cholesky<T> L(dynamics.J.matrix());
     Vec6<T> v;
-    const T lambda = lowest_direction(dynamics.B(machine), v);
-    v = dynamics.L.backward(v);
+    const T lambda = lowest_direction(dynamics.B(machine, L), v);
+    v = L.backward(v);
     v = Vec6<T>::of(at.pose.R * v.top(), at.pose.R * v.bottom());
-    const auto variables3 = [](int i) {
-      const T zero(0.0);
-      return Vec3<D>(D::variable(zero, i), D::variable(zero, i + 1), D::variable(zero, i + 2));
-    };
-    const Pose<D> moved = displaced(at.pose, variables3(0), variables3(3));
+    const Pose<D> moved = displaced(at.pose, variables<D>(0), variables<D>(3));
     const Geometry<D> g(machine.machine.design, moved, Pose<D>());
-    const D residual = rayleigh_residual(machine.machine, inertia(machine.machine, g, moved.R), force_transformation(g), v, lambda);
+    const D residual =
+        rayleigh_residual(machine.machine, inertia(machine.machine, g, moved.R), force_transformation(g), v, lambda);
     const T half = 0.5 * rsqrt(lambda);
     T by[6];
     for (int i = 0; i < 6; ++i) by[i] = half * residual.d[i];
@@ -223,120 +232,198 @@ template <class T> class SweepPack {
       const Vec3<T> turn(by[3], by[4], by[5]);
       by[3] = dot(turn, at.roll_axis), by[4] = dot(turn, at.pitch_axis);
     }
-    const M bad = no_leg | (!(lambda < 1e300));
-    no_inertia = no_inertia | bad;
-    for (int i = 0; i < 6; ++i) put(task.omega_1_gradient_, unless(bad, by[i]), i, 6);
+    const T fault = worse(!(lambda < 1e300), sweep_task::no_inertia, dynamics.fault);
+    for (int i = 0; i < 6; ++i) rows.put(task.omega_1_gradient_, unless(fault > 0.0, by[i]), i, 6);
+    return fault;
   }
 
-  void geometry() {
-    const unsigned asked = task.quantities;
-    const sweep_task::Limits& limits = *task.limits;
-    const bool check = asked & Quantity::within_limits;
-    M within = at.legs;
-    const auto bound = [&](const T& value, double low, double high) {
-      within = within & (value >= low) & (value <= high);
-    };
-    const bool lengths = asked & Quantity::leg_length;
-    const bool angles = asked & Quantity::joint_angle;
-    const bool limited = limits.universal_angle < 1e300 || limits.spherical_angle < 1e300;
-    const auto direction = [](const double (&n)[3]) { return Vec3<double>(n[0], n[1], n[2]); };
-    for (int i = 0; i < 6; ++i) {
-      const Vec3<T>& S = at.g.S[i];
-      if (lengths || check) {
-        const T L = norm(S);
-        if (lengths) put(task.leg_length_, unless(no_leg_at_all(), L), i, 6);
-        if (check) bound(L, limits.length[i][0], limits.length[i][1]);
-      }
-      if (angles || (check && limited)) {
-        const Vec3<T> n_b = transposed(at.pose.R, direction(limits.neutral[0][i]));
-        const Vec3<double> n_p = direction(limits.neutral[1][i]);
-        const T universal = upper_angle(norm(cross(n_b, S)), dot(n_b, S));
-        const T spherical = upper_angle(norm(cross(n_p, S)), dot(n_p, S));
-        if (angles) put(task.universal_angle_, unless(no_leg_at_all(), universal), i, 6);
-        if (angles) put(task.spherical_angle_, unless(no_leg_at_all(), spherical), i, 6);
-        if (check) bound(universal, -1.0, limits.universal_angle), bound(spherical, -1.0, limits.spherical_angle);
-      }
-    }
-    if ((asked & Quantity::leg_distance) || (check && limits.leg_distance > -1e300)) {
-      const T distance = least_leg_distance(at.g);
-      if (asked & Quantity::leg_distance) put(task.leg_distance_, unless(no_leg_at_all(), distance));
-      if (check) bound(distance, limits.leg_distance, std::numeric_limits<double>::infinity());
-    }
-    if (check) {
-      double yes[T::lanes];
-      select(within, T(1.0), T(0.0)).store(yes);
-      for (int l = 0; l < count; ++l) task.within_limits_[first + l] = yes[l] != 0.0;
-    }
+ private:
+  static Vec3<double> direction(const double (&n)[3]) { return {n[0], n[1], n[2]}; }
+  template <class U> T angle_to(const Vec3<U>& n, int i) const {
+    const Vec3<T>& S = at.g.S[i];
+    return upper_angle(norm(cross(n, S)), dot(n, S));
   }
-  M no_leg_at_all() const { return !at.legs; }
-
-  /// H with its rows of moments divided by the platform's size.
-  Mat6<T> scaled_H() const {
-    Mat6<T> H = force_transformation(at);
+  /// Solves H x = b with rows of moments divided by the platform's size; how near H is to singular.
+  template <int m> T solve(Vec6<T> (&b)[m]) const {
+    Dynamics<T> legs;
+    legs.set_legs(at);
     for (int i = 3; i < 6; ++i)
-      for (T& h : H.a[i]) h *= 1.0 / machine.size;
-    return H;
-  }
-
-  /// The largest leg force at rest: gravity g is the same as no gravity and an acceleration -g of everything.
-  void static_force() {
-    Motion<T> platform, base;
-    platform.a = base.a = -transposed(at.pose.R, machine.machine.design.gravity);
-    base.pose = {-transposed(at.pose.R, at.pose.t), transpose(at.pose.R)};
-    const Geometry<T> g(machine.weightless.design, platform.pose, base.pose);
-    Vec6<T> load[1] = {inverse_wrench(machine.weightless, g, platform, base)};
-    for (int i = 3; i < 6; ++i) load[0][i] *= 1.0 / machine.size;
-    Mat6<T> H = scaled_H();
+      for (T& h : legs.H.a[i]) h *= 1.0 / machine.size;
     T weak;
-    solve_orthogonal(H, load, weak);
-    T most = abs(load[0][0]);
-    for (int i = 1; i < 6; ++i) most = max(most, abs(load[0][i]));
-    const M hopeless = weak < 1e-13;
-    singular = singular | hopeless;
-    put(task.leg_force_, unless((!at.legs) | hopeless, most));
+    solve_orthogonal(legs.H, b, weak);
+    return weak;
   }
-
-  /// The least translational stiffness: 1 / largest eigenvalue of the block of translations of (H K H^T)^-1, which is
-  /// Y^T Y with Y = K^-1/2 H^-1 [E; 0].
-  void stiffness() {
-    Vec6<T> side[3];
-    for (int i = 0; i < 3; ++i) side[i][i] = T(1.0);
-    Mat6<T> H = scaled_H();
-    T weak;
-    solve_orthogonal(H, side, weak);
-    T rows[3][6];
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 6; ++j) rows[i][j] = side[i][j] * (1.0 / machine.root_K[j]);
-    orthogonalise_rows<3, 6, T>(rows, nullptr);
-    const T most = max(max(row_square(rows[0]), row_square(rows[1])), row_square(rows[2]));
-    const M hopeless = weak < 1e-13;
-    singular = singular | hopeless;
-    put(task.lowest_stiffness_, unless((!at.legs) | hopeless, 1.0 / most));
-  }
-
-  void write_status() const {
-    T code = select(singular, T(sweep_task::singular), T(sweep_task::ok));
-    code = select(no_inertia, T(sweep_task::no_inertia), code);
-    code = select(no_leg, T(sweep_task::no_leg), code);
-    code = select(at.finite, code, T(sweep_task::not_finite));
-    double x[T::lanes];
-    code.store(x);
-    for (int l = 0; l < count; ++l) task.status_[first + l] = static_cast<std::uint8_t>(x[l]);
+  T finish(double* to, const T& value, const T& weak) const {
+    const T fault = worse(weak < 1e-13, sweep_task::singular, at.fault);
+    rows.put(to, unless(fault > 0.0, value));
+    return fault;
   }
 };
 
-/// Poses first to last of a task.
-template <class T> void sweep(const Task& task, size_t first, size_t last) {
-  const SweptMachine machine(task);
-  double rows[12][T::lanes];
-  for (size_t i = first; i < last; i += T::lanes) {
-    const int count = last - i < size_t{T::lanes} ? static_cast<int>(last - i) : T::lanes;
-    for (int l = 0; l < T::lanes; ++l) {
-      const double* pose = task.poses + (i + (l < count ? l : count - 1)) * task.width;
+/// Frequencies and the condition of H, for the joined packs of several parts.
+template <class T> struct SweepModes {
+  const SweptMachine& machine;
+  const Task& task;
+  const Rows rows;
+  const Dynamics<T>& dynamics;
+
+  template <bool all> FLEXAPOD_FLAT T frequencies() const {
+    constexpr int count = all ? 6 : 1;
+    Mat6<T> B = matrix();
+    SquaredBidiagonal<6, T> b = bidiagonalise(B);
+    const T scale = normalise(b);
+    const T fault = worse(!(scale < 1e300), sweep_task::no_inertia, dynamics.fault);
+    const auto bad = fault > 0.0;
+    auto failed = bad;
+    T value[6];
+    if constexpr (all) all_six(b, value, failed);
+    else value[0] = lowest(b, T(0.0), failed);
+    failed = failed & (!bad);
+    if (any(failed)) [[unlikely]] repeat(failed, scale, value);
+    for (int i = 0; i < count; ++i) {
+      const T omega = unless(bad, sqrt(scale * value[i]));
+      if (all) rows.put(task.omega_, omega, i, 6);
+      if (i == 0 && task.omega_1_ != nullptr) rows.put(task.omega_1_, omega);
+    }
+    return worse(value[0] < 1e-26, sweep_task::singular, fault);
+  }
+
+  FLEXAPOD_FLAT T condition() const {
+    Mat6<T> H = dynamics.H;
+    SquaredBidiagonal<6, T> b = bidiagonalise(H);
+    const T scale = normalise(b);
+    const auto bad = (dynamics.fault > T(sweep_task::singular)) | (!(scale < 1e300));
+    auto open_low = bad, open_high = bad;
+    T value[6];
+    value[0] = lowest(b, T(0.0), open_low), value[5] = highest(b, open_high);
+    const auto failed = (open_low | open_high) & (!bad);
+    if (any(failed)) [[unlikely]] repeat_H(failed, scale, value);
+    rows.put(task.cond_H_, unless(bad, sqrt(value[5] / value[0])));
+    return worse(value[0] < 1e-26 * value[5], sweep_task::singular, dynamics.fault);
+  }
+
+  T status() const {
+    double code[T::lanes];
+    dynamics.fault.store(code);
+    for (int l = 0; l < rows.count; ++l) task.status_[rows.first + l] = static_cast<std::uint8_t>(code[l]);
+    return dynamics.fault;
+  }
+
+ private:
+  Mat6<T> matrix() const { return dynamics.B(machine, Cholesky<T>(dynamics.J.matrix())); }
+
+  FLEXAPOD_COLD void repeat(const mask_t<T>& failed, const T& scale, T (&value)[6]) const {
+    by_rotations(matrix(), failed, scale, value);
+  }
+  FLEXAPOD_COLD void repeat_H(const mask_t<T>& failed, const T& scale, T (&value)[6]) const {
+    by_rotations(dynamics.H, failed, scale, value);
+  }
+  static void by_rotations(const Mat6<T>& B, const mask_t<T>& failed, const T& scale, T (&value)[6]) {
+    T exact[6];
+    squared_singular_values(B, exact);
+    for (int i = 0; i < 6; ++i) value[i] = select(failed, exact[i] / scale, value[i]);
+  }
+};
+
+/// Poses of a task, in packs of T::parts parts: part by part where the work is wide and many numbers are held, joined
+/// where it is one long chain. A batch of packs goes through one piece of the work after the other, so that the
+/// processor keeps the piece's instructions at hand.
+template <class T> class Sweep {
+  using Part = typename T::Part;
+  static constexpr int batch = 8;
+  const Task& task;
+  const SweptMachine machine;
+  Dynamics<Part> part;
+  Dynamics<T> joined[batch];
+  double rows[12][Part::lanes];
+
+ public:
+  explicit Sweep(const Task& t) : task(t), machine(t) {}
+
+  void run(size_t first, size_t last) {
+    constexpr size_t size = size_t{batch} * T::lanes;
+    for (size_t i = first; i < last; i += size) work_through(i, last - i < size ? last - i : size);
+  }
+
+ private:
+  static constexpr unsigned modal = Quantity::omega_1 | Quantity::omega;
+  static constexpr unsigned geometric =
+      Quantity::leg_length | Quantity::joint_angle | Quantity::leg_distance | Quantity::within_limits;
+
+  void work_through(size_t first, size_t count) {
+    for (size_t done = 0; done < count; done += Part::lanes) {
+      one_part(first + done, count - done < Part::lanes ? count - done : Part::lanes);
+      join(joined[done / T::lanes], static_cast<int>(done / Part::lanes % T::parts));
+    }
+    for (size_t done = 0; done < count; done += T::lanes) {  // what is left of the last pack: its first part again
+      const size_t parts = (count - done + Part::lanes - 1) / Part::lanes;
+      for (size_t i = parts; i < size_t{T::parts}; ++i) join(joined[done / T::lanes], static_cast<int>(i));
+    }
+    const unsigned asked = task.quantities;
+    const auto each = [&](auto&& piece) {
+      for (size_t done = 0; done < count; done += T::lanes) {
+        Dynamics<T>& dynamics = joined[done / T::lanes];
+        const size_t left = count - done;
+        const Rows rows{first + done, static_cast<int>(left < T::lanes ? left : T::lanes)};
+        dynamics.fault = piece(SweepModes<T>{machine, task, rows, dynamics});
+      }
+    };
+    if (asked & Quantity::cond_H) each([](const SweepModes<T>& modes) { return modes.condition(); });
+    if (asked & Quantity::omega) each([](const SweepModes<T>& modes) { return modes.template frequencies<true>(); });
+    else if (asked & Quantity::omega_1)
+      each([](const SweepModes<T>& modes) { return modes.template frequencies<false>(); });
+    each([](const SweepModes<T>& modes) { return modes.status(); });
+  }
+
+  void one_part(size_t first, size_t count) {
+    load(first, count);
+    const Stance<Part> at = stance();
+    const unsigned asked = task.quantities;
+    if (asked & modal) assemble(at);
+    else if (asked & Quantity::cond_H) part.set_legs(at);
+    else part.fault = at.fault;
+    const SweepPart<Part> quantities{machine, task, {first, static_cast<int>(count)}, at};
+    const auto note = [&](const Part& fault) { part.fault = select(part.fault > 0.0, part.fault, fault); };
+    if (asked & geometric) quantities.geometry();
+    if (asked & Quantity::leg_force) note(quantities.static_force());
+    if (asked & Quantity::lowest_stiffness) note(quantities.stiffness());
+    if (asked & Quantity::omega_1_gradient) note(quantities.gradient());
+  }
+  FLEXAPOD_FLAT Stance<Part> stance() const { return Stance<Part>(machine, rows, task.width); }
+  FLEXAPOD_FLAT void assemble(const Stance<Part>& at) { part.set(machine, at); }
+
+  /// A short last part is filled up with its last pose.
+  void load(size_t first, size_t count) {
+    for (int l = 0; l < Part::lanes; ++l) {
+      const double* pose = task.poses + (first + (static_cast<size_t>(l) < count ? l : count - 1)) * task.width;
       for (int c = 0; c < task.width; ++c) rows[c][l] = pose[c];
     }
-    SweepPack<T>(machine, task, rows, i, count);
+    if (task.width == 6)
+      for (int c = 3; c < 6; ++c)
+        if (any(abs(Part::load(rows[c])) > 1e6)) [[unlikely]] wind_down(rows[c]);
   }
-}
+  /// Angles of very many turns to within one.
+  static FLEXAPOD_COLD void wind_down(double (&angles)[Part::lanes]) {
+    for (double& a : angles)
+      if (std::abs(a) > 1e6) a = std::atan2(std::sin(a), std::cos(a));
+  }
+  void join(Dynamics<T>& joined, int i) const {
+    joined.fault.set_part(i, part.fault);
+    if (!(task.quantities & (modal | Quantity::cond_H))) return;
+    for (int r = 0; r < 6; ++r)
+      for (int c = 0; c < 6; ++c) joined.H[r][c].set_part(i, part.H[r][c]);
+    if (!(task.quantities & modal)) return;
+    join(joined.J.top, part.J.top, i), join(joined.J.bottom, part.J.bottom, i);
+    for (int r = 0; r < 3; ++r) {
+      joined.J.bottom_left.row[r].x.set_part(i, part.J.bottom_left.row[r].x);
+      joined.J.bottom_left.row[r].y.set_part(i, part.J.bottom_left.row[r].y);
+      joined.J.bottom_left.row[r].z.set_part(i, part.J.bottom_left.row[r].z);
+    }
+  }
+  static void join(Sym3<T>& to, const Sym3<Part>& from, int i) {
+    to.xx.set_part(i, from.xx), to.yy.set_part(i, from.yy), to.zz.set_part(i, from.zz);
+    to.xy.set_part(i, from.xy), to.xz.set_part(i, from.xz), to.yz.set_part(i, from.yz);
+  }
+};
 
 }  // namespace flexapod
