@@ -131,7 +131,7 @@ class RandomPoses(PoseSet):
 
     def rows(self, start: int, stop: int) -> Array:
         bits = np.random.PCG64DXSM(self.seed)
-        bits.advance(6 * start)  # every pose takes six draws, whether its coordinates vary or not
+        bits.advance(6 * int(start))  # every pose takes six draws, whether its coordinates vary or not
         generator = np.random.Generator(bits)
         out = np.empty((stop - start, 6))
         assert self.box is not None
