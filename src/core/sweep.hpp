@@ -37,9 +37,13 @@ struct SweptMachine {
   }
 };
 
-/// A fault is a status as a number in a lane.
+/// A fault is a status as a number in a lane. What is wrong with the pose itself is not replaced.
 template <class T> FLEXAPOD_INLINE T worse(const mask_t<T>& bad, sweep_task::Status status, const T& fault) {
-  return select(bad & (fault <= 0.0), T(status), fault);
+  return select(bad & (fault <= T(sweep_task::singular)), T(status), fault);
+}
+/// Lanes where legs have no directions.
+template <class T> FLEXAPOD_INLINE mask_t<T> no_pose(const T& fault) {
+  return (fault >= T(sweep_task::no_leg)) & (fault <= T(sweep_task::not_finite));
 }
 
 /// The value, or NaN in lanes where it has no meaning.
@@ -254,9 +258,9 @@ template <class T> struct SweepPart {
     return weak;
   }
   T finish(double* to, const T& value, const T& weak) const {
-    const T fault = worse(weak < 1e-13, sweep_task::singular, at.fault);
-    rows.put(to, unless(fault > 0.0, value));
-    return fault;
+    const auto hopeless = weak < 1e-13;
+    rows.put(to, unless(hopeless | (at.fault > 0.0), value));
+    return worse(hopeless, sweep_task::singular, at.fault);
   }
 };
 
@@ -273,7 +277,7 @@ template <class T> struct SweepModes {
     SquaredBidiagonal<6, T> b = bidiagonalise(B);
     const T scale = normalise(b);
     const T fault = worse(!(scale < 1e300), sweep_task::no_inertia, dynamics.fault);
-    const auto bad = fault > 0.0;
+    const auto bad = fault > T(sweep_task::singular);
     auto failed = bad;
     T value[6];
     if constexpr (all) all_six(b, value, failed);
@@ -285,21 +289,21 @@ template <class T> struct SweepModes {
       if (all) rows.put(task.omega_, omega, i, 6);
       if (i == 0 && task.omega_1_ != nullptr) rows.put(task.omega_1_, omega);
     }
-    return worse(value[0] < 1e-26, sweep_task::singular, fault);
+    return singular(value[0] < 1e-26, fault);
   }
 
   FLEXAPOD_FLAT T condition() const {
     Mat6<T> H = dynamics.H;
     SquaredBidiagonal<6, T> b = bidiagonalise(H);
-    const T scale = normalise(b);
-    const auto bad = (dynamics.fault > T(sweep_task::singular)) | (!(scale < 1e300));
+    normalise(b);
+    const auto bad = no_pose(dynamics.fault);
     auto open_low = bad, open_high = bad;
     T value[6];
     value[0] = lowest(b, T(0.0), open_low), value[5] = highest(b, open_high);
     const auto failed = (open_low | open_high) & (!bad);
-    if (any(failed)) [[unlikely]] repeat_H(failed, scale, value);
+    if (any(failed)) [[unlikely]] repeat_H(failed, value);
     rows.put(task.cond_H_, unless(bad, sqrt(value[5] / value[0])));
-    return worse(value[0] < 1e-26 * value[5], sweep_task::singular, dynamics.fault);
+    return singular(value[0] < 1e-26 * value[5], dynamics.fault);
   }
 
   T status() const {
@@ -312,11 +316,14 @@ template <class T> struct SweepModes {
  private:
   Mat6<T> matrix() const { return dynamics.B(machine, Cholesky<T>(dynamics.J.matrix())); }
 
+  static T singular(const mask_t<T>& bad, const T& fault) {
+    return select(bad & (fault <= 0.0), T(sweep_task::singular), fault);
+  }
   FLEXAPOD_COLD void repeat(const mask_t<T>& failed, const T& scale, T (&value)[6]) const {
     by_rotations(matrix(), failed, scale, value);
   }
-  FLEXAPOD_COLD void repeat_H(const mask_t<T>& failed, const T& scale, T (&value)[6]) const {
-    by_rotations(dynamics.H, failed, scale, value);
+  FLEXAPOD_COLD void repeat_H(const mask_t<T>& failed, T (&value)[6]) const {
+    by_rotations(dynamics.H, failed, T(1.0), value);
   }
   static void by_rotations(const Mat6<T>& B, const mask_t<T>& failed, const T& scale, T (&value)[6]) {
     T exact[6];
