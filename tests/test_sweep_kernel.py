@@ -104,7 +104,7 @@ def near_singular(hexapod, rng, conditions) -> np.ndarray:
 
 
 def poses_for_accuracy(hexapod, rng) -> np.ndarray:
-    """Ordinary poses, the centre and others on its vertical (double modes of symmetric machines), ill conditioned ones."""
+    """Ordinary poses, the centre and its vertical (double modes of symmetric machines), ill conditioned ones."""
     vertical = np.repeat(center(hexapod)[None], 4, axis=0)
     vertical[1:, 2] *= [0.95, 1.02, 1.1]
     twisted = vertical[:2] + np.array([0, 0, 0, 0, 0, 0.1])
