@@ -18,20 +18,14 @@ pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptio
 
 @pytest.fixture(scope="module")
 def workers():
-    """Two worker processes on this machine."""
-    from distributed import Client, LocalCluster
-
-    with (
-        LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address="localhost:0") as cluster,
-        Client(cluster) as client,
-    ):
-        client.wait_for_workers(2)
-        yield cluster
+    """A cluster on this machine, of one worker process a core."""
+    with fx.cluster("local") as crew:
+        yield crew.client.scheduler.address
 
 
 def test_a_cluster_writes_the_same_bytes(tmp_path, workers):
     stored(tmp_path / "threads.zarr", chunk=700)
-    with fx.cluster(workers.scheduler_address) as crew:
+    with fx.cluster(workers) as crew:
         store = fx.SweepStore.create(tmp_path / "cluster.zarr", I, POSES, chunk=700)
         store.run(crew)
     assert store.complete
@@ -41,7 +35,7 @@ def test_a_cluster_writes_the_same_bytes(tmp_path, workers):
 def test_given_poses_travel_block_by_block(tmp_path, workers):
     rows = POSES.rows(0, 3000).copy()
     rows[100, 0] = np.nan
-    with fx.cluster(workers.scheduler_address) as crew:
+    with fx.cluster(workers) as crew:
         state = fx.SweepStore.create(tmp_path / "map.zarr", I, rows, chunk=500).run(crew)
     assert state.statuses == {0: 2999, 3: 1}
     assert np.array_equal(
@@ -58,7 +52,7 @@ def test_a_killed_worker_costs_nothing_but_time(tmp_path, workers):
             os.kill(victim, signal.SIGKILL)
             killed.set()
 
-    with fx.cluster(workers.scheduler_address) as crew:
+    with fx.cluster(workers) as crew:
         victim = next(iter(crew.client.run(os.getpid).values()))
         store = fx.SweepStore.create(tmp_path / "cluster.zarr", I, poses, chunk=10_000)
         store.run(crew, progress=kill)
@@ -71,7 +65,7 @@ def test_a_killed_worker_costs_nothing_but_time(tmp_path, workers):
 def test_a_cluster_stops_when_asked_and_is_gone_on_with_by_threads(tmp_path, workers):
     path = tmp_path / "map.zarr"
     stop = threading.Event()
-    with fx.cluster(workers.scheduler_address) as crew:
+    with fx.cluster(workers) as crew:
         store = fx.SweepStore.create(path, I, POSES, chunk=500)
         store.run(crew, progress=lambda state: stop.set(), stop=stop.is_set)
     assert 0 < len(store.done) < store.job.blocks.count
