@@ -52,7 +52,7 @@ template <class T> struct Cholesky {
     for (int j = 0; j < 6; ++j) {
       T pivot = m[j][j];
       for (int k = 0; k < j; ++k) pivot = pivot - l[j][k] * l[j][k];
-      l[j][j] = T(1.0) / sqrt(pivot);
+      l[j][j] = rsqrt(pivot);
       for (int i = j + 1; i < 6; ++i) {
         T sum = m[i][j];
         for (int k = 0; k < j; ++k) sum = sum - l[i][k] * l[j][k];
@@ -66,6 +66,14 @@ template <class T> struct Cholesky {
       b[i] = b[i] * l[i][i];
     }
     return b;
+  }
+  void forward_all(Mat6<T>& B) const {  // L X = B, in place
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) {
+        T sum = B[i][j];
+        for (int k = 0; k < i; ++k) sum = sum - l[i][k] * B[k][j];
+        B[i][j] = sum * l[i][i];
+      }
   }
   Vec6<T> backward(Vec6<T> b) const {  // L^T x = b
     for (int i = 5; i >= 0; --i) {

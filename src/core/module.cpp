@@ -8,6 +8,7 @@
 #include "reactions.hpp"
 #include "six_legs.hpp"
 #include "statics.hpp"
+#include "sweep_module.hpp"
 
 namespace flexapod {
 namespace {
@@ -205,11 +206,11 @@ nb::tuple inertia_parts(const Input& design, bool universal, const Input& platfo
   double *p = platform.data(), *l = legs.data();
   for (size_t i = 0; i < s.n; ++i) {
     const Geometry<double> g = geometry(machine, s, i);
-    write(p, platform_inertia(machine.design, s.platform[i].pose.R));
+    write(p, platform_inertia(machine.design, s.platform[i].pose.R).matrix());
     for (int j = 0; j < 6; ++j) {
-      Mat6<double> J;
+      SpatialInertia<double> J;
       add_leg_inertia(J, machine, g, j);
-      write(l, J);
+      write(l, J.matrix());
     }
   }
   return nb::make_tuple(platform.array(), legs.array());
@@ -289,4 +290,5 @@ NB_MODULE(_core, m) {
   m.def("tangent", &tangent_);
   m.def("settle", &settle_);
   bind_simulation(m);
+  bind_sweep(m);
 }

@@ -1,5 +1,6 @@
 # What the compiled core offers. `design` is Hexapod.packed; platform, base, start are rows of 24 numbers.
 from collections.abc import Callable
+from typing import Any
 
 from numpy import float64
 from numpy.typing import NDArray
@@ -46,3 +47,16 @@ class Equations:
 
 def excitation(terms: _A, times: _A) -> _A: ...
 def base_motion(terms: _A, roll_pitch_yaw: bool, rest: _A, times: _A) -> _A: ...
+
+# The pose sweep. quantities: sum of bits of SWEEP; limits: neutral directions (36), leg length bounds (12), largest
+# universal and spherical angle, least leg distance. Arrays by name, and "status": an index of SWEEP_STATUS.
+SWEEP: dict[str, int]
+SWEEP_STATUS: tuple[str, ...]
+
+def sweep(
+    design: _A, universal: bool, poses: _A, quantities: int, limits: _A, threads: int
+) -> dict[str, NDArray[Any]]: ...
+def sweep_flops(design: _A, universal: bool, poses: _A, quantities: int) -> float: ...
+def simd() -> str: ...
+def simd_available() -> tuple[str, ...]: ...
+def peak_flops(rounds: int) -> float: ...

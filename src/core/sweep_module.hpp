@@ -1,0 +1,14 @@
+#pragma once
+
+#include "arrays.hpp"
+#include "sweep_task.hpp"
+
+namespace flexapod {
+
+/// Adds the pose sweep to the module.
+void bind_sweep(nb::module_& m);
+
+/// Sums, products, quotients and roots that n poses of a task take, each pose by itself.
+double count_flops(const sweep_task::Task& task, size_t n);
+
+}  // namespace flexapod
