@@ -1,9 +1,9 @@
 """Time per simulated second of the complete machine, against SciPy, SUNDIALS and MuJoCo.
 
 Manipulators I and II, base shaken by 1e-6 m in z at the third mode, relative tolerance 1e-9. SciPy and SUNDIALS call
-the very same equations (`flexapod.trajectory.equations`) from Python, the first two of their lines as a user would write
-them with `fx.forward_dynamics`. MuJoCo: see `mujoco_model.py`. The candidates take turns and the least CPU time of each
-counts, so that a busy machine slows all alike. scikit-sundae and mujoco are optional: pip install scikit-sundae mujoco.
+the very same compiled equations (`flexapod.trajectory.equations`) from Python; one line more is SciPy with them written
+in Python around `fx.forward_dynamics`. The candidates take turns and the least CPU time of each counts, so that a busy
+machine slows all alike. scikit-sundae and mujoco are optional: pip install scikit-sundae mujoco.
 """
 
 from __future__ import annotations

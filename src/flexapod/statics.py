@@ -12,7 +12,7 @@ from flexapod.errors import KinematicsError, SingularPoseError
 from flexapod.hexapod import Hexapod
 from flexapod.kinematics import forward_kinematics, inverse_kinematics
 from flexapod.pose import Array, Pose, orthonormal, vectors
-from flexapod.states import ZERO, JointModel, states, wrench
+from flexapod.states import ZERO, JointModel, is_universal, states, wrench
 
 
 class Equilibrium(NamedTuple):
@@ -51,10 +51,12 @@ def static_equilibrium(
     base: Pose | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
+    joint: JointModel = "universal",
 ) -> Equilibrium:
-    """Where the platform settles under gravity and a wrench (platform frame) for unstretched leg lengths (6,) m.
+    """Where the platform is at rest under gravity and a wrench (platform frame) for unstretched leg lengths (6,) m.
 
-    Newton's method with the exact tangent, from `start` or from the pose at which the legs have these lengths.
+    Newton's method with the exact tangent, from `start` or from the pose at which the legs have these lengths. The
+    equilibrium found may be unstable: poles of `linearise` with a positive real part tell.
     Raises KinematicsError where no equilibrium is found, SingularPoseError where the tangent becomes singular.
     """
     L_0 = vectors(unstretched_length, "unstretched_length", 6)
@@ -67,7 +69,9 @@ def static_equilibrium(
         if base is not None:
             start = Pose(base.position + base.matrix @ start.position, base.matrix @ start.matrix)
     s = states(hexapod, start, base)
-    found, outcome = _core.settle(hexapod.packed, s.platform, s.base, wrench(force, moment, ()), L_0)
+    found, outcome = _core.settle(
+        hexapod.packed, is_universal(joint), s.platform, s.base, wrench(force, moment, ()), L_0
+    )
     pose = Pose(found[:3], orthonormal(found[3:].reshape(3, 3)))
     if outcome == "singular":
         raise SingularPoseError(
