@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Any
 
@@ -73,6 +73,25 @@ class Cluster:
         return self.client.submit(compute_block, job, number, rows, key=f"sweep-{job.token}-{number}", retries=2)
 
 
+def _knock(address: str, timeout: float) -> None:
+    """Raises OSError or ValueError where no scheduler answers.
+
+    A Client finds that out as well, but one that failed stays behind half made, and hangs the process when the garbage
+    collector takes it while another is made.
+    """
+    import asyncio
+
+    from distributed.comm import connect
+    from distributed.security import Security
+
+    async def try_to_connect() -> None:
+        comm = await connect(address, timeout=timeout, **Security().get_connection_args("client"))
+        await comm.close()
+
+    with ThreadPoolExecutor(1) as pool:  # an event loop may be running in this thread, as in a notebook
+        pool.submit(asyncio.run, asyncio.wait_for(try_to_connect(), timeout + 1)).result()
+
+
 @contextmanager
 def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
     """The cluster of the Dask scheduler at an address such as tcp://host:8786; "local" starts one on this machine.
@@ -88,10 +107,11 @@ def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
             yield Cluster(client)
         return
     try:
+        _knock(address, timeout)
         client = Client(address, timeout=timeout)
     except (OSError, ValueError, OverflowError) as error:
         raise ClusterError(
-            f"no Dask scheduler answers at {address} ({error}). Start one with `dask scheduler`, check the address "
+            f"no Dask scheduler answers at {address} ({str(error) or 'timed out'}). Start one with `dask scheduler`, check the address "
             "(tcp://host:port), or use the address `local`."
         ) from error
     with client:
