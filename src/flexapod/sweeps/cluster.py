@@ -111,8 +111,8 @@ def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
         client = Client(address, timeout=timeout)
     except (OSError, ValueError, OverflowError) as error:
         raise ClusterError(
-            f"no Dask scheduler answers at {address} ({str(error) or 'timed out'}). Start one with `dask scheduler`, check the address "
-            "(tcp://host:port), or use the address `local`."
+            f"no Dask scheduler answers at {address} ({str(error) or 'timed out'}). Start one with "
+            "`dask scheduler`, check the address (tcp://host:port), or use the address `local`."
         ) from error
     with client:
         try:
