@@ -9,7 +9,7 @@ import click
 
 from flexapod.errors import FlexapodError
 
-COMMANDS = ("check", "modes", "new", "report")
+COMMANDS = ("check", "modes", "new", "report", "serve")
 
 
 class _Lazy(click.Group):

@@ -1,0 +1,37 @@
+"""What runs in a job's own process: one generator of messages for each kind of job."""
+
+from __future__ import annotations
+
+import signal
+from collections.abc import Callable, Iterator
+from multiprocessing.connection import Connection
+from typing import Any
+
+from flexapod.errors import FlexapodError
+from flexapod.web import clouds
+
+Message = tuple[dict[str, Any], bytes]
+
+KINDS: dict[str, Callable[[dict[str, Any]], Iterator[Message]]] = {
+    "cloud": clouds.cloud,
+    "slice": clouds.slice_map,
+    "worst": clouds.worst,
+}
+
+
+def serve(pipe: Connection) -> None:
+    """Take jobs from the pipe until it closes; a job that fails says why and the process lives on."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the server's; it stops this process itself
+    while True:
+        try:
+            kind, spec = pipe.recv()
+        except EOFError:
+            return
+        try:
+            for message in KINDS[kind](spec):
+                pipe.send(message)
+            pipe.send(({"type": "done"}, b""))
+        except FlexapodError as error:
+            pipe.send(({"type": "failed", "error": str(error)}, b""))
+        except (BrokenPipeError, ConnectionResetError):
+            return
