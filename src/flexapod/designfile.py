@@ -6,6 +6,7 @@ Values are a flat dict: the file's dotted keys without units -> arrays in SI uni
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -228,15 +229,16 @@ def _take_out(values: Values, key: str) -> None:
         for full in [full for full in values if full.startswith(f"{key}.")]:
             del values[full]
         return
+    values.pop(_canonical(key)[0], None)
+
+
+def _canonical(key: str) -> tuple[str, str]:
+    """A dotted key as written -> (its name without unit, its unit)."""
     table, _, last = key.rpartition(".")
     if table and table not in TABLES:
-        unknown_key(*_split_table(table))
-    values.pop(resolve(table, last)[0], None)
-
-
-def _split_table(table: str) -> tuple[str, str]:
-    parent, _, last = table.rpartition(".")
-    return parent, last
+        parent, _, name = table.rpartition(".")
+        unknown_key(parent, name)
+    return resolve(table, last)
 
 
 def _set_place(values: Values, key: str, value: Any) -> None:
@@ -244,15 +246,12 @@ def _set_place(values: Values, key: str, value: Any) -> None:
     match = re.fullmatch(r"([^\[\]]+)((?:\[\d+\])+)", key)
     if match is None:
         raise DesignError(f"{key!r} is no key; write an index as in legs.stiffness[2], counting from 0.")
-    table, _, last = match[1].rpartition(".")
-    if table and table not in TABLES:
-        unknown_key(*_split_table(table))
-    canonical, unit = resolve(table, last)
+    canonical, unit = _canonical(match[1])
     if canonical in TEXT_KEYS or canonical not in values:
         raise DesignError(f"{key}: {canonical} is not a list in this design. Give {canonical} as a whole.")
     rule = KEYS[canonical]
     index = tuple(int(number) for number in re.findall(r"\d+", match[2]))
-    shape = (6, *rule.shapes[0]) if (6, *rule.shapes[0]) in rule.shapes else rule.shapes[0]
+    shape = (6, *rule.shapes[0]) if canonical.startswith("legs.") else values[canonical].shape
     whole = np.broadcast_to(values[canonical], shape).copy()
     if len(index) > len(shape) or any(i >= n for i, n in zip(index, shape, strict=False)):
         raise DesignError(
@@ -260,9 +259,7 @@ def _set_place(values: Values, key: str, value: Any) -> None:
             "Indices count from 0."
         )
     # The entry is checked as if it alone were the value; symmetry is a matter of the whole, checked when all are set.
-    entry = type(rule)(
-        rule.meaning, rule.dimension, (shape[len(index) :],), rule.remedy, rule.least, rule.most, rule.open_
-    )
+    entry = replace(rule, shapes=(shape[len(index) :],), symmetric=False)
     whole[index] = check_value(key, value, entry, unit)
     values[canonical] = whole
 

@@ -11,10 +11,7 @@ from flexapod import _core
 from flexapod.errors import SingularPoseError
 from flexapod.hexapod import Hexapod
 from flexapod.pose import Array, Motion, Pose
-from flexapod.states import JointModel, States, is_universal, per_leg, states, wrench
-
-ZERO = (0.0, 0.0, 0.0)
-NO_LEGS = (0.0,) * 6
+from flexapod.states import NO_LEGS, ZERO, JointModel, States, is_universal, per_leg, states, wrench
 
 
 class EquationsOfMotion(NamedTuple):
@@ -78,10 +75,11 @@ def forward_dynamics(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> tuple[Array, Array]:
-    """Acceleration (m/s2) of the platform's reference point and its angular acceleration (rad/s2), inertial axes (Eq. 35).
+    """Acceleration of the platform's reference point (m/s2) and its angular acceleration (rad/s2) (Eq. 35).
 
     leg_force: (..., 6) N, positive pushes the platform from the base. force (N), moment (N m): on the platform, in its
-    own frame, at its reference point. The accelerations in `platform` play no part; those of `base` do.
+    own frame, at its reference point. The accelerations in `platform` play no part; those of `base` do. Returns
+    vectors (..., 3) in inertial axes.
     """
     s = states(hexapod, platform, base)
     result = _core.forward_dynamics(
@@ -135,9 +133,7 @@ def joint_reactions(
     """
     s = states(hexapod, platform, base)
     forces = per_leg(leg_force, "leg_force", s.shape)
-    legs, total = _core.joint_reactions(
-        hexapod.packed, is_universal(joint), s.platform, s.base, forces, float(section)
-    )
+    legs, total = _core.joint_reactions(hexapod.packed, is_universal(joint), s.platform, s.base, forces, float(section))
     legs = legs.reshape(*s.shape, 6, 6, 3)
     total = total.reshape(*s.shape, 2, 3)
     return Reactions(*np.moveaxis(legs, -2, 0), *np.moveaxis(total, -2, 0))

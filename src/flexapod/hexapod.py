@@ -1,4 +1,4 @@
-"""The design of a 6-UPS hexapod: frozen, checked once, SI units, legs numbered 0 to 5."""
+"""The design of a 6-UPS hexapod: frozen, checked once, SI units, legs 1 to 6 (in arrays and in [brackets], 0 to 5)."""
 
 import hashlib
 from collections.abc import Iterator, Mapping
@@ -377,5 +377,5 @@ def _warn_of_part(key: str, part: LegPart) -> list[str]:
     legs = [leg for leg, flaw in enumerate(flaws) if flaw]
     if not legs:
         return []
-    which = "all legs" if len(legs) == 6 else f"legs {', '.join(map(str, legs))}"
+    which = "all legs" if len(legs) == 6 else f"legs {', '.join(str(leg + 1) for leg in legs)}"
     return [f"{key}.inertia ({which}): no rigid body has it; {flaws[legs[0]]}. Results are computed with it as given."]

@@ -13,8 +13,6 @@ from flexapod.hexapod import Hexapod
 from flexapod.pose import Array, Motion, Pose, orthonormal, rpy_matrix, vectors
 from flexapod.states import states
 
-ZERO = (0.0, 0.0, 0.0)
-
 
 class LegRates(NamedTuple):
     """Leg lengths (..., 6) m, and their rates m/s and accelerations m/s2."""
@@ -78,7 +76,7 @@ def condition_number(hexapod: Hexapod, pose: Pose, characteristic_length: float 
 
 
 def _singular_values(H: Array) -> Array:
-    bad = ~np.isfinite(H).all(axis=(-2, -1))
+    bad = np.asarray(~np.isfinite(H).all(axis=(-2, -1)))
     sigma = np.linalg.svd(np.where(bad[..., None, None], 0.0, H), compute_uv=False)
     return np.where(bad[..., None], np.nan, sigma)
 
@@ -134,7 +132,7 @@ def _starts(hexapod: Hexapod, lengths: Array) -> Pose:
         centre = b.mean(axis=0) - p.mean(axis=0)
         offset = np.linalg.norm((p + centre - b)[:, :2], axis=1)
         rise = np.sqrt(np.maximum(lengths**2 - offset**2, (0.3 * lengths) ** 2)).mean()
-        home = Pose(centre + [0.0, 0.0, rise])
+        home = Pose(centre + np.array([0.0, 0.0, rise]))
     turns = np.radians([[0, 0, y] for y in (0, 30, -30, 60, -60, 90, -90, 120, -120, 180)])
     tilts = np.radians([[r, p, 0] for r in (-40, 0, 40) for p in (-40, 0, 40) if r or p])
     rotations = home.matrix @ rpy_matrix(np.concatenate([turns, tilts]))

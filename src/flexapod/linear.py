@@ -9,16 +9,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
-from flexapod.dynamics import ZERO
 from flexapod.errors import PoseError
 from flexapod.hexapod import Hexapod
 from flexapod.pose import Array, Pose
+from flexapod.states import ZERO, JointModel, is_universal, states, wrench
 from flexapod.statics import Equilibrium, hold
-from flexapod.states import JointModel, is_universal, states, wrench
 
 if TYPE_CHECKING:
     import control
 
+STATES = ("position", "velocity")
 INPUTS = ("base_acceleration", "leg_force", "wrench", "leg_command")
 OUTPUTS = ("position", "leg_length", "leg_force", "acceleration")
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
@@ -109,7 +109,7 @@ class Linearisation:
         absolute = drive + np.hstack([self.carry, np.zeros((6, 18))])
         legs = np.hstack([zero, one, zero, K_legs])
         D = np.vstack([np.zeros((12, 24)), legs, absolute])
-        return StateSpace(A, B, C, D, _labels(("position", "velocity"), ()), _labels(INPUTS, LEGS), _labels(OUTPUTS, LEGS))
+        return StateSpace(A, B, C, D, _labels(STATES), _labels(INPUTS), _labels(OUTPUTS))
 
     def to_control(self) -> control.StateSpace:
         """The state space as a `control.StateSpace` with named signals. Needs python-control (extra "control")."""
@@ -123,10 +123,8 @@ class Linearisation:
         )
 
 
-def _labels(groups: tuple[str, ...], legs: tuple[str, ...]) -> tuple[str, ...]:
-    return tuple(
-        f"{group}_{part}" for group in groups for part in (legs if legs and group.startswith("leg_") else AXES)
-    )
+def _labels(groups: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(f"{group}_{part}" for group in groups for part in (LEGS if group.startswith("leg_") else AXES))
 
 
 def _one_of_each_pair(poles: Array) -> list[int]:
@@ -154,10 +152,10 @@ def linearise(
         raise PoseError(f"linearise takes one pose; this one has batch axes {pose.shape}. Index it first.")
     rest = hold(hexapod, pose, base=base, force=force, moment=moment)
     s = states(hexapod, pose, base)
-    matrices = _core.tangent(
+    M, C, K, M_b, C_b, K_b, H = _core.tangent(
         hexapod.packed, is_universal(joint), s.platform, s.base, wrench(force, moment, ()), rest.unstretched_length
     )
     r = s.platform[0, :3] - s.base[0, :3]
     carry = np.eye(6)
     carry[:3, 3:] = [[0, r[2], -r[1]], [-r[2], 0, r[0]], [r[1], -r[0], 0]]
-    return Linearisation(*matrices, leg_stiffness=hexapod.legs.stiffness, rest=rest, carry=carry)
+    return Linearisation(M, C, K, M_b, C_b, K_b, H, hexapod.legs.stiffness, rest, carry)

@@ -90,7 +90,7 @@ def natural_modes(
 def stability_index(
     hexapod: Hexapod, pose: Pose, joint: JointModel = "universal", base: Pose | None = None
 ) -> Array | float:
-    """The dynamic stability index: the lowest natural frequency, rad/s, (...) (paper, Section 2). Zero at a singular pose."""
+    """The dynamic stability index (...): the lowest natural frequency, rad/s; zero at a singular pose (Section 2)."""
     return natural_modes(hexapod, pose, joint, base).omega[..., 0][()]
 
 

@@ -43,7 +43,7 @@ class Pose:
     """Position of a body's reference point and its orientation.
 
     position: (..., 3) m. rotation: a scipy `Rotation` (one or many), or matrices (..., 3, 3) that take vectors from
-    body axes to the outer frame; default: none. Raises PoseError for wrong shapes, NaN, or a matrix that is no rotation.
+    body axes to the outer frame; default: none. Raises PoseError for wrong shapes, NaN, or matrices that do not rotate.
     """
 
     __slots__ = ("matrix", "position")

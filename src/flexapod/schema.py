@@ -45,6 +45,7 @@ _ONE: tuple[tuple[int, ...], ...] = ((),)
 _LEGS: tuple[tuple[int, ...], ...] = ((), (6,))
 _VECTOR = ((3,),)
 _JOINTS = ((6, 3),)
+_LARGEST = 1e100  # squares and products of such numbers still do not overflow
 _FLAT_ANGLE = 3.141592653589793
 _ROW_REMEDY = "Give one row [x, y, z] for each of the six legs."
 _ANGLE_REMEDY = "If the number is in degrees, put _deg at the end of the key."
@@ -275,10 +276,9 @@ def _numbers(name: str, value: Any, rule: Key) -> FloatArray:
     found = _not_a_number(value, "")
     if found is not None:
         path, item = found
-        shown = item if isinstance(item, str) else repr(item)
         kind = "text" if isinstance(item, str) else type(item).__name__
         must = "it must be a number" if path else f"it must be {rule.shape_text}"
-        raise DesignError(f"{name}{path} is {shown!r} ({kind}); {must}. {rule.remedy}")
+        raise DesignError(f"{name}{path} is {item!r} ({kind}); {must}. {rule.remedy}")
     try:
         return np.array(value, dtype=np.float64)
     except OverflowError:
@@ -303,8 +303,8 @@ def _not_a_number(value: Any, path: str) -> tuple[str, Any] | None:
 
 
 def _check_each(name: str, given: FloatArray, si: FloatArray, rule: Key, unit: str) -> None:
-    bad = ~np.isfinite(si)
-    must = "a finite number"
+    bad = ~(np.abs(si) < _LARGEST)
+    must = "a finite number" if not np.isfinite(given).all() else f"smaller than {_LARGEST:g} in SI units"
     if rule.least is not None and not bad.any():
         bad = si <= rule.least if rule.open_ else si < rule.least
         must = f"{'>' if rule.open_ else '>='} {_in_unit(rule.least, rule, unit)}"

@@ -31,8 +31,8 @@ def tangent_axes(base_joints: FloatArray) -> FloatArray:
     if (length < 1e-9 * np.abs(out).max()).any():
         leg = int(np.argmin(length))
         raise DesignError(
-            f"base.universal_axes is left out, but base.joints[{leg}] is at {base_joints[leg].tolist()} m, straight above "
-            "or below the centroid of the base joints, where no tangent exists. Give base.universal_axes."
+            f"base.universal_axes is left out, but base.joints[{leg}] is at {base_joints[leg].tolist()} m, straight "
+            "above or below the centroid of the base joints, where no tangent exists. Give base.universal_axes."
         )
     return np.asarray(axes / length + 0.0)
 

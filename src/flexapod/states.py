@@ -12,6 +12,8 @@ from flexapod.hexapod import Hexapod
 from flexapod.pose import Array, Motion, Pose, vectors
 
 JointModel = Literal["universal", "spin_free"]
+ZERO = (0.0, 0.0, 0.0)
+NO_LEGS = (0.0,) * 6
 
 
 class States(NamedTuple):

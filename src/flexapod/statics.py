@@ -7,12 +7,12 @@ from typing import NamedTuple
 from numpy.typing import ArrayLike
 
 from flexapod import _core
-from flexapod.dynamics import ZERO, inverse_dynamics
+from flexapod.dynamics import inverse_dynamics
 from flexapod.errors import KinematicsError, SingularPoseError
 from flexapod.hexapod import Hexapod
 from flexapod.kinematics import forward_kinematics, inverse_kinematics
 from flexapod.pose import Array, Pose, orthonormal, vectors
-from flexapod.states import states, wrench
+from flexapod.states import ZERO, states, wrench
 
 
 class Equilibrium(NamedTuple):
