@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOMES = {
-    "errors": ["DesignError", "FlexapodError", "KinematicsError", "PoseError", "SingularPoseError"],
+    "errors": ["ArgumentError", "DesignError", "FlexapodError", "KinematicsError", "PoseError", "SingularPoseError"],
     "hexapod": ["Damping", "Hexapod", "LegPart", "Legs", "Limits", "load", "packaged_designs", "template"],
     "pose": ["Motion", "Pose"],
     "kinematics": [
@@ -51,6 +51,7 @@ _HOMES = {
         "stability_index",
     ],
     "linear": ["DampedModes", "Linearisation", "StateSpace", "linearise"],
+    "response": ["random_response", "transmissibility"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = sorted([*_HOME_OF, "__version__"])
@@ -76,4 +77,5 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.linear import *  # noqa: F403
     from flexapod.modal import *  # noqa: F403
     from flexapod.pose import *  # noqa: F403
+    from flexapod.response import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403

@@ -1,8 +1,14 @@
 """What can go wrong, by name. Every message says the thing, its value, what is required and the remedy."""
 
+from typing import Any
+
 
 class FlexapodError(Exception):
     """Base of all errors that Flexapod raises on purpose."""
+
+
+class ArgumentError(FlexapodError, ValueError):
+    """A number, table or name given to a study that it cannot work with."""
 
 
 class DesignError(FlexapodError, ValueError):
@@ -19,3 +25,11 @@ class KinematicsError(FlexapodError, ValueError):
 
 class SingularPoseError(FlexapodError, ValueError):
     """A pose at which the legs cannot hold the platform (H is singular)."""
+
+
+class SimulationError(FlexapodError, RuntimeError):
+    """A simulation that could not be carried on. `time` (s) and `pose`: where it ended; `result`: the Dataset so far."""
+
+    def __init__(self, message: str, time: float = float("nan"), pose: Any = None, result: Any = None) -> None:
+        super().__init__(message)
+        self.time, self.pose, self.result = time, pose, result
