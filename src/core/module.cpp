@@ -7,6 +7,7 @@
 #include "modes.hpp"
 #include "reactions.hpp"
 #include "statics.hpp"
+#include "sweep_module.hpp"
 
 namespace flexapod {
 namespace {
@@ -275,4 +276,5 @@ NB_MODULE(_core, m) {
   m.def("tangent", &tangent_);
   m.def("settle", &settle_);
   bind_simulation(m);
+  bind_sweep(m);
 }

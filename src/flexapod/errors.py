@@ -33,3 +33,11 @@ class SimulationError(FlexapodError, RuntimeError):
     def __init__(self, message: str, time: float = float("nan"), pose: Any = None, result: Any = None) -> None:
         super().__init__(message)
         self.time, self.pose, self.result = time, pose, result
+
+
+class OutputError(FlexapodError, OSError):
+    """A file or store that cannot be written, read, or taken up again."""
+
+
+class ClusterError(FlexapodError, RuntimeError):
+    """A cluster of computers that cannot be reached, or that gave up."""
