@@ -5,9 +5,11 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+import anyio
 from anyio.to_thread import run_sync
 from starlette.applications import Starlette
 from starlette.middleware import Middleware
@@ -18,7 +20,7 @@ from starlette.staticfiles import StaticFiles
 
 from flexapod import __version__, designfile
 from flexapod.errors import FlexapodError
-from flexapod.web import asking, designs, state, work
+from flexapod.web import asking, designs, shaking, state, work
 from flexapod.web.encode import Numbers
 from flexapod.web.jobs import Jobs
 from flexapod.web.security import Guard
@@ -33,7 +35,10 @@ def application(start: Path | None = None, hosts: Iterable[str] = ()) -> Starlet
     @contextlib.asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncIterator[None]:
         await jobs.warm()
-        yield
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(run_sync, import_module, "xarray")  # slow to import; the first response would wait for it
+            yield
+            tasks.cancel_scope.cancel()
         jobs.close()
 
     async def begin(_: Request) -> Response:
@@ -56,6 +61,8 @@ def application(start: Path | None = None, hosts: Iterable[str] = ()) -> Starlet
         Route("/api/start", begin),
         Route("/api/design", _asks(_design), methods=["POST"]),
         Route("/api/state", _asks(_state), methods=["POST"]),
+        Route("/api/response", _asks(shaking.response), methods=["POST"]),
+        Route("/api/shake", _asks(shaking.shake), methods=["POST"]),
         Route("/api/jobs/{kind}", run_job, methods=["POST"]),
         Route("/api/jobs/{name}", stop_job, methods=["DELETE"]),
         Mount("/", StaticFiles(directory=STATIC, html=True)),

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from starlette.requests import Request
 
-from flexapod import Pose
 from flexapod.errors import FlexapodError
 from flexapod.hexapod import Hexapod
+from flexapod.pose import Array, Pose
 from flexapod.web import designs
 from flexapod.web.security import MAX_BODY
 
@@ -108,6 +108,15 @@ def pose_of(six: tuple[float, ...]) -> Pose:
     return Pose.from_rpy(*six[:3], *np.radians(six[3:]))
 
 
-def six_of(pose: Pose) -> list[float]:
-    """x, y, z in m, roll, pitch, yaw in degrees, without the last digits that conversion leaves."""
-    return [*pose.position.tolist(), *np.round(np.degrees(pose.rpy), 12).tolist()]
+
+def box(asked: dict[str, Any]) -> tuple[Array, Array]:
+    """Low and high of the six coordinates of a pose box, m and degrees."""
+    given = asked.get("box")
+    if not isinstance(given, dict):
+        raise AskingError("box must have low and high, six numbers each")
+    low, high = (np.array(numbers(given.get(side), f"box.{side}", 6)) for side in ("low", "high"))
+    for i in np.flatnonzero(low > high):
+        raise AskingError(
+            f"the box of {COORDINATES[i]} runs from {low[i]:g} to {high[i]:g}; the first must not be the larger"
+        )
+    return low, high

@@ -8,32 +8,38 @@ from typing import Any
 
 import numpy as np
 
-import flexapod as fx
-from flexapod.pose import Pose
+from flexapod.pose import Array
+from flexapod.posesets import Box, random_poses
+from flexapod.quantities import evaluate, thread_count
 from flexapod.web import asking
 from flexapod.web.encode import float32
 
-CHUNK = 20_000  #: poses between two messages of progress
+CHUNK = 50_000  #: poses between two messages of progress: a hundredth of a second or so
 MOST_POINTS = 5_000_000  #: what a page's memory takes with ease: 8 numbers of 4 bytes each
 
 Message = tuple[dict[str, Any], bytes]
 
 
 def cloud(spec: dict[str, Any]) -> Iterator[Message]:
-    """Poses drawn in a box, with index and cond(H): rows x y z roll pitch yaw (m, degrees), omega_1, cond(H)."""
-    question, (low, high) = asking.question(spec), box_of(spec)
-    count = int(asking.number(spec, "points", 100_000, 1, MOST_POINTS))
-    random = np.random.default_rng(int(asking.number(spec, "seed", 0, 0, 2**31)))
+    """Poses drawn in a box, with index and cond(H): rows x y z roll pitch yaw (m, degrees), omega_1, cond(H).
+
+    A pose is rounded to float32 before anything is computed there, so that the page shows the numbers of that very pose.
+    """
+    question, count = asking.question(spec), int(asking.number(spec, "points", 100_000, 1, MOST_POINTS))
+    poses = random_poses(_box(spec), count, int(asking.number(spec, "seed", 0, 0, 2**31)))
     began = time.perf_counter()
     for start in range(0, count, CHUNK):
-        six = random.uniform(low, high, (min(CHUNK, count - start), 6)).astype("f4").astype(float)
-        rows = np.concatenate([six, _quantities(question, six)], axis=1)
-        yield _progress("points", start + len(rows), count, began), float32(rows)
+        stop = min(start + CHUNK, count)
+        six = poses.rows(start, stop)
+        six[:, 3:] = np.degrees(six[:, 3:])
+        six = six.astype("f4").astype(float)
+        rows = np.concatenate([six, _quantities(question, six, ("omega_1", "cond_H"))], axis=1)
+        yield _progress("points", stop, count, began), float32(rows)
 
 
 def slice_map(spec: dict[str, Any]) -> Iterator[Message]:
     """Index, cond(H) and whether limits hold over a grid of two coordinates, the other four as the pose has them."""
-    question, (low, high) = asking.question(spec), box_of(spec)
+    question, (low, high) = asking.question(spec), asking.box(spec)
     across = asking.COORDINATES.index(asking.choice(spec, "across", asking.COORDINATES))
     up = asking.COORDINATES.index(asking.choice(spec, "up", asking.COORDINATES))
     if across == up:
@@ -46,41 +52,34 @@ def slice_map(spec: dict[str, Any]) -> Iterator[Message]:
         part = ys[first : first + lines]
         six = np.tile(question.six, (len(part) * side, 1))
         six[:, across], six[:, up] = np.tile(xs, len(part)), np.repeat(part, side)
-        values = np.concatenate([_quantities(question, six), _within(question, six)], axis=1)
+        values = _quantities(question, six, ("omega_1", "cond_H", "within_limits"))
         yield _progress("rows", first + len(part), side, began), float32(values)
 
 
 def worst(spec: dict[str, Any]) -> Iterator[Message]:
-    """The pose of the lowest index in the box, refined from the sweep's worst ones."""
-    raise NotImplementedError
+    """The pose of the lowest index in the box, refined from low poses of a sweep to the true minimum."""
+    import flexapod as fx
+
+    question = asking.question(spec)
+    found = fx.worst_pose(question.hexapod, _box(spec), question.joint)
+    pose = [*found.pose[:3].tolist(), *np.round(np.degrees(found.pose[3:]), 12).tolist()]
+    what = "singular poses lie in the box; here the index is" if found.singular else "least index"
+    edge = f"; on the box's edge in {', '.join(found.at_bounds)}" if found.at_bounds else ""
+    words = f"{what} {found.omega_1:.5g} rad/s, found by {found.agreed} of {found.starts} searches{edge}"
+    yield {"type": "found", "pose": pose, "index": found.omega_1, "words": words[0].upper() + words[1:]}, b""
 
 
-def box_of(spec: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
-    """Low and high of the six coordinates, m and degrees."""
-    box = spec.get("box")
-    if not isinstance(box, dict):
-        raise asking.AskingError("box must have low and high, six numbers each")
-    low, high = (np.array(asking.numbers(box.get(side), f"box.{side}", 6)) for side in ("low", "high"))
-    for i in np.flatnonzero(low > high):
-        raise asking.AskingError(
-            f"the box of {asking.COORDINATES[i]} runs from {low[i]:g} to {high[i]:g}; the first must not be the larger"
-        )
-    return low, high
+def _box(spec: dict[str, Any]) -> Box:
+    low, high = asking.box(spec)
+    scale = np.repeat([1.0, np.pi / 180], 3)
+    return Box(*zip(low * scale, high * scale, strict=True))
 
 
-def _poses(six: np.ndarray) -> Pose:
-    return Pose.from_rpy(*six[:, :3].T, *np.radians(six[:, 3:]).T)
-
-
-def _quantities(question: asking.Question, six: np.ndarray) -> np.ndarray:
-    """Index (rad/s) and cond(H) of many poses, (n, 2)."""
-    poses = _poses(six)
-    index = fx.stability_index(question.hexapod, poses, question.joint)
-    return np.stack([index, fx.condition_number(question.hexapod, poses)], axis=1)
-
-
-def _within(question: asking.Question, six: np.ndarray) -> np.ndarray:
-    return fx.check_limits(question.hexapod, _poses(six)).ok[:, None]
+def _quantities(question: asking.Question, six: Array, names: tuple[str, ...]) -> Array:
+    """Quantities of many poses (m, degrees), one column each. Half the machine's threads: other pages go on."""
+    rows = six * np.repeat([1.0, np.pi / 180], 3)
+    found = evaluate(question.hexapod, rows, names, question.joint, max(1, thread_count(None) // 2))
+    return np.stack([np.asarray(found[name], dtype=float) for name in names], axis=1)
 
 
 def _progress(kind: str, done: int, total: int, began: float) -> dict[str, Any]:

@@ -14,6 +14,7 @@ import numpy as np
 from flexapod import designfile
 from flexapod.errors import DesignError
 from flexapod.hexapod import Hexapod
+from flexapod.pose import Pose
 from flexapod.schema import KEYS, TABLES, TEXT_KEYS
 from flexapod.units import printed, si_unit
 
@@ -170,9 +171,9 @@ def fields() -> list[dict[str, Any]]:
     short = re.compile(r"\.(circle|rod)\.|^cubic\.")
     return [
         {
-            "key": key,
+            "key": _shown(key),
             "meaning": rule.meaning,
-            "unit": printed(si_unit(rule.dimension)),
+            "unit": "°" if rule.dimension == "angle" else printed(si_unit(rule.dimension)),
             "shapes": [list(shape) for shape in rule.shapes],
             "optional": key.startswith(("limits.", "home.")),
         }
@@ -185,12 +186,11 @@ def described(source: Source) -> dict[str, Any]:
     """All that the page shows of a design itself: numbers by key, chief numbers, home, box, warnings, its TOML."""
     hexapod = built(source)
     original = _of_text(source.text)
-    values = {key: value if isinstance(value, str) else value.tolist() for key, value in hexapod.values().items()}
     return {
         "name": hexapod.name,
         "digest": hexapod.digest,
         "warnings": list(hexapod.warnings),
-        "values": values,
+        "values": _values(hexapod),
         "chief": [
             {
                 "key": chief.key,
@@ -205,8 +205,34 @@ def described(source: Source) -> dict[str, Any]:
         ],
         "home": home(hexapod),
         "box": box(hexapod),
+        "leg": _leg_at(hexapod, home(hexapod)),
         "toml": source.text if source.changes == "{}" else hexapod.to_toml(),
     }
+
+
+def _shown(key: str) -> str:
+    """A key as the form has it: angles in degrees, as people write them."""
+    return f"{key}_deg" if KEYS[key].dimension == "angle" else key
+
+
+def _values(hexapod: Hexapod) -> dict[str, Any]:
+    """Every number of a design by the key of its field."""
+    values: dict[str, Any] = {}
+    for key, value in hexapod.values().items():
+        if key in TEXT_KEYS:
+            values[key] = value
+        elif KEYS[key].dimension == "angle":
+            values[_shown(key)] = np.round(np.degrees(value), 12).tolist()
+        else:
+            values[key] = value.tolist()
+    return values
+
+
+def _leg_at(hexapod: Hexapod, six: list[float]) -> float:
+    """Mean distance of the legs' joints at a pose, m: how long to draw the parts of a leg."""
+    pose = Pose.from_rpy(*six[:3], *np.radians(six[3:]))
+    ends = pose.position + hexapod.platform_joints @ pose.matrix.T
+    return float(np.linalg.norm(ends - hexapod.base_joints, axis=1).mean())
 
 
 def home(hexapod: Hexapod) -> list[float]:
@@ -230,13 +256,11 @@ def box(hexapod: Hexapod) -> dict[str, list[float]]:
     As far as the legs' stroke takes the platform where the design limits it, otherwise a quarter of a leg's length.
     """
     at = np.array(home(hexapod))
-    base, platform = hexapod.base_joints, hexapod.platform_joints
-    leg = float(np.linalg.norm(at[:3] + platform - base, axis=1).mean())
-    reach = 0.25 * leg
+    reach = 0.25 * _leg_at(hexapod, at.tolist())
     if hexapod.limits.leg_length is not None:
         pairs = np.asarray(hexapod.limits.leg_length).reshape(-1, 2)
         reach = min(reach, 0.6 * float((pairs[:, 1] - pairs[:, 0]).mean()))
-    turn = min(30.0, float(np.degrees(reach / max(_radius(platform), 1e-9))))
+    turn = min(30.0, float(np.degrees(reach / max(_radius(hexapod.platform_joints), 1e-9))))
     span = np.array([_rounded(v) for v in (reach, reach, reach, turn, turn, turn)])
     return {"low": np.round(at - span, 9).tolist(), "high": np.round(at + span, 9).tolist()}
 

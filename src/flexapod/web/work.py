@@ -8,7 +8,7 @@ from multiprocessing.connection import Connection
 from typing import Any
 
 from flexapod.errors import FlexapodError
-from flexapod.web import clouds
+from flexapod.web import clouds, playing
 
 Message = tuple[dict[str, Any], bytes]
 
@@ -16,6 +16,7 @@ KINDS: dict[str, Callable[[dict[str, Any]], Iterator[Message]]] = {
     "cloud": clouds.cloud,
     "slice": clouds.slice_map,
     "worst": clouds.worst,
+    "time": playing.simulation,
 }
 
 
