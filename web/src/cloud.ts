@@ -87,17 +87,19 @@ export class Cloud {
   }
 
   private range(): void {
-    let [low, high, top] = [Infinity, 0, 0]
+    let [low, high, top, least] = [Infinity, 0, 0, Infinity]
     for (let i = 0; i < this.filled; i++) {
       const condition = this.data[i * WIDTH + 7]
       const index = this.data[i * WIDTH + 6]
       if (condition < low) low = condition
       if (condition > high && condition < 1e9) high = condition
       if (index > top) top = index
+      if (index < least) least = index
     }
     if (this.filled === 0 || low === Infinity) return
     this.x = { ...this.x, min: low / 1.05, max: Math.max(high * 1.05, low * 1.2) }
-    this.y = { ...this.y, max: top * 1.04 || 1 }
+    const room = 0.05 * (top - least)
+    this.y = { ...this.y, min: least > 0.4 * top ? least - room : 0, max: top + room || 1 }
   }
 
   private paint(): void {

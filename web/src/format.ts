@@ -10,12 +10,14 @@ export function sig(value: number | null | undefined, digits = 5): string {
     const [mantissa, exponent] = value.toExponential(Math.min(digits, 4) - 1).split('e')
     return `${mantissa.replace('-', '−')}e${exponent.replace('+', '').replace('-', '−')}`
   }
-  return value.toPrecision(digits).replace(/^-/, '−')
+  const text = size >= 10 ** digits ? String(Number(value.toPrecision(digits))) : value.toPrecision(digits)
+  return text.replace(/^-/, '−')
 }
 
 /** A number for an input field: all the digits that matter, none of the rounding. */
 export function field(value: number): string {
-  return String(Number(value.toPrecision(12)))
+  const exact = Number(value.toPrecision(12))
+  return Math.abs(exact) >= 1e6 ? exact.toExponential().replace('e+', 'e') : String(exact)
 }
 
 /** A number typed by a person: decimal comma, spaces and a typographic minus are all right. NaN if it is none. */
@@ -25,7 +27,7 @@ export function parsed(text: string): number {
 }
 
 export function percent(share: number | null): string {
-  return share === null ? '–' : `${(100 * share).toFixed(0)} %`
+  return share === null ? '–' : `${Math.round(100 * share) || 0} %`
 }
 
 export function duration(seconds: number): string {

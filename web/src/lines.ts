@@ -23,6 +23,8 @@ export class LinePlot {
   private hidden = new Set<string>()
   private head: HTMLElement | null = null
 
+  legend = true
+
   constructor(
     private readonly height: () => number,
     private readonly clicked: ((x: number) => void) | null = null,
@@ -85,11 +87,11 @@ export class LinePlot {
     return {
       width: this.element.clientWidth,
       height: this.height(),
-      padding: [8, 12, 0, 0],
+      padding: [8, 24, 0, 0],
       cursor: { drag: { x: true, y: false }, points: { size: 6 }, ...(this.sync ? { sync: { key: this.sync } } : {}) },
-      legend: { live: true },
+      legend: { show: this.legend },
       scales: {
-        x: { time: false, distr: lines.x.log ? 3 : 1, min: lines.x.min, max: lines.x.max },
+        x: { time: false, distr: lines.x.log ? 3 : 1, min: lines.x.min, max: lines.x.max, range: (_u, min, max) => [min ?? lines.x.min, max ?? lines.x.max] },
         y: { distr: lines.y.log ? 3 : 1, min: lines.y.min, max: lines.y.max, range: (_u, min, max) => [min, max] },
       },
       axes: [
@@ -133,6 +135,14 @@ export class LinePlot {
     c.restore()
   }
 
+  /** Show or hide a line by its name. */
+  reveal(name: string, on: boolean): void {
+    if (on) this.hidden.delete(name)
+    else this.hidden.add(name)
+    const at = this.plot?.series.findIndex((s) => s.label === name) ?? -1
+    if (at > 0) this.plot!.setSeries(at, { show: on })
+  }
+
   /** A line that follows a playback. */
   playhead(x: number | null): void {
     if (!this.plot || !this.head) return
@@ -169,7 +179,11 @@ export function span(series: ArrayLike<number | null>[], log: boolean, decades =
     }
   }
   if (!(high >= low)) return log ? [0.1, 10] : [-1, 1]
-  if (log) return [Math.max(low / 1.5, high / 10 ** decades), Math.max(high * 1.5, low * 4)]
+  if (log) {
+    const all = series.flatMap((values) => Array.from(values).filter((v): v is number => v !== null && Number.isFinite(v) && v > 0)).sort((a, b) => a - b)
+    const top = Math.min(high * 1.5, all[all.length >> 1] * 3e4) // an undamped peak has no top worth showing
+    return [Math.max(all[Math.floor(all.length / 50)] / 2, top / 10 ** decades), Math.max(top, low * 4)]
+  }
   const room = 0.06 * (high - low) || 0.1 * Math.abs(high) || 1
   return [low - room, high + room]
 }

@@ -53,7 +53,7 @@ function label(text: string, colour: string): THREE.Sprite {
   const texture = new THREE.CanvasTexture(canvas)
   texture.colorSpace = THREE.SRGBColorSpace
   const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: texture, sizeAttenuation: false, depthTest: false, depthWrite: false }))
-  sprite.scale.setScalar(0.045)
+  sprite.scale.setScalar(0.021)
   sprite.renderOrder = 10
   sprite.userData.label = text
   sprite.userData.colour = colour
@@ -69,7 +69,6 @@ interface Leg {
 
 export class Machine {
   readonly root = new THREE.Group()
-  readonly centre = new THREE.Vector3()
   radius = 1
   private readonly base = new THREE.Group()
   private readonly platform = new THREE.Group()
@@ -77,6 +76,7 @@ export class Machine {
   private labels: THREE.Sprite[] = []
   private joints: { base: THREE.Vector3[]; platform: THREE.Vector3[] } = { base: [], platform: [] }
   private readonly rest = { position: new THREE.Vector3(), turn: new THREE.Quaternion() }
+  private readonly masses = new THREE.Vector3()
   private lowerLength = 1
   private size = 1
   private key = ''
@@ -101,6 +101,12 @@ export class Machine {
     this.rest.turn.setFromRotationMatrix(matrix)
     this.place(...this.moved)
     return rebuilt
+  }
+
+  /** The outermost points of the machine as it stands. */
+  extent(): THREE.Vector3[] {
+    const up = this.joints.platform.map((p) => p.clone().multiplyScalar(1.2).applyQuaternion(this.rest.turn).add(this.rest.position))
+    return [...this.joints.base.map((p) => p.clone().multiplyScalar(1.15)), ...up, this.masses.clone().applyQuaternion(this.rest.turn).add(this.rest.position)]
   }
 
   /** Displace platform and base from the pose shown. */
@@ -160,14 +166,14 @@ export class Machine {
     this.size = span
     this.lowerLength = 0.58 * legAtHome
     this.radius = 0.62 * Math.hypot(2 * span, legAtHome)
-    this.centre.set(0, 0, 0.5 * legAtHome)
     const t = theme()
     const thickness = 0.06 * span
     this.base.add(plate(this.joints.base, -thickness, phong(t.dark ? 0x47525f : 0x9aa5b1)))
     this.platform.add(plate(this.joints.platform, thickness, phong(t.dark ? 0x7d93a8 : 0xb7c6d6, { transparent: true, opacity: 0.9 })))
     this.frame(this.base, 0.45 * span, t.text)
     this.frame(this.platform, 0.38 * span, t.text)
-    this.massCentre(vector(geometry.mass_center), t)
+    this.masses.copy(vector(geometry.mass_center))
+    this.massCentre(this.masses, t)
     this.buildLegs(geometry, t.dark)
     this.showLabels(this.labelsShown)
     if (this.colours.length) this.paint(this.colours, this.exceeded)
@@ -214,12 +220,13 @@ export class Machine {
     ]
     const r = 0.008 * this.size
     for (const [name, direction, colour] of axes) {
-      const material = phong(colour, { emissive: colour, emissiveIntensity: 0.35 })
+      const material = phong(colour, { emissive: colour, emissiveIntensity: 0.35, depthTest: false, transparent: true })
       const shaft = new THREE.Mesh(new THREE.CylinderGeometry(r, r, length, 8), material)
       const tip = new THREE.Mesh(new THREE.ConeGeometry(3 * r, 9 * r, 12), material)
       for (const part of [shaft, tip]) part.quaternion.setFromUnitVectors(Y, direction)
       shaft.position.copy(direction).multiplyScalar(length / 2)
       tip.position.copy(direction).multiplyScalar(length)
+      shaft.renderOrder = tip.renderOrder = 4 // seen through the plates
       const name3d = label(name, text)
       name3d.position.copy(direction).multiplyScalar(length + 20 * r)
       this.labels.push(name3d)

@@ -107,12 +107,12 @@ function shortcuts(scene: Scene): void {
 function readout(): HTMLElement {
   const cell = (name: string, id: string, unit: string) => {
     const value = h('output', { id })
-    return { value, element: h('div', { class: 'figure' }, h('span', { class: 'name' }, name), value, h('span', { class: 'unit' }, unit)) }
+    return { value, element: h('div', { class: 'figure' }, h('span', { class: 'name' }, name, unit && `, ${unit}`), value) }
   }
   const index = cell('Index ω₁', 'index', 'rad/s')
   const frequency = cell('f₁', 'frequency', 'Hz')
   const condition = cell('cond(H)', 'condition', '')
-  const force = cell('Largest leg force', 'force', 'N')
+  const force = cell('Max force', 'force', 'N')
   const limits = cell('Limits', 'limits', '')
   const spoken = status({ class: 'hidden' })
   const speak = settled(900, () => {

@@ -70,7 +70,7 @@ class NumberRow {
     this.chief = chief
     const value = this.current()
     this.slider.value = String(scaleOf(chief).at(value))
-    if (document.activeElement !== this.number || parsed(this.number.value) !== value) this.number.value = field(Number(value.toPrecision(8)))
+    if (document.activeElement !== this.number || parsed(this.number.value) !== value) this.number.value = field(Number(value.toPrecision(6)))
     this.undo.style.visibility = chief.key in page.changes ? 'visible' : 'hidden'
     this.fail('')
   }

@@ -3,7 +3,7 @@
 import { ask, Live, Refused } from './api'
 import { twist, type Animation } from './animation'
 import { CATEGORIES, DASHES, onTheme } from './colours'
-import { button, freshId, h, select, settled, status } from './dom'
+import { button, freshId, h, select, settled, status, svg } from './dom'
 import { csvButton, figureButtons, saveCsv } from './download'
 import { field, parsed, sig } from './format'
 import { LinePlot, span, type Lines } from './lines'
@@ -41,6 +41,7 @@ export function responsePanel(animation: Animation): HTMLElement {
   loss.addEventListener('change', () => live.request())
   const grid = h('div', { class: 'panels' })
   const plots = COORDINATES.map(() => new LinePlot(() => (layout.element.value === 'all' ? 190 : 430), (x) => shakeAt(x)))
+  for (const plot of plots) plot.legend = false
   grid.append(...plots.map((p) => p.element))
 
   const request = () => ({ ...store.question(), quantity: what.element.value, loss_factor: parsed(loss.value) })
@@ -64,9 +65,29 @@ export function responsePanel(animation: Animation): HTMLElement {
       marks: a.modes.map((m) => ({ at: m.omega * k, name: m.name })),
     }
   }
+  const keys = h('div', { class: 'bar tools keys', role: 'group', 'aria-label': 'Lines shown' })
+  let keyed = ''
+  const drawKeys = (names: string[]) => {
+    if (keyed === names.join()) return
+    keyed = names.join()
+    keys.replaceChildren(
+      h('span', { class: 'hint' }, 'by'),
+      ...names.map((name, i) => {
+        const sample = svg('svg', { width: 22, height: 8, 'aria-hidden': 'true' }, svg('line', { x1: 0, x2: 22, y1: 4, y2: 4, stroke: CATEGORIES[i], 'stroke-width': 2.5, 'stroke-dasharray': DASHES[i].join(' ') }))
+        const key = h('button', { type: 'button', class: 'key', 'aria-pressed': 'true' }, sample, name)
+        key.addEventListener('click', () => {
+          const on = key.getAttribute('aria-pressed') !== 'true'
+          key.setAttribute('aria-pressed', String(on))
+          for (const plot of plots) plot.reveal(name, on)
+        })
+        return key
+      }),
+    )
+  }
   const show = () => {
     if (!answer) return
     note.textContent = ''
+    drawKeys(answer.inputs)
     const one = layout.element.value !== 'all'
     output.element.hidden = !one
     grid.classList.toggle('one', one)
@@ -102,8 +123,9 @@ export function responsePanel(animation: Animation): HTMLElement {
     h('div', { class: 'bar tools' }, what.element, layout.element, output.element, hertz.element, h('label', { for: loss.id }, 'loss factor'), loss),
     note,
     shaker.element,
+    keys,
     grid,
-    h('p', { class: 'hint' }, 'Exact tangent at rest, with damping. Dotted lines: damped natural frequencies. Click a plot to shake the base there; drag across to zoom, double-click to see all; click a name in a legend to hide its line.'),
+    h('p', { class: 'hint' }, 'Exact tangent at rest, with damping. Dotted lines: damped natural frequencies. Click a plot to shake the base there; drag across to zoom, double-click to see all; click a name above to hide its line.'),
   )
   output.element.hidden = true
   return element

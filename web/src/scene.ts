@@ -90,9 +90,11 @@ export class Scene {
 
   /** Look from a standard side, everything in view. */
   look(from: Standard): void {
-    const { centre, radius } = this.machine
-    const narrow = Math.min(1, this.camera.aspect)
-    const distance = (radius / Math.sin((this.camera.fov * Math.PI) / 360) / narrow) * 1.02
+    const points = this.machine.extent()
+    const middle = new THREE.Box3().setFromPoints(points)
+    const centre = middle.getCenter(new THREE.Vector3())
+    const radius = this.machine.radius
+    const distance = this.distance(points, centre, from)
     this.camera.near = distance / 50
     this.camera.far = distance * 10
     this.camera.position.copy(centre).addScaledVector(new THREE.Vector3(...DIRECTIONS[from]).normalize(), distance)
@@ -102,6 +104,18 @@ export class Scene {
     this.light.position.copy(centre).add(new THREE.Vector3(0.6, -1, 1.6).multiplyScalar(4 * radius))
     this.light.target.position.copy(centre)
     this.draw()
+  }
+
+  /** How far away the camera must be to have all points in view. */
+  private distance(points: THREE.Vector3[], centre: THREE.Vector3, from: Standard): number {
+    const back = new THREE.Vector3(...DIRECTIONS[from]).normalize()
+    const right = new THREE.Vector3(0, 0, 1).cross(back).normalize()
+    const up = back.clone().cross(right)
+    const half = Math.tan((this.camera.fov * Math.PI) / 360) / 1.12
+    return points.reduce((most, point) => {
+      const p = point.clone().sub(centre)
+      return Math.max(most, p.dot(back) + Math.max(Math.abs(p.dot(up)) / half, Math.abs(p.dot(right)) / (half * this.camera.aspect)))
+    }, 0)
   }
 
   /** The floor under the base, with lines at a round distance. */

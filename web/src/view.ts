@@ -22,10 +22,10 @@ function painted(s: Snapshot): Painted | null {
   if (!values || values.some((v) => v === null)) return null
   const numbers = values as number[]
   const most = Math.max(...numbers.map(Math.abs)) || 1
-  const both = by === 'force'
+  const both = by === 'force' && Math.min(...numbers) < 0
   const [low, high] = both ? [-most, most] : [0, most]
   const map = both ? signed : cividis
-  const label = both ? 'static force, N (+ compression)' : by === 'energy' ? 'static strain energy, J' : `strain energy share, mode ${page.mode + 1}`
+  const label = by === 'force' ? 'static force, N (+ compression)' : by === 'energy' ? 'static strain energy, J' : `strain energy share, mode ${page.mode + 1}`
   return { colours: numbers.map((v) => css(map((v - low) / (high - low)))), label, low, high, map }
 }
 
@@ -50,9 +50,11 @@ function colourBar(): { element: HTMLElement; show(p: Painted | null): void } {
   }
 }
 
+const NAMES = { iso: 'Iso', front: 'Front', side: 'Side', top: 'Top' }
+
 export function viewPanel(scene: Scene): HTMLElement {
   const legend = colourBar()
-  const colour = select('Colour of the legs', [['force', 'Legs by force'], ['energy', 'Legs by strain energy'], ['strain', 'Legs by mode’s strain'], ['plain', 'Plain legs']] as const, page.colour, (value) => store.set({ colour: value }))
+  const colour = select('Colour of the legs', [['force', 'Legs: force'], ['energy', 'Legs: energy'], ['strain', 'Legs: strain in mode'], ['plain', 'Legs: plain']] as const, page.colour, (value) => store.set({ colour: value }))
   const labels = button('Labels', () => {
     scene.machine.showLabels(!scene.machine.labelsShown)
     labels.setAttribute('aria-pressed', String(scene.machine.labelsShown))
@@ -85,13 +87,12 @@ export function viewPanel(scene: Scene): HTMLElement {
   store.on(['colour'], () => colour.set(page.colour))
   onTheme(show)
   const file = () => (page.design?.name ?? 'hexapod').replace(/[^\w.-]+/g, '-')
-  const views = (['iso', 'front', 'side', 'top'] as const).map((name) => button(name[0].toUpperCase() + name.slice(1), () => scene.look(name), { class: 'quiet', title: `${name} view` }))
+  const views = (['iso', 'front', 'side', 'top'] as const).map((name) => button(NAMES[name], () => scene.look(name), { class: 'quiet', title: `${name} view` }))
   return h(
     'section',
     { class: 'view', 'aria-label': 'The machine in 3-D' },
     h('div', { class: 'bar tools over' }, h('span', { role: 'group', 'aria-label': 'Standard views' }, ...views), colour.element, labels, h('span', { class: 'spring' }), button('PNG', () => scene.savePng(file()), { class: 'quiet', 'aria-label': '3-D view as PNG' }), button('SVG', () => void scene.saveSvg(file()), { class: 'quiet', 'aria-label': '3-D view as SVG' })),
-    scene.element,
-    legend.element,
+    h('div', { class: 'stage' }, scene.element, legend.element),
     notes,
   )
 }

@@ -155,11 +155,11 @@ class Chief(NamedTuple):
 
 
 CHIEF = (
-    Chief("platform.mass", "Platform and payload", "kg", lambda h: h.platform_mass),
+    Chief("platform.mass", "Platform + payload", "kg", lambda h: h.platform_mass),
     Chief("legs.stiffness", "Leg stiffness", "N/m", lambda h: float(h.legs.stiffness.mean())),
     Chief("legs.damping.prismatic", "Leg damping", "N s/m", lambda h: float(h.legs.damping.prismatic.mean())),
-    Chief("base.radius", "Base joint radius", "m", lambda h: _radius(h.base_joints)),
-    Chief("platform.radius", "Platform joint radius", "m", lambda h: _radius(h.platform_joints)),
+    Chief("base.radius", "Base radius", "m", lambda h: _radius(h.base_joints)),
+    Chief("platform.radius", "Platform radius", "m", lambda h: _radius(h.platform_joints)),
     Chief("platform.mass_center[2]", "Mass centre, z", "m", lambda h: float(h.platform_mass_center[2]), False),
     Chief("legs.lower.mass", "Lower leg mass", "kg", lambda h: float(h.legs.lower.mass.mean())),
     Chief("legs.upper.mass", "Upper leg mass", "kg", lambda h: float(h.legs.upper.mass.mean())),
