@@ -109,9 +109,9 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
 
   std::vector<Excitation> driven;
   for (const Input& e : excitations) driven.emplace_back(e.data(), e.size());
-  Output displacement = nan_filled({n, m, 6}), work = nan_filled({n, m, 4}), platform = nan_filled({n, kept, 24}),
+  Output displacement = nan_filled({n, m, 6}), relative = nan_filled({n, m, 6}), work = nan_filled({n, m, 4}), platform = nan_filled({n, kept, 24}),
          base = nan_filled({n, kept, 24}), outcome({n}), time({n}), last({n, 24}), counts({n, 3});
-  double *x = displacement.data(), *p = platform.data(), *b = base.data(), *W = work.data(), *how = outcome.data();
+  double *x = displacement.data(), *u = relative.data(), *p = platform.data(), *b = base.data(), *W = work.data(), *how = outcome.data();
   double *ended = time.data(), *c = counts.data();
   auto* final_motion = reinterpret_cast<Motion<double>*>(last.data());
   std::vector<std::atomic<double>> done(n);
@@ -119,7 +119,7 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
   crew.run(n, static_cast<size_t>(o[7]), progress, done, [&](size_t i) {
     Simulation simulation(rig_input(design + i * design_size, universal, setup[i], works), driven[3 * i],
                           driven[3 * i + 1], driven[3 * i + 2], tolerances);
-    const Samples samples{times.data() + i * m, m, x + i * m * 6, kept ? p + i * m * 24 : nullptr,
+    const Samples samples{times.data() + i * m, m, x + i * m * 6, u + i * m * 6, kept ? p + i * m * 24 : nullptr,
                           kept ? b + i * m * 24 : nullptr, W + i * m * 4};
     how[i] = static_cast<double>(simulation.run(samples, crew.stop, done[i]));
     done[i] = 1.0;
@@ -128,7 +128,7 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
     const Counts& count = simulation.counts();
     c[3 * i] = count.accepted, c[3 * i + 1] = count.rejected, c[3 * i + 2] = count.evaluations;
   });
-  return nb::make_tuple(displacement.array(), platform.array(), base.array(), work.array(), outcome.array(),
+  return nb::make_tuple(displacement.array(), relative.array(), platform.array(), base.array(), work.array(), outcome.array(),
                         time.array(), last.array(), counts.array());
 }
 

@@ -103,6 +103,11 @@ class Rig {
                             (b.turn * turn.resolved(in_.base.R)).log());
   }
 
+  /// The same as seen from the base, in its axes: what a platform that rides with the base rigidly does not have.
+  Vec6<double> relative(const State& y) const {
+    return Vec6<double>::of(get(y, 0), (Quaternion::exp(get(y, 3)) * chart_).log());
+  }
+
   /// Where the legs are: base axes.
   Geometry<double> geometry(const State& y) const { return {machine_.design, pose(y), Pose<double>()}; }
   Pose<double> rest() const { return rest_; }

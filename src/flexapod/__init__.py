@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOMES = {
-    "errors": ["ArgumentError", "DesignError", "FlexapodError", "KinematicsError", "PoseError", "SingularPoseError"],
+    "errors": [
+        "ArgumentError",
+        "DesignError",
+        "FlexapodError",
+        "KinematicsError",
+        "PoseError",
+        "SimulationError",
+        "SingularPoseError",
+    ],
     "hexapod": ["Damping", "Hexapod", "LegPart", "Legs", "Limits", "load", "packaged_designs", "template"],
     "pose": ["Motion", "Pose"],
     "kinematics": [
@@ -51,6 +59,11 @@ _HOMES = {
         "stability_index",
     ],
     "linear": ["DampedModes", "Linearisation", "StateSpace", "linearise"],
+    "excitation": ["Excitation", "half_sine_shock", "harmonic", "polynomial", "sine_sweep", "smooth_step"],
+    "recordings": ["read_time_series", "time_series"],
+    "spectra": ["Spectrum", "flat_spectrum", "ground_noise", "random_motion", "sea_motion", "sea_spectrum", "vc_curve"],
+    "trajectory": ["Run"],
+    "simulation": ["simulate", "simulate_many"],
     "response": ["random_response", "transmissibility"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
@@ -72,10 +85,15 @@ def __dir__() -> list[str]:
 if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.dynamics import *  # noqa: F403
     from flexapod.errors import *  # noqa: F403
+    from flexapod.excitation import *  # noqa: F403
     from flexapod.hexapod import *  # noqa: F403
     from flexapod.kinematics import *  # noqa: F403
     from flexapod.linear import *  # noqa: F403
     from flexapod.modal import *  # noqa: F403
     from flexapod.pose import *  # noqa: F403
+    from flexapod.recordings import *  # noqa: F403
     from flexapod.response import *  # noqa: F403
+    from flexapod.simulation import *  # noqa: F403
+    from flexapod.spectra import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403
+    from flexapod.trajectory import *  # noqa: F403
