@@ -167,8 +167,8 @@ export class LinePlot {
   }
 }
 
-/** Least and greatest of several series, with a little room; for logarithmic axes at most some decades. */
-export function span(series: ArrayLike<number | null>[], log: boolean, decades = 8): [number, number] {
+/** Least and greatest of several series, with a little room; logarithmic axes span at most some decades, others at least `least`. */
+export function span(series: ArrayLike<number | null>[], log: boolean, decades = 7, least = 0): [number, number] {
   let [low, high] = [Infinity, -Infinity]
   for (const values of series) {
     for (let i = 0; i < values.length; i++) {
@@ -180,10 +180,12 @@ export function span(series: ArrayLike<number | null>[], log: boolean, decades =
   }
   if (!(high >= low)) return log ? [0.1, 10] : [-1, 1]
   if (log) {
-    const all = series.flatMap((values) => Array.from(values).filter((v): v is number => v !== null && Number.isFinite(v) && v > 0)).sort((a, b) => a - b)
-    const top = Math.min(high * 1.5, all[all.length >> 1] * 3e4) // an undamped peak has no top worth showing
-    return [Math.max(all[Math.floor(all.length / 50)] / 2, top / 10 ** decades), Math.max(top, low * 4)]
+    const sorted = series.map((values) => Array.from(values).filter((v): v is number => v !== null && Number.isFinite(v) && v > 0).sort((a, b) => a - b))
+    const usual = Math.max(...sorted.map((values) => values[values.length >> 1] ?? 0))
+    const top = Math.min(high * 1.5, usual * 1e4) // an undamped peak has no top worth showing
+    const seen = sorted.flat().filter((v) => v > top / 10 ** decades).sort((a, b) => a - b)
+    return [(seen[Math.floor(seen.length / 50)] ?? low) / 2, Math.max(top, low * 4)]
   }
-  const room = 0.06 * (high - low) || 0.1 * Math.abs(high) || 1
+  const room = Math.max(0.06 * (high - low), least) || 0.1 * Math.abs(high) || 1
   return [low - room, high + room]
 }

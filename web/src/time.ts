@@ -48,7 +48,7 @@ export function timePanel(animation: Animation): HTMLElement {
   }
   const file = h('input', { type: 'file', accept: '.csv,text/csv', id: freshId('csv'), class: 'file' })
   let csv = ''
-  const csvField = h('span', { class: 'field' }, h('label', { for: file.id }, 'columns t, x, y, z, roll, pitch, yaw (s, m, rad)'), file)
+  const csvField = h('span', { class: 'field' }, h('label', { for: file.id }, 'columns time and x, y, z, roll, pitch, yaw (s, m, rad; or z_mm, roll_deg…)'), file)
   const wants: Record<Kind, HTMLElement[]> = {
     harmonic: [fields.amplitude.element, fields.frequency.element],
     sweep: [fields.amplitude.element, fields.frequency.element, fields.end.element],
@@ -145,7 +145,7 @@ class Playback {
       ['Leg forces', 'force, N', ['leg 1', 'leg 2', 'leg 3', 'leg 4', 'leg 5', 'leg 6'], [19, 20, 21, 22, 23, 24].map((c) => column(c))],
     ]
     sets.forEach(([title, label, names, values], i) => {
-      const [min, max] = span(values, false)
+      const [min, max] = span(values, false, 0, 1e-6) // a nanometre: what rounding leaves looks like nothing
       const colours = i < 2 ? [0, 1, 2, 0, 1, 2] : [0, 1, 2, 3, 4, 5]
       const series = names.map((name, k) => ({ name, colour: CATEGORIES[colours[k]], dash: DASHES[k], values: values[k] }))
       this.plots[i].show({ title, x, y: { label, min, max }, at: t, series, marks: [] })

@@ -39,8 +39,8 @@ def snapshot(question: Question) -> dict[str, Any]:
         "sampling_time": fx.sampling_time(modes.omega[-1]),
         "legs": {
             "length": fx.inverse_kinematics(hexapod, pose),
-            "universal": np.degrees(angles.universal),
-            "spherical": np.degrees(angles.spherical),
+            "universal": np.round(np.degrees(angles.universal), 9) + 0.0,
+            "spherical": np.round(np.degrees(angles.spherical), 9) + 0.0,
             **static,
         },
         "leg_distance": fx.leg_distance(hexapod, pose),

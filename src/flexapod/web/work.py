@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import traceback
 from collections.abc import Callable, Iterator
 from multiprocessing.connection import Connection
 from typing import Any
@@ -36,3 +37,6 @@ def serve(pipe: Connection) -> None:
             pipe.send(({"type": "failed", "error": str(error)}, b""))
         except (BrokenPipeError, ConnectionResetError):
             return
+        except Exception as error:  # a fault of ours: told to the page, and in full on the server's terminal
+            traceback.print_exc()
+            pipe.send(({"type": "failed", "error": f"internal error ({type(error).__name__}); see the server"}, b""))
