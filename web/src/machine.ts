@@ -53,7 +53,6 @@ function label(text: string, colour: string): THREE.Sprite {
   const texture = new THREE.CanvasTexture(canvas)
   texture.colorSpace = THREE.SRGBColorSpace
   const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: texture, sizeAttenuation: false, depthTest: false, depthWrite: false }))
-  sprite.scale.setScalar(0.021)
   sprite.renderOrder = 10
   sprite.userData.label = text
   sprite.userData.colour = colour
@@ -84,6 +83,7 @@ export class Machine {
   private colours: string[] = []
   private moved: [Twist, Twist] = [noTwist(), noTwist()]
   labelsShown = true
+  private labelScale = 0.02
 
   constructor() {
     this.root.add(this.base, this.platform)
@@ -149,6 +149,12 @@ export class Machine {
     })
   }
 
+  /** Size of the labels, in heights of the view. */
+  set labelSize(size: number) {
+    this.labelScale = size
+    for (const item of this.labels) item.scale.setScalar(size)
+  }
+
   showLabels(on: boolean): void {
     this.labelsShown = on
     for (const item of this.labels) item.visible = on
@@ -176,6 +182,7 @@ export class Machine {
     this.massCentre(this.masses, t)
     this.buildLegs(geometry, t.dark)
     this.showLabels(this.labelsShown)
+    this.labelSize = this.labelScale
     if (this.colours.length) this.paint(this.colours, this.exceeded)
   }
 

@@ -13,7 +13,7 @@ export class Runner {
 
   constructor() {
     this.cancel.disabled = true
-    this.bar.style.visibility = 'hidden'
+    this.bar.hidden = true
   }
 
   /** Run a job; one that still runs is stopped first. Resolves to whether it came to its end. */
@@ -23,7 +23,7 @@ export class Runner {
     this.running = mine
     this.cancel.disabled = false
     this.bar.removeAttribute('value')
-    this.bar.style.visibility = 'visible'
+    this.bar.hidden = false
     this.words.classList.remove('wrong')
     this.words.textContent = 'Starting…'
     try {
@@ -42,7 +42,7 @@ export class Runner {
       if (this.running === mine) {
         this.running = null
         this.cancel.disabled = true
-        this.bar.style.visibility = 'hidden'
+        this.bar.hidden = true
       }
     }
   }

@@ -124,7 +124,7 @@ export class Scene {
     const t = theme()
     const lines = new THREE.GridHelper(step * 20, 20, t.grid, t.grid)
     lines.rotation.x = Math.PI / 2
-    const z = -0.07 * this.machine.radius
+    const z = -0.2 * this.machine.radius
     lines.position.z = z
     this.grid.clear()
     this.grid.add(lines)
@@ -138,6 +138,7 @@ export class Scene {
     this.renderer.setSize(clientWidth, clientHeight, false)
     this.camera.aspect = clientWidth / clientHeight
     this.camera.updateProjectionMatrix()
+    this.machine.labelSize = (24 / clientHeight) * 2 * Math.tan((this.camera.fov * Math.PI) / 360)
     this.render()
   }
 

@@ -95,14 +95,15 @@ function cloudPart(): Part {
   store.on(['snapshot'], () => cloud.mark(page.snapshot?.index ?? null, page.snapshot?.condition ?? null))
   onTheme(cloud.draw)
   seed.addEventListener('change', () => void run())
-  const worst = worstButton(runner)
+  const worst = worstPart()
   const csv = () => saveCsv('workspace', [...POSE_HEAD, 'index_rad_s', 'cond_h'], cloud.rows())
   const element = h(
     'section',
     { 'aria-label': 'Cloud of poses', class: 'card', id: 'cloud' },
     h('div', { class: 'bar' }, h('h3', {}, 'Index against cond(H)'), h('span', { class: 'spring' }), csvButton('Cloud', csv), figureButtons(() => 'workspace', 'Cloud', () => cloud.figure())),
-    h('div', { class: 'bar tools' }, points.element, h('label', { for: seed.id }, 'seed'), seed, button('Run', () => void run()), worst),
+    h('div', { class: 'bar tools' }, points.element, h('label', { for: seed.id }, 'seed'), seed, button('Run', () => void run()), worst.button),
     runner.element,
+    worst.element,
     cloud.element,
     summary,
   )
@@ -110,17 +111,22 @@ function cloudPart(): Part {
 }
 
 /** Finds the least index in the box and moves the machine there. */
-function worstButton(runner: Runner): HTMLElement {
-  return button(
+function worstPart(): { button: HTMLElement; element: HTMLElement } {
+  const runner = new Runner()
+  const element = h('div', { id: 'worst', hidden: true }, runner.element)
+  const find = button(
     'Worst pose',
-    () =>
+    () => {
+      element.hidden = false
       void runner.run('worst', { ...store.question(), box: page.box }, (message) => {
         if (message.type !== 'found') return
         setPose(message.pose as number[])
         setTimeout(() => runner.say(message.words as string))
-      }),
+      })
+    },
     { title: 'Find the lowest index in the box and move there' },
   )
+  return { button: find, element }
 }
 
 function slicePart(): Part {

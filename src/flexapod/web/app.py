@@ -67,12 +67,14 @@ def application(start: Path | None = None, hosts: Iterable[str] = ()) -> Starlet
         Route("/api/jobs/{name}", stop_job, methods=["DELETE"]),
         Mount("/", StaticFiles(directory=STATIC, html=True)),
     ]
-    return Starlette(
+    app = Starlette(
         routes=routes,
         middleware=[Middleware(Guard, hosts=tuple(hosts))],
         exception_handlers={FlexapodError: _refused},  # type: ignore[dict-item]
         lifespan=lifespan,
     )
+    app.state.jobs = jobs
+    return app
 
 
 def _beginning(start: Path | None) -> dict[str, Any]:

@@ -101,7 +101,7 @@ def _line_of(text: str, key: str) -> int:
     table, _, last = key.rpartition(".")
     here = ""
     for number, line in enumerate(text.splitlines(), 1):
-        header = re.match(r"\s*\[([^\[\]]+)\]", line)
+        header = re.match(r"\s*\[([\w.]+)\]\s*(#.*)?$", line)
         if header:
             here = header[1].strip()
         elif here == table and re.match(rf"\s*{re.escape(last)}(_\w+)?\s*=", line):

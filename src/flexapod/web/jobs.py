@@ -57,6 +57,10 @@ class Jobs:
         while self._idle:
             self._idle.pop().stop()
 
+    def running(self) -> list[str]:
+        """Names of the jobs that run or wait."""
+        return list(self._cancelled)
+
     def cancel(self, name: str) -> bool:
         """Stop a job; False where no job of this name runs. Names are known only to the page that started the job."""
         known = name in self._cancelled
