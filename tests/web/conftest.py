@@ -31,7 +31,8 @@ QUIET = ("GPU stall due to ReadPixels", "status of 422", "status of 421", "statu
 def server() -> Iterator[str]:
     """Address of `flexapod serve` on a free port."""
     command = [sys.executable, "-m", "flexapod", "serve", "mukherjee-ii", "--port", "0", "--json"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env={**os.environ, "PYTHONUNBUFFERED": "1"}) as run:
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as run:
         assert run.stdout is not None
         yield json.loads(run.stdout.readline())["url"]
         run.terminate()

@@ -126,7 +126,8 @@ def test_a_cloud_is_the_library_s_at_those_poses(client: TestClient) -> None:
 
 def test_a_slice_lies_where_it_says(client: TestClient) -> None:
     asked = ASKED | {"box": BOX, "across": "yaw", "up": "z", "side": 5}
-    rows = np.frombuffer(b"".join(data for _, data in frames(client.post("/api/jobs/slice", json=asked).content)), "<f4")
+    parts = frames(client.post("/api/jobs/slice", json=asked).content)
+    rows = np.frombuffer(b"".join(data for _, data in parts), "<f4")
     index = rows.reshape(5, 5, 3)[1, 4, 0]  # second line up, last across
     six = [0.001, 0.0, 0.0825, *np.radians([1.0, 2.0, 5.0])]
     assert index == pytest.approx(fx.stability_index(MACHINE, fx.Pose.from_rpy(*six)), rel=1e-7)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -36,7 +37,7 @@ def application(start: Path | None = None, hosts: Iterable[str] = ()) -> Starlet
     async def lifespan(_: Starlette) -> AsyncIterator[None]:
         await jobs.warm()
         async with anyio.create_task_group() as tasks:
-            tasks.start_soon(run_sync, import_module, "xarray")  # slow to import; the first response would wait for it
+            tasks.start_soon(partial(run_sync, import_module, "xarray"))  # slow; the first response would wait for it
             yield
             tasks.cancel_scope.cancel()
         jobs.close()
@@ -70,7 +71,7 @@ def application(start: Path | None = None, hosts: Iterable[str] = ()) -> Starlet
     app = Starlette(
         routes=routes,
         middleware=[Middleware(Guard, hosts=tuple(hosts))],
-        exception_handlers={FlexapodError: _refused},  # type: ignore[dict-item]
+        exception_handlers={FlexapodError: _refused},
         lifespan=lifespan,
     )
     app.state.jobs = jobs

@@ -108,7 +108,6 @@ def pose_of(six: tuple[float, ...]) -> Pose:
     return Pose.from_rpy(*six[:3], *np.radians(six[3:]))
 
 
-
 def box(asked: dict[str, Any]) -> tuple[Array, Array]:
     """Low and high of the six coordinates of a pose box, m and degrees."""
     given = asked.get("box")

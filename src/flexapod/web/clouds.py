@@ -23,7 +23,7 @@ Message = tuple[dict[str, Any], bytes]
 def cloud(spec: dict[str, Any]) -> Iterator[Message]:
     """Poses drawn in a box, with index and cond(H): rows x y z roll pitch yaw (m, degrees), omega_1, cond(H).
 
-    A pose is rounded to float32 before anything is computed there, so that the page shows the numbers of that very pose.
+    A pose is rounded to float32 before anything is computed there: the page shows the numbers of that very pose.
     """
     question, count = asking.question(spec), int(asking.number(spec, "points", 100_000, 1, MOST_POINTS))
     poses = random_poses(_box(spec), count, int(asking.number(spec, "seed", 0, 0, 2**31)))

@@ -247,7 +247,8 @@ def home(hexapod: Hexapod) -> list[float]:
         offset = np.linalg.norm((platform + centre - base)[:, :2], axis=1)
         middle = np.asarray(hexapod.limits.leg_length).reshape(-1, 2).mean(axis=1)
         height = float(np.sqrt(np.maximum(middle**2 - offset**2, (0.2 * middle) ** 2)).mean())
-    return [*(centre + [0.0, 0.0, height]).tolist(), 0.0, 0.0, 0.0]
+    x, y, z = centre.tolist()
+    return [x, y, z + height, 0.0, 0.0, 0.0]
 
 
 def box(hexapod: Hexapod) -> dict[str, list[float]]:

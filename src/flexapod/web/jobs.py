@@ -1,4 +1,4 @@
-"""Long jobs: each in a process of its own, streamed to the one page that asked, stopped when that page goes or says so."""
+"""Long jobs, each in a process of its own: streamed to the one page that asked, stopped when it goes or says so."""
 
 from __future__ import annotations
 
@@ -94,7 +94,9 @@ class Jobs:
                 try:
                     message, data = await anyio.to_thread.run_sync(worker.pipe.recv)
                 except EOFError:
-                    yield frame({"type": "failed", "error": "the process of this job died; it may have run out of memory"})
+                    yield frame(
+                        {"type": "failed", "error": "the process of this job died; it may have run out of memory"}
+                    )
                     return
                 finished = message["type"] in ("done", "failed")
                 yield frame(message, data)

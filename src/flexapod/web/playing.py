@@ -5,7 +5,7 @@ from __future__ import annotations
 import queue
 import threading
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from typing import Any
 
 import numpy as np
@@ -37,7 +37,9 @@ def simulation(spec: dict[str, Any]) -> Iterator[Message]:
     highest = float(fx.natural_modes(question.hexapod, question.pose, question.joint).omega[-1])
     if duration * highest > 2 * np.pi * MOST_PERIODS:
         most = 2 * np.pi * MOST_PERIODS / highest
-        raise asking.AskingError(f"duration is {duration:g} s; at most {most:.3g} s are simulated here. Use the library.")
+        raise asking.AskingError(
+            f"duration is {duration:g} s; at most {most:.3g} s are simulated here. Use the library."
+        )
     motion = _motion(spec, duration)
 
     def compute(progress: Callable[[float], object]) -> tuple[Any, list[str]]:
@@ -59,7 +61,7 @@ def simulation(spec: dict[str, Any]) -> Iterator[Message]:
     yield _head(question, rows, " ".join([*words, steps])), float32(rows)
 
 
-def _with_progress(compute: Callable[[Callable[[float], object]], Any]) -> Iterator[Message]:
+def _with_progress(compute: Callable[[Callable[[float], object]], Any]) -> Generator[Message, None, Any]:
     """Compute in a thread, and report how far it is."""
     news: queue.Queue[tuple[str, Any]] = queue.Queue()
 
@@ -116,8 +118,8 @@ def _head(question: asking.Question, rows: Array, words: str) -> dict[str, Any]:
     """How to play the rows: how fast, how much larger, and what to say of them."""
     hexapod = question.hexapod
     size = float(np.linalg.norm(hexapod.platform_joints, axis=1).max())
-    reach = [np.linalg.norm(rows[:, a : a + 3], axis=1) + np.linalg.norm(rows[:, a + 3 : a + 6], axis=1) * size for a in (1, 7)]
-    largest = max(float(np.max(reach)), np.finfo(float).tiny)
+    moved, turned = (np.linalg.norm(rows[:, [[a, a + 1, a + 2] for a in at]], axis=2) for at in ((1, 7), (4, 10)))
+    largest = max(float((moved + turned * size).max()), np.finfo(float).tiny)
     return {
         "type": "run",
         "count": len(rows),

@@ -27,7 +27,7 @@ HEADERS = {
 
 
 class Guard:
-    """Refuses requests under a foreign Host (DNS rebinding) or from another site's page, and bodies that are too long."""
+    """Refuses requests under a foreign Host (DNS rebinding) or from another site's page, and long bodies."""
 
     def __init__(self, app: ASGIApp, hosts: Iterable[str] = (), max_body: int = MAX_BODY) -> None:
         self.app = app
