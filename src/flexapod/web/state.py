@@ -9,7 +9,7 @@ import numpy as np
 import flexapod as fx
 from flexapod.errors import SingularPoseError
 from flexapod.hexapod import Hexapod
-from flexapod.kinematics import limit_excess
+from flexapod.kinematics import in_words, limit_excess
 from flexapod.pose import Pose
 from flexapod.web.asking import Question
 
@@ -23,7 +23,7 @@ def snapshot(question: Question) -> dict[str, Any]:
     condition = float(fx.condition_number(hexapod, pose))
     angles = fx.joint_angles(hexapod, pose)
     limits = _limits(hexapod, pose)
-    static, damped = _static(hexapod, pose), _damped(question)
+    static, damped = _at_rest(question)
     repeated = fx.near_repeated(modes.omega)
     return {
         "pose": list(question.six),
@@ -38,7 +38,6 @@ def snapshot(question: Question) -> dict[str, Any]:
         "damped": damped,
         "sampling_time": fx.sampling_time(modes.omega[-1]),
         "legs": {
-            "length": fx.inverse_kinematics(hexapod, pose),
             "universal": np.round(np.degrees(angles.universal), 9) + 0.0,
             "spherical": np.round(np.degrees(angles.spherical), 9) + 0.0,
             **static,
@@ -70,39 +69,30 @@ def _strain(question: Question) -> np.ndarray:
     return fx.energy_shares(question.hexapod, question.pose, question.joint).strain.T
 
 
-def _static(hexapod: Hexapod, pose: Pose) -> dict[str, Any]:
-    """Leg forces that hold the pose, and the energy their springs store."""
+def _at_rest(question: Question) -> tuple[dict[str, Any], dict[str, Any] | None]:
+    """Legs that hold the pose: lengths, forces, energy in their springs; and the exact tangent's modes there.
+
+    These have gravity, preload and damping. No forces and no modes where nothing holds the pose.
+    """
+    hexapod, pose = question.hexapod, question.pose
     try:
-        force = fx.hold(hexapod, pose).leg_force
+        linear = fx.linearise(hexapod, pose, joint=question.joint)
     except SingularPoseError as error:
-        return {"force": None, "energy": None, "why": str(error)}
-    return {"force": force, "energy": 0.5 * force**2 / hexapod.legs.stiffness, "why": ""}
-
-
-def _damped(question: Question) -> dict[str, Any] | None:
-    """Modes of the exact tangent at rest, with gravity, preload and damping; None where no rest exists."""
-    try:
-        modes = fx.linearise(question.hexapod, question.pose, joint=question.joint).modes()
-    except SingularPoseError:
-        return None
-    return {"omega": modes.omega, "frequency": modes.pole.imag / (2 * np.pi), "ratio": modes.damping_ratio}
+        length = fx.inverse_kinematics(hexapod, pose)
+        return {"length": length, "force": None, "energy": None, "why": str(error)}, None
+    rest, modes = linear.rest, linear.modes()
+    energy = 0.5 * rest.leg_force**2 / hexapod.legs.stiffness
+    static = {"length": rest.leg_length, "force": rest.leg_force, "energy": energy, "why": ""}
+    damped = {"omega": modes.omega, "frequency": modes.pole.imag / (2 * np.pi), "ratio": modes.damping_ratio}
+    return static, damped
 
 
 def _limits(hexapod: Hexapod, pose: Pose) -> dict[str, Any]:
-    """Which legs exceed what, in words for each leg, and whether anything is limited at all."""
-    by_leg: list[list[str]] = [[] for _ in range(6)]
+    """What is exceeded, in words, in all and by leg, and whether anything is limited at all."""
     quantities = limit_excess(hexapod, pose)
-    for quantity in quantities:
-        value = np.atleast_1d(quantity.value)
-        name, unit = quantity.what.rsplit(" ", 1)
-        least, most = np.broadcast_to(quantity.least, value.shape), np.broadcast_to(quantity.most, value.shape)
-        if value.size != 6:
-            continue
-        for leg in np.flatnonzero((value < least) | (value > most)):
-            side, bound = ("below", least[leg]) if value[leg] < least[leg] else ("above", most[leg])
-            by_leg[leg].append(f"{name} {value[leg]:.4g} {unit} is {side} {bound:.4g} {unit}")
-    check = fx.check_limits(hexapod, pose)
-    return {"any": bool(quantities), "ok": bool(check.ok), "exceeded": list(check.exceeded), "by_leg": by_leg}
+    words = [word for quantity in quantities for word in in_words(quantity)]
+    by_leg = [[word.split(": ", 1)[1] for word in words if word.startswith(f"leg {leg}: ")] for leg in range(1, 7)]
+    return {"any": bool(quantities), "ok": not words, "exceeded": words, "by_leg": by_leg}
 
 
 def _warnings(
