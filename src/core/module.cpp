@@ -37,6 +37,18 @@ nb::tuple leg_rates(const Input& design, const Input& platforms, const Input& ba
   return nb::make_tuple(L.array(), L_dot.array(), L_ddot.array());
 }
 
+nb::tuple leg_fit(const Input& design, const Input& platforms, const Input& bases) {
+  const Machine<double> machine = machine_of(design, true);
+  const States s(platforms, bases);
+  Output length({s.n, 6}), sine({s.n, 6});
+  double *l = length.data(), *k = sine.data();
+  for (size_t i = 0; i < s.n; ++i) {
+    const LegFit fit(geometry(machine, s, i));
+    write(l, fit.length), write(k, fit.sine);
+  }
+  return nb::make_tuple(length.array(), sine.array());
+}
+
 nb::tuple joint_angles(const Input& design, const Input& platforms, const Input& bases, const Input& neutral) {
   const Machine<double> machine = machine_of(design, true);
   const States s(platforms, bases);
@@ -238,9 +250,9 @@ nb::tuple tangent_(const Input& design, bool universal, const Input& platform, c
 }
 
 /// The pose (12 numbers) where the platform settles, and how the search ended: "found", "singular", "not_found".
-nb::tuple settle_(const Input& design, const Input& start, const Input& base, const Input& wrench,
+nb::tuple settle_(const Input& design, bool universal, const Input& start, const Input& base, const Input& wrench,
                   const Input& unstretched) {
-  const Machine<double> machine = machine_of(design, true);  // friction and inertia play no part at rest
+  const Machine<double> machine = machine_of(design, universal);
   RestLoad load{vec6(rows(wrench, 1, 6, "wrench")), {}};
   std::copy_n(rows(unstretched, 1, 6, "unstretched"), 6, load.L_0);
   const States s(start, base);
@@ -261,6 +273,7 @@ NB_MODULE(_core, m) {
   m.doc() = "Flexapod's mechanics: compiled functions of a design and of motions.";
   m.attr("design_size") = design_size;
   m.def("leg_rates", &leg_rates);
+  m.def("leg_fit", &leg_fit);
   m.def("joint_angles", &joint_angles);
   m.def("leg_distance", &leg_distance);
   m.def("forward_kinematics", &forward_kinematics_);

@@ -83,7 +83,7 @@ class Linearisation:
     gravity: Array
 
     def modes(self) -> DampedModes:
-        """Complex modes with the base fixed. A pair of real poles (no vibration) is given by the one nearer to zero."""
+        """Complex modes with the base fixed. Of a pair of real poles (no vibration), the slower or growing one."""
         zero, one = np.zeros((6, 6)), np.eye(6)
         A = np.block([[zero, one], [-np.linalg.solve(self.M, self.K), -np.linalg.solve(self.M, self.C)]])
         scale = np.sqrt(np.abs(np.linalg.eigvals(A[6:, :6])).max())  # balances displacements against rates
@@ -138,9 +138,12 @@ def _labels(groups: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _one_of_each_pair(poles: Array) -> list[int]:
-    """Indices of six poles out of twelve: the upper one of each complex pair, the slower of real ones; by modulus."""
+    """Indices of six poles out of twelve: the upper one of each complex pair, of real ones the slower or the growing.
+
+    Ordered by modulus.
+    """
     upper = [i for i, p in enumerate(poles) if p.imag > 0]
-    real = sorted((i for i, p in enumerate(poles) if p.imag == 0), key=lambda i: abs(poles[i]))
+    real = sorted((i for i, p in enumerate(poles) if p.imag == 0), key=lambda i: -poles[i].real)
     return sorted(upper + real[: 6 - len(upper)], key=lambda i: abs(poles[i]))
 
 
@@ -160,7 +163,7 @@ def linearise(
     """
     if pose.shape:
         raise PoseError(f"linearise takes one pose; this one has batch axes {pose.shape}. Index it first.")
-    rest = hold(hexapod, pose, base=base, force=force, moment=moment)
+    rest = hold(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
     s = states(hexapod, pose, base)
     M, C, K, M_b, C_b, K_b, H = _core.tangent(
         hexapod.packed, is_universal(joint), s.platform, s.base, wrench(force, moment, ()), rest.unstretched_length
