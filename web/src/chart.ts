@@ -66,12 +66,12 @@ export function axes(box: Box2, x: Scale, y: Scale, look: Look): SVGGElement {
   const text = (at: [number, number], words: string, more: Record<string, unknown> = {}) =>
     group.append(svg('text', { x: at[0], y: at[1], 'text-anchor': 'middle', ...more }, words))
   const line = (x1: number, y1: number, x2: number, y2: number) => group.append(svg('line', { x1, y1, x2, y2, stroke: look.muted, 'stroke-opacity': 0.28 }))
-  for (const value of ticks(x, Math.max(2, width / 85))) {
+  for (const value of ticks(x, Math.max(3, width / 70))) {
     const at = left + width * fraction(x, value)
     line(at, top, at, top + height)
     text([at, top + height + look.size + 4], tickText(value, x), { fill: look.muted })
   }
-  for (const value of ticks(y, Math.max(2, height / 50))) {
+  for (const value of ticks(y, Math.max(3, height / 50))) {
     const at = top + height * (1 - fraction(y, value))
     line(left, at, left + width, at)
     text([left - 5, at + 0.35 * look.size], tickText(value, y), { 'text-anchor': 'end', fill: look.muted })

@@ -112,7 +112,7 @@ function put(value: Nested, path: number[], item: number): Nested {
 function grid(rule: Field, value: Nested, write: (path: number[], text: string) => void): HTMLElement {
   const cell = (v: number, path: number[]) => {
     const place = path.map((i) => `[${i}]`).join('')
-    const input = h('input', { type: 'text', class: 'number', inputmode: 'decimal', value: Number.isNaN(v) ? '' : field(v), 'aria-label': `${rule.key}${place} ${rule.unit}`, placeholder: rule.optional ? 'none' : '' })
+    const input = h('input', { type: 'text', class: 'number', inputmode: 'decimal', value: Number.isNaN(v) ? '' : field(Number(v.toPrecision(9))), 'aria-label': `${rule.key}${place} ${rule.unit}`, placeholder: rule.optional ? 'none' : '' })
     input.addEventListener('change', () => {
       write(path, input.value)
     })

@@ -187,10 +187,13 @@ async function begin(): Promise<void> {
 /** Show what an address says, or what the server was started with. */
 async function restore(start: Start, hash: string): Promise<void> {
   const said = await fromAddress(hash, start.presets)
-  const preset = said.text !== undefined ? (said.preset ?? '') : start.start && start.start.name in start.presets ? start.start.name : start.start ? '' : FIRST
+  const preset = said.text !== undefined ? (said.preset ?? '') : start.start && start.presets[start.start.name] === start.start.text ? start.start.name : start.start ? '' : FIRST
   const text = said.text ?? start.start?.text ?? start.presets[FIRST]
-  const good = await open(text, preset)
-  if (!good && !page.design) await open(start.presets[FIRST], FIRST)
+  let good = await open(text, preset)
+  if (!good && !page.design) {
+    await open(start.presets[FIRST], FIRST)
+    good = await open(text, preset) // once more for its errors, now beside a machine
+  }
   const { text: _text, preset: _preset, ...rest } = said
   if (good) store.set(rest)
   if (!page.tab) store.set({ tab: 'modes' })

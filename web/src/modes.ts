@@ -2,7 +2,7 @@
 
 import type { Animation } from './animation'
 import { reach, twist } from './animation'
-import { CATEGORIES } from './colours'
+import { categories } from './colours'
 import { h } from './dom'
 import { csvButton, saveCsv } from './download'
 import { percent, sig } from './format'
@@ -21,7 +21,7 @@ function bars(label: string, names: readonly string[], shares: (number | null)[]
       const share = shares[i] ?? 0
       const bar = h('span', { class: 'fill' })
       bar.style.width = `${100 * Math.min(1, Math.max(0, share))}%`
-      bar.style.background = CATEGORIES[i % 6]
+      bar.style.background = categories()[i % 6]
       return h('tr', {}, h('th', { scope: 'row' }, name), h('td', { class: 'track' }, bar), h('td', { class: 'value' }, percent(shares[i])))
     })),
   )

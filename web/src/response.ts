@@ -2,7 +2,7 @@
 
 import { ask, Live, Refused } from './api'
 import { twist, type Animation } from './animation'
-import { CATEGORIES, DASHES, onTheme } from './colours'
+import { categories, DASHES, onTheme } from './colours'
 import { button, freshId, h, select, settled, status, svg } from './dom'
 import { csvButton, figureButtons, saveCsv } from './download'
 import { field, parsed, sig } from './format'
@@ -61,7 +61,7 @@ export function responsePanel(animation: Animation): HTMLElement {
       x: { label: `frequency, ${hertz.element.value === 'Hz' ? 'Hz' : 'rad/s'}`, min: a.omega[0] * k, max: a.omega[a.omega.length - 1] * k, log: true },
       y: phase ? { label: `${a.outputs[o]}: phase, °`, min, max } : { label: `${a.outputs[o]}, ${units.join(' or ')}`, min, max, log: true },
       at: a.omega.map((w) => w * k),
-      series: a.inputs.map((name, i) => ({ name, colour: CATEGORIES[i], dash: DASHES[i], values: values[i] })),
+      series: a.inputs.map((name, i) => ({ name, colour: categories()[i], dash: DASHES[i], values: values[i] })),
       marks: a.modes.map((m) => ({ at: m.omega * k, name: m.name })),
     }
   }
@@ -73,7 +73,7 @@ export function responsePanel(animation: Animation): HTMLElement {
     keys.replaceChildren(
       h('span', { class: 'hint' }, 'by'),
       ...names.map((name, i) => {
-        const sample = svg('svg', { width: 22, height: 8, 'aria-hidden': 'true' }, svg('line', { x1: 0, x2: 22, y1: 4, y2: 4, stroke: CATEGORIES[i], 'stroke-width': 2.5, 'stroke-dasharray': DASHES[i].join(' ') }))
+        const sample = svg('svg', { width: 22, height: 8, 'aria-hidden': 'true' }, svg('line', { x1: 0, x2: 22, y1: 4, y2: 4, stroke: categories()[i], 'stroke-width': 2.5, 'stroke-dasharray': DASHES[i].join(' ') }))
         const key = h('button', { type: 'button', class: 'key', 'aria-pressed': 'true' }, sample, name)
         key.addEventListener('click', () => {
           const on = key.getAttribute('aria-pressed') !== 'true'
@@ -104,7 +104,11 @@ export function responsePanel(animation: Animation): HTMLElement {
     requestAnimationFrame(refresh)
     if (page.tab !== 'response') animation.stop('shake')
   })
-  onTheme(() => plots.forEach((p) => p.build()))
+  onTheme(() => {
+    keyed = ''
+    show()
+    plots.forEach((p) => p.build())
+  })
 
   const shaker = shakePart(animation, () => page.tab === 'response')
   const shakeAt = (x: number) => shaker.at(x / scale() / TURN)

@@ -2,7 +2,7 @@
 
 import { floats } from './api'
 import { twist, type Animation } from './animation'
-import { CATEGORIES, DASHES, onTheme } from './colours'
+import { categories, DASHES, onTheme } from './colours'
 import { button, freshId, h, select } from './dom'
 import { csvButton, figureButtons, saveCsv } from './download'
 import { parsed, sig } from './format'
@@ -126,7 +126,10 @@ class Playback {
     this.element = h('div', { hidden: true }, h('div', { class: 'bar tools' }, this.toggle, this.speed.element, this.scrub, this.words), ...this.plots.map((p) => p.element))
     store.on(['tab'], () => page.tab !== 'time' && this.turn(false))
     store.on(['pose', 'text', 'changes'], () => this.run && this.turn(false))
-    onTheme(() => this.plots.forEach((p) => p.build()))
+    onTheme(() => {
+      if (this.run) this.draw(this.run)
+      this.plots.forEach((p) => p.build())
+    })
   }
 
   private get end(): number {
@@ -136,6 +139,13 @@ class Playback {
   take(run: Run): void {
     this.run = run
     this.element.hidden = false
+    this.draw(run)
+    this.at = 0
+    store.set({ mode: -1 })
+    this.turn(true)
+  }
+
+  private draw(run: Run): void {
     const column = (c: number, factor = 1) => Float64Array.from({ length: run.count }, (_, i) => run.rows[i * COLUMNS + c] * factor)
     const t = column(0)
     const x = { label: 'time, s', min: 0, max: t[t.length - 1] }
@@ -147,12 +157,9 @@ class Playback {
     sets.forEach(([title, label, names, values], i) => {
       const [min, max] = span(values, false, 0, 1e-6) // a nanometre: what rounding leaves looks like nothing
       const colours = i < 2 ? [0, 1, 2, 0, 1, 2] : [0, 1, 2, 3, 4, 5]
-      const series = names.map((name, k) => ({ name, colour: CATEGORIES[colours[k]], dash: DASHES[k], values: values[k] }))
+      const series = names.map((name, k) => ({ name, colour: categories()[colours[k]], dash: DASHES[k], values: values[k] }))
       this.plots[i].show({ title, x, y: { label, min, max }, at: t, series, marks: [] })
     })
-    this.at = 0
-    store.set({ mode: -1 })
-    this.turn(true)
   }
 
   private turn(on: boolean): void {

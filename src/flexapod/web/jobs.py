@@ -16,6 +16,7 @@ import anyio.to_thread
 from flexapod.web import work
 from flexapod.web.encode import frame
 
+KEPT = 2  #: idle processes: a page asks for a cloud and a slice at once
 _SPAWN = multiprocessing.get_context("spawn")  # a fork of a server with threads may hang
 
 
@@ -41,7 +42,7 @@ class Worker(NamedTuple):
 
 
 class Jobs:
-    """Runs jobs for many pages. One idle process is kept ready, since starting one takes longer than most jobs."""
+    """Runs jobs for many pages. Idle processes are kept ready, since starting one takes longer than most jobs."""
 
     def __init__(self, at_once: int | None = None) -> None:
         self._limit = anyio.CapacityLimiter(at_once or max(4, os.cpu_count() or 1))
@@ -49,8 +50,8 @@ class Jobs:
         self._cancelled: dict[str, bool] = {}  # running jobs, and whether each was told to stop
 
     async def warm(self) -> None:
-        """Have a process ready for the first job."""
-        if not self._idle:
+        """Have processes ready for the first jobs."""
+        while len(self._idle) < KEPT:
             self._idle.append(await anyio.to_thread.run_sync(Worker.start))
 
     def close(self) -> None:
@@ -101,7 +102,7 @@ class Jobs:
                 finished = message["type"] in ("done", "failed")
                 yield frame(message, data)
         finally:
-            if finished and not self._idle:
+            if finished and len(self._idle) < KEPT:
                 self._idle.append(worker)
             else:
                 worker.stop()
