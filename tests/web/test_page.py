@@ -1,7 +1,9 @@
 """The page in a real browser: what a user does, and the numbers it shows against the library."""
 
+import base64
 import re
 import xml.etree.ElementTree as ElementTree
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -354,3 +356,26 @@ def test_fits_a_phone(opened: Any) -> None:
         page.get_by_role("tab", name=tab).click()
         page.wait_for_timeout(150)
         assert page.evaluate("document.documentElement.scrollWidth") <= 390, tab
+
+
+def test_an_address_with_a_broken_design_shows_what_is_wrong(opened: Any) -> None:
+    text = MACHINE.to_toml().replace("mass = 4.0", "mass = -4.0")
+    packer = zlib.compressobj(wbits=-15)
+    packed = base64.urlsafe_b64encode(packer.compress(text.encode()) + packer.flush()).decode().rstrip("=")
+    page = opened(f"toml={packed}")
+    page.locator(".errors li", has_text="platform.mass is -4 kg").wait_for()
+    page.wait_for_timeout(500)  # what else the page loads must not wipe it out
+    assert page.locator(".errors li").count() == 1
+    assert page.get_by_label("Design file (TOML)").input_value() == text
+
+
+def test_a_design_of_one_s_own_is_shared_whole(opened: Any, tmp_path: Path) -> None:
+    own = MACHINE.replace({"name": "täst", "platform.mass": 7.5})
+    file = tmp_path / "own.toml"
+    own.save(file)
+    page = opened("design=motion-base&tab=modes")
+    page.set_input_files("#design-file", file)
+    expected = omega_at(0, 0, 0.085, machine=own)[0]
+    wait_for_index(page, expected)
+    page.wait_for_timeout(600)
+    wait_for_index(opened(page.url.split("#")[1]), expected)

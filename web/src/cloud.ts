@@ -22,7 +22,7 @@ export class Cloud {
   private data = new Float32Array(0)
   private filled = 0
   private x: Scale = { label: 'cond(H)', min: 1, max: 10, log: true }
-  private y: Scale = { label: 'index ω₁, rad/s', min: 0, max: 1 }
+  private y: Scale = { label: 'index ω₁, rad/s', min: 0, max: 1, log: false }
   private first = new Int32Array(0)
   private next = new Int32Array(0)
   private columns = 0
@@ -56,7 +56,13 @@ export class Cloud {
     this.draw()
   }
 
-  /** The machine's own pose, drawn as a cross. */
+  /** Whether the axis of the index is logarithmic. */
+  set logarithmic(on: boolean) {
+    this.y = { ...this.y, log: on }
+    this.draw()
+  }
+
+  /** The machine's own pose, drawn as a ring. */
   mark(index: number | null, condition: number | null): void {
     this.here = index === null || condition === null ? null : { index, condition }
     this.draw()
@@ -94,10 +100,14 @@ export class Cloud {
       if (condition < low) low = condition
       if (condition > high && condition < 1e9) high = condition
       if (index > top) top = index
-      if (index < least) least = index
+      if (index < least && (index > 1e-9 || !this.y.log)) least = index
     }
     if (this.filled === 0 || low === Infinity) return
     this.x = { ...this.x, min: low / 1.05, max: Math.max(high * 1.05, low * 1.2) }
+    if (this.y.log) {
+      this.y = { ...this.y, min: least / 1.1, max: top * 1.1 }
+      return
+    }
     const room = 0.05 * (top - least)
     this.y = { ...this.y, min: least > 0.4 * top ? least - room : 0, max: top + room || 1 }
   }
@@ -135,10 +145,13 @@ export class Cloud {
     if (this.next.length < this.filled) this.next = new Int32Array(this.data.length / WIDTH)
     const dot = this.filled > 400_000 ? 1 : 2
     const [x0, kx] = [Math.log(this.x.min), 1 / Math.log(this.x.max / this.x.min)]
-    const ky = 1 / (this.y.max - this.y.min)
+    const log = this.y.log
+    const y0 = log ? Math.log(this.y.min) : this.y.min
+    const ky = 1 / ((log ? Math.log(this.y.max) : this.y.max) - y0)
     for (let i = 0; i < this.filled; i++) {
       const tx = (Math.log(this.data[i * WIDTH + 7]) - x0) * kx
-      const ty = 1 - (this.data[i * WIDTH + 6] - this.y.min) * ky
+      const index = this.data[i * WIDTH + 6]
+      const ty = 1 - ((log ? Math.log(index) : index) - y0) * ky
       if (!(tx >= 0 && tx <= 1 && ty >= 0 && ty <= 1)) continue
       const cell = Math.floor((tx * box.width) / CELL) + this.columns * Math.floor((ty * box.height) / CELL)
       this.next[i] = this.first[cell]

@@ -40,7 +40,7 @@ class FieldRow {
   private value: Nested | undefined
 
   constructor(private readonly rule: Field) {
-    const name = rule.key.split('.').pop()!.replace(/_deg$/, '').replace(/_/g, ' ')
+    const name = rule.key.replace(/^\w+\./, '').replace(/_deg$/, '').replace(/[._]/g, ' ')
     const perLeg = rule.key.startsWith('legs.') || rule.shapes.length > 1
     this.element = h(
       'div',
@@ -159,7 +159,14 @@ function form(fields: Field[]): { element: HTMLElement; fail(key: string, messag
   }
 }
 
-function editor(): { element: HTMLElement; show(text: string, errors: FieldError[]): void } {
+interface Editor {
+  element: HTMLElement
+  show(text: string, errors: FieldError[]): void
+  drafting(): boolean
+}
+
+function editor(): Editor {
+  let drafting = false // the text is no design, and not the one of the machine shown
   const area = h('textarea', { class: 'code', spellcheck: 'false', autocomplete: 'off', wrap: 'off', 'aria-label': 'Design file (TOML)', rows: 30 })
   const gutter = h('div', { class: 'gutter', 'aria-hidden': 'true' })
   const list = h('ul', { class: 'errors', role: 'alert' })
@@ -198,14 +205,17 @@ function editor(): { element: HTMLElement; show(text: string, errors: FieldError
     read()
   })
   area.addEventListener('scroll', () => (gutter.scrollTop = area.scrollTop))
+  store.on(['text'], () => (drafting = false))
   store.on(['design'], () => {
-    if (document.activeElement === area || !page.design) return
+    if (drafting || document.activeElement === area || !page.design) return
     area.value = page.design.toml
     complain([])
   })
   return {
     element: h('div', {}, list, h('div', { class: 'editor' }, gutter, area)),
+    drafting: () => drafting,
     show(text, errors) {
+      drafting = true
       area.value = text
       complain(errors)
     },
@@ -236,7 +246,7 @@ export function designPanel(fields: Field[], reveal: () => void): DesignPanel {
   }
   const warnings = h('ul', { class: 'warnings' })
   store.on(['design'], () => {
-    note.textContent = ''
+    if (!text.drafting()) note.textContent = ''
     warnings.replaceChildren(...(page.design?.warnings ?? []).map((w) => h('li', {}, w)))
   })
   const save = () => page.design && saveText(`${page.design.name.replace(/[^\w.-]+/g, '-')}.toml`, page.design.toml, 'application/toml')

@@ -63,6 +63,7 @@ function cloudPart(): Part {
   const cloud = new Cloud((point) => setPose(tidy(point.six)))
   const runner = new Runner()
   const points = select('Number of poses', ([10_000, 100_000, 300_000, 1_000_000] as const).map((n) => [String(n), `${count(n)} poses`] as const), '100000', () => run())
+  const scale = select('Axis of the index', [['linear', 'linear'], ['log', 'logarithmic']] as const, 'linear', (kind) => (cloud.logarithmic = kind === 'log'))
   const seed = h('input', { type: 'text', class: 'number tiny', value: '1', inputmode: 'numeric', id: freshId('seed') })
   const summarise = () => {
     const order = cloud.order()
@@ -101,7 +102,7 @@ function cloudPart(): Part {
     'section',
     { 'aria-label': 'Cloud of poses', class: 'card', id: 'cloud' },
     h('div', { class: 'bar' }, h('h3', {}, 'Index against cond(H)'), h('span', { class: 'spring' }), csvButton('Cloud', csv), figureButtons(() => 'workspace', 'Cloud', () => cloud.figure())),
-    h('div', { class: 'bar tools' }, points.element, h('label', { for: seed.id }, 'seed'), seed, button('Run', () => void run()), worst.button),
+    h('div', { class: 'bar tools' }, points.element, h('label', { for: seed.id }, 'seed'), seed, scale.element, button('Run', () => void run()), worst.button),
     runner.element,
     worst.element,
     cloud.element,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import socket
 import webbrowser
 from pathlib import Path
@@ -42,7 +43,8 @@ def command(design: str | None, port: int, host: str, allow_host: tuple[str, ...
         webbrowser.open(url)
     app = application(start, hosts=(host, *allow_host))
     server = uvicorn.Server(uvicorn.Config(app, log_level="warning", timeout_graceful_shutdown=1))
-    server.run(sockets=[bound])
+    with contextlib.suppress(KeyboardInterrupt):  # its usual end
+        server.run(sockets=[bound])
 
 
 def _checked(design: str) -> Path:

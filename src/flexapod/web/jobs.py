@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import secrets
-from collections.abc import AsyncIterator
+import signal
+from collections.abc import AsyncIterator, Iterator
+from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Any, NamedTuple
@@ -20,6 +23,20 @@ KEPT = 2  #: idle processes: a page asks for a cloud and a slice at once
 _SPAWN = multiprocessing.get_context("spawn")  # a fork of a server with threads may hang
 
 
+@contextlib.contextmanager
+def _deaf_to_interrupts() -> Iterator[None]:
+    """Processes started within do not get a terminal's Ctrl-C, from their first moment: the server ends them itself."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    resource_tracker.ensure_running()  # done later by the start itself, this would lift the mask again
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 class Worker(NamedTuple):
     """A process that waits for one job after another."""
 
@@ -30,7 +47,8 @@ class Worker(NamedTuple):
     def start(cls) -> Worker:
         ours, theirs = _SPAWN.Pipe()
         process = _SPAWN.Process(target=work.serve, args=(theirs,), name="flexapod-job", daemon=True)
-        process.start()
+        with _deaf_to_interrupts():
+            process.start()
         theirs.close()
         return cls(process, ours)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 import traceback
 from collections.abc import Callable, Iterator
 from multiprocessing.connection import Connection
@@ -23,7 +22,6 @@ KINDS: dict[str, Callable[[dict[str, Any]], Iterator[Message]]] = {
 
 def serve(pipe: Connection) -> None:
     """Take jobs from the pipe until it closes; a job that fails says why and the process lives on."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the server's; it stops this process itself
     while True:
         try:
             kind, spec = pipe.recv()
