@@ -58,12 +58,13 @@ def _checked(design: str) -> Path:
 
 
 def _listen(host: str, port: int) -> socket.socket:
-    """A bound socket, so that the printed address is true before the server runs."""
+    """A socket that listens: whoever comes before the server runs waits for it."""
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     bound = socket.socket(family, socket.SOCK_STREAM)
     bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         bound.bind((host, port))
+        bound.listen()
     except OSError as error:
         bound.close()
         raise click.UsageError(f"cannot listen on {host} port {port}: {error.strerror}. Try --port 0.") from error

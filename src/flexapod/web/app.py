@@ -35,8 +35,8 @@ def application(start: Path | None = None, hosts: Iterable[str] = ()) -> Starlet
 
     @contextlib.asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncIterator[None]:
-        await jobs.warm()
         async with anyio.create_task_group() as tasks:
+            tasks.start_soon(jobs.warm)
             tasks.start_soon(partial(run_sync, import_module, "xarray"))  # slow; the first response would wait for it
             yield
             tasks.cancel_scope.cancel()
