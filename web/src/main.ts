@@ -82,7 +82,7 @@ const KEYS: [string, string][] = [
 function help(): HTMLDialogElement {
   const old = document.querySelector('dialog')
   if (old) return old
-  const dialog = h('dialog', { 'aria-label': 'Keys' }, h('h2', {}, 'Keys'), h('dl', {}, ...KEYS.flatMap(([key, words]) => [h('dt', {}, key), h('dd', {}, words)])), button('Close', () => dialog.close()))
+  const dialog = h('dialog', { 'aria-label': 'Keys' }, h('h2', {}, 'Keys'), h('dl', {}, ...KEYS.flatMap(([key, words]) => [h('dt', {}, key), h('dd', {}, words)])), h('p', { class: 'hint' }, 'Drawn with three.js and uPlot; ', h('a', { href: './licenses.txt' }, 'their licences'), '.'), button('Close', () => dialog.close()))
   document.body.append(dialog)
   return dialog
 }
