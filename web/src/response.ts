@@ -160,6 +160,7 @@ function shakePart(animation: Animation, shown: () => boolean): { element: HTMLE
     }
     try {
       const s = await ask<Shaken>('api/shake', { ...store.question(), omega: TURN * hertz, axis: axis.element.value })
+      if (page.mode >= 0) store.set({ mode: -1 })
       on = true
       paint()
       const speed = 0.7

@@ -125,7 +125,7 @@ class Playback {
     this.scrub.addEventListener('input', () => this.seek(Number(this.scrub.value) * this.end))
     this.element = h('div', { hidden: true }, h('div', { class: 'bar tools' }, this.toggle, this.speed.element, this.scrub, this.words), ...this.plots.map((p) => p.element))
     store.on(['tab'], () => page.tab !== 'time' && this.turn(false))
-    store.on(['pose', 'text', 'changes'], () => this.run && this.turn(false))
+    store.on(['pose', 'text', 'changes'], () => this.leave())
     onTheme(() => {
       if (this.run) this.draw(this.run)
       this.plots.forEach((p) => p.build())
@@ -169,6 +169,13 @@ class Playback {
     if (on && this.at >= this.end) this.at = 0
     if (on) this.animation.play('time', () => this.step())
     else if (page.tab !== 'time') this.animation.stop('time')
+  }
+
+  /** The machine is another one, or elsewhere: what was simulated does not move it. */
+  private leave(): void {
+    if (!this.run) return
+    this.turn(false)
+    this.animation.stop('time')
   }
 
   private step(): ReturnType<typeof this.twists> {

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import socket
 import webbrowser
 from pathlib import Path
@@ -10,13 +11,14 @@ from pathlib import Path
 import click
 
 from flexapod import designfile
+from flexapod.cli import common
 from flexapod.errors import FlexapodError
 
 _MISSING = "`flexapod serve` needs starlette and uvicorn: pip install 'flexapod[web]'"
 
 
 @click.command()
-@click.argument("design", required=False)
+@click.argument("design", required=False, type=common.DesignName())
 @click.option("--port", type=click.IntRange(0, 65535), default=8765, show_default=True, help="0 takes a free one.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
 @click.option("--allow-host", multiple=True, metavar="NAME", help="Another name browsers may use for this server.")
@@ -38,7 +40,10 @@ def command(design: str | None, port: int, host: str, allow_host: tuple[str, ...
     port = bound.getsockname()[1]
     shown = f"[{host}]" if ":" in host else host
     url = f"http://{'127.0.0.1' if host in ('0.0.0.0', '::') else shown}:{port}/"
-    click.echo(f'{{"url": "{url}"}}' if as_json else f"Flexapod is at {url} (Ctrl-C ends it)")
+    if as_json:
+        click.echo(json.dumps({"url": url}))
+    else:
+        click.echo(f"Flexapod is at {url} (Ctrl-C ends it)")
     if show:
         webbrowser.open(url)
     app = application(start, hosts=(host, *allow_host))
