@@ -58,7 +58,8 @@ export class Cloud {
 
   /** Whether the axis of the index is logarithmic. */
   set logarithmic(on: boolean) {
-    this.y = { ...this.y, log: on }
+    this.y = { ...this.y, log: on, min: on ? 1e-3 : 0 }
+    this.range()
     this.draw()
   }
 

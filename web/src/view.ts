@@ -24,7 +24,8 @@ function painted(s: Snapshot): Painted | null {
   const most = Math.max(...numbers.map(Math.abs)) || 1
   const both = by === 'force' && Math.min(...numbers) < 0
   const [low, high] = both ? [-most, most] : [0, most]
-  const map = both ? signed : cividis
+  const sequential = theme().dark ? (t: number) => cividis(0.22 + 0.78 * t) : cividis // its darkest would sink into the ground
+  const map = both ? signed : sequential
   const label = by === 'force' ? 'static force, N (+ compression)' : by === 'energy' ? 'static strain energy, J' : `strain energy share, mode ${page.mode + 1}`
   return { colours: numbers.map((v) => css(map((v - low) / (high - low)))), label, low, high, map }
 }
