@@ -5,21 +5,21 @@ import { button, freshId, h, select, settled, status } from './dom'
 import { saveText } from './download'
 import { field, parsed } from './format'
 import { change } from './numbers'
-import { page, store } from './store'
+import { page, sourceKey, store, type Page } from './store'
 import type { Described, Field, FieldError } from './types'
 
 type Nested = number | Nested[]
 export const MOST_TEXT = 1024 * 1024
 
-/** Open a design: shown if it is one, otherwise its text with what is wrong. Resolves to whether it was. */
-export async function open(text: string, preset: string): Promise<boolean> {
+/** Open a design: shown if it is one, with the rest of a state, otherwise its text with what is wrong. Resolves to whether it was. */
+export async function open(text: string, preset: string, rest: Partial<Page> = {}): Promise<boolean> {
   if (text.length > MOST_TEXT) {
     draft(text.slice(0, 2000), [{ key: '', message: `The file has ${text.length} characters; a design has at most ${MOST_TEXT}.`, line: 0 }])
     return false
   }
   try {
     const design = await ask<Described>('api/design', { design: text, changes: {} })
-    store.set({ text, preset, changes: {}, design, box: design.box, pose: design.home, mode: -1, error: '' })
+    store.set({ text, preset, changes: {}, design, described: sourceKey(text, {}), box: design.box, pose: design.home, mode: -1, error: '', ...rest })
     return true
   } catch (error) {
     if (!(error instanceof Refused)) throw error
@@ -194,7 +194,7 @@ function editor(): Editor {
       const design = await ask<Described>('api/design', { design: text, changes: {} })
       if (text !== area.value) return
       complain([])
-      if (text !== page.text || Object.keys(page.changes).length) store.set({ text, preset: '', changes: {}, design, error: '' })
+      if (text !== page.text || Object.keys(page.changes).length) store.set({ text, preset: '', changes: {}, design, described: sourceKey(text, {}), error: '' })
     } catch (error) {
       if (!(error instanceof Refused)) throw error
       if (text === area.value) complain(error.fields.length ? error.fields : [{ key: '', message: error.message, line: 0 }])

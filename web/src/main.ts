@@ -13,7 +13,7 @@ import { numbersPanel } from './numbers'
 import { posePanel, setPose } from './pose'
 import { responsePanel } from './response'
 import { Scene } from './scene'
-import { fromAddress, page, store, toAddress } from './store'
+import { fromAddress, page, sourceKey, store, toAddress } from './store'
 import { timePanel } from './time'
 import { tabs } from './tabs'
 import type { Described, FieldError, Snapshot, Start } from './types'
@@ -173,11 +173,11 @@ async function begin(): Promise<void> {
     }
   }
   const state = new Live<Snapshot>('api/state', () => store.question(), (snapshot) => store.set({ snapshot, error: '' }), failed)
-  const describe = new Live<Described>('api/design', () => ({ design: page.text, changes: page.changes }), (d) => store.set({ design: d }), failed)
+  const describe = new Live<Described>('api/design', () => ({ design: page.text, changes: page.changes }), (d) => store.set({ design: d, described: sourceKey(page.text, page.changes) }), failed)
   const address = settled(250, () => void toAddress().then((a) => history.replaceState(null, '', `#${a}`)))
   const changed = settled(120, describe.request)
   store.on(['pose', 'joint', 'text', 'changes'], state.request)
-  store.on(['changes'], changed)
+  store.on(['changes'], () => page.described !== sourceKey(page.text, page.changes) && changed())
   store.on(['pose', 'joint', 'text', 'changes', 'mode', 'tab', 'colour', 'unit', 'box', 'preset'], address)
   onTheme(() => page.snapshot && store.set({ snapshot: page.snapshot }))
   addEventListener('hashchange', () => void restore(start, location.hash))
@@ -189,14 +189,11 @@ async function restore(start: Start, hash: string): Promise<void> {
   const said = await fromAddress(hash, start.presets)
   const preset = said.text !== undefined ? (said.preset ?? '') : start.start && start.presets[start.start.name] === start.start.text ? start.start.name : start.start ? '' : FIRST
   const text = said.text ?? start.start?.text ?? start.presets[FIRST]
-  let good = await open(text, preset)
-  if (!good && !page.design) {
-    await open(start.presets[FIRST], FIRST)
-    good = await open(text, preset) // once more for its errors, now beside a machine
-  }
   const { text: _text, preset: _preset, ...rest } = said
-  if (good) store.set(rest)
-  if (!page.tab) store.set({ tab: 'modes' })
+  if (await open(text, preset, rest)) return
+  if (page.design) return
+  await open(start.presets[FIRST], FIRST)
+  await open(text, preset) // once more for its errors, now beside a machine
 }
 
 void begin()

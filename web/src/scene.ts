@@ -16,21 +16,27 @@ const DIRECTIONS: Record<Standard, [number, number, number]> = {
   top: [0, -0.001, 1],
 }
 
-/** Whether WebGL works, and whether a graphics card does it. */
-function graphics(): 'none' | 'software' | 'hardware' {
+interface Graphics {
+  kind: 'none' | 'software' | 'hardware'
+  parameters: THREE.WebGLRendererParameters
+}
+
+/** Whether WebGL works, and whether a graphics card does it; in software the one context that is costly to make serves. */
+function graphics(): Graphics {
   const canvas = document.createElement('canvas')
-  const context = canvas.getContext('webgl2')
-  if (!context) return 'none'
+  const context = canvas.getContext('webgl2', { antialias: false, alpha: true })
+  if (!context) return { kind: 'none', parameters: {} }
   const info = context.getExtension('WEBGL_debug_renderer_info')
   const name = String(context.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : context.RENDERER))
+  if (/swiftshader|llvmpipe|software|basic render/i.test(name)) return { kind: 'software', parameters: { canvas, context } }
   context.getExtension('WEBGL_lose_context')?.loseContext()
-  return /swiftshader|llvmpipe|software|basic render/i.test(name) ? 'software' : 'hardware'
+  return { kind: 'hardware', parameters: { antialias: true } }
 }
 
 export class Scene {
   readonly element = h('div', { class: 'scene' })
   readonly machine = new Machine()
-  readonly kind = graphics()
+  private readonly graphics = graphics()
   private readonly world = new THREE.Scene()
   private readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 100)
   private readonly light = new THREE.DirectionalLight(0xffffff, 2.2)
@@ -45,7 +51,7 @@ export class Scene {
     this.camera.up.set(0, 0, 1)
     this.light.position.set(2, -3, 5)
     this.world.add(this.sky, this.light, this.light.target, this.grid, this.machine.root)
-    if (this.kind === 'none' || !this.begin()) {
+    if (this.graphics.kind === 'none' || !this.begin()) {
       this.element.append(h('p', { class: 'notice' }, 'This browser shows no 3-D (WebGL is missing). The tables and plots work all the same.'))
     }
     onTheme(() => this.paintGround())
@@ -53,7 +59,7 @@ export class Scene {
 
   private begin(): boolean {
     try {
-      this.renderer = new THREE.WebGLRenderer({ antialias: this.kind === 'hardware', alpha: true, preserveDrawingBuffer: false })
+      this.renderer = new THREE.WebGLRenderer({ ...this.graphics.parameters, alpha: true })
     } catch {
       return false
     }
@@ -134,7 +140,7 @@ export class Scene {
   private resize(): void {
     const { clientWidth, clientHeight } = this.element
     if (!this.renderer || !clientWidth || !clientHeight) return
-    this.renderer.setPixelRatio(this.kind === 'software' ? Math.min(1, devicePixelRatio) : Math.min(2, devicePixelRatio))
+    this.renderer.setPixelRatio(this.graphics.kind === 'software' ? Math.min(1, devicePixelRatio) : Math.min(2, devicePixelRatio))
     this.renderer.setSize(clientWidth, clientHeight, false)
     this.camera.aspect = clientWidth / clientHeight
     this.camera.updateProjectionMatrix()
@@ -146,10 +152,6 @@ export class Scene {
     if (!this.renderer) return
     this.renderer.render(this.world, this.camera)
     this.element.dataset.frames = String(++this.frames)
-  }
-
-  get works(): boolean {
-    return this.renderer !== null
   }
 
   /** The view as a picture, with its background. */

@@ -14,6 +14,7 @@ export interface Page {
   unit: 'mm' | 'm'
   box: Box
   design: Described | null
+  described: string // which text and changes `design` describes
   snapshot: Snapshot | null
   error: string
 }
@@ -34,6 +35,7 @@ class Store {
     unit: 'mm',
     box: { low: [], high: [] },
     design: null,
+    described: '',
     snapshot: null,
     error: '',
   }
@@ -55,6 +57,9 @@ class Store {
     return { design: text, changes, pose, joint }
   }
 }
+
+/** Tells designs of the page apart. */
+export const sourceKey = (text: string, changes: Record<string, unknown>): string => `${JSON.stringify(changes)} ${text}`
 
 export const store = new Store()
 export const page = store.page

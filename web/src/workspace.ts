@@ -197,16 +197,17 @@ const visible = (element: HTMLElement) => element.offsetParent !== null
 export function workspacePanel(): HTMLElement {
   const parts = [cloudPart(), slicePart()]
   let stale = true
-  const refresh = settled(350, () => {
+  const now = () => {
     if (!stale || !visible(element) || !page.design) return
     stale = false
     for (const part of parts) part.fresh()
-  })
+  }
+  const refresh = settled(350, now)
   store.on(['design', 'joint', 'box'], () => {
     stale = true
     refresh()
   })
-  store.on(['tab'], () => requestAnimationFrame(refresh))
+  store.on(['tab'], () => requestAnimationFrame(now))
   const element = h('div', {}, boxTable(), ...parts.map((p) => p.element))
   return element
 }
