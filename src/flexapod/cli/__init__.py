@@ -10,7 +10,7 @@ import click
 
 from flexapod.errors import FlexapodError
 
-COMMANDS = ("animate", "check", "designs", "modes", "new", "paper", "report", "response", "simulate", "sweep")
+COMMANDS = ("animate", "check", "designs", "modes", "new", "paper", "report", "response", "serve", "simulate", "sweep")
 
 
 class _Lazy(click.Group):
