@@ -585,3 +585,15 @@ def test_bad_poses():
         fx.simulate(hexapod, fx.Pose((0.0, 0.0, 0.0)), duration=1.0)
     with pytest.raises(ArgumentError, match="nothing to simulate"):
         fx.simulate_many([], 1.0)
+
+
+def test_without_energies_the_motion_is_the_same():
+    """The balance is integrated beside the motion and does not touch it."""
+    hexapod = fx.load("mukherjee-ii")
+    drive = {"base_motion": fx.harmonic("z", 1e-6, 700.0), "duration": 0.01}
+    with_balance = fx.simulate(hexapod, fx.home_pose(hexapod), **drive)
+    without = fx.simulate(hexapod, fx.home_pose(hexapod), energies=False, **drive)
+    assert "energy_error" not in without
+    assert "energy_error" not in without.attrs
+    # steps are chosen without the work integrals, so the two agree to the tolerance of the integrator (1e-9)
+    np.testing.assert_allclose(without.displacement, with_balance.displacement, atol=1e-8 * 1e-6 * 100)

@@ -99,9 +99,11 @@ def simulate(
     own = {name: settings.pop(name) for name in RUN_SETTINGS if name in settings}  # type: ignore[misc]
     run = Run(hexapod, pose, base_motion, force, moment, leg_command, **own)
     dataset = simulate_many([run], duration, **settings).isel(run=0)
-    for name in ("status", "end_time", "steps", "evaluations", "energy_error_relative"):
-        dataset.attrs[name.removesuffix("_relative")] = dataset[name].values.item()
-    dataset = dataset.drop_vars(["status", "end_time", "steps", "evaluations", "energy_error_relative"])
+    told = ("status", "end_time", "steps", "evaluations", "energy_error_relative")
+    for name in told:
+        if name in dataset:  # without energies there is no balance
+            dataset.attrs[name.removesuffix("_relative")] = dataset[name].values.item()
+    dataset = dataset.drop_vars(told, errors="ignore")
     last = dataset.attrs.pop("last")[0]
     status, end = dataset.attrs["status"], dataset.attrs["end_time"]
     if status == "complete":
