@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOMES = {
-    "errors": ["DesignError", "FlexapodError", "KinematicsError", "PoseError", "SingularPoseError"],
+    "errors": [
+        "ArgumentError",
+        "DesignError",
+        "FlexapodError",
+        "KinematicsError",
+        "PathError",
+        "PoseError",
+        "SingularPoseError",
+        "UnstableError",
+    ],
     "hexapod": ["Damping", "Hexapod", "LegPart", "Legs", "Limits", "load", "packaged_designs", "template"],
     "pose": ["Motion", "Pose"],
     "kinematics": [
@@ -51,6 +60,8 @@ _HOMES = {
         "stability_index",
     ],
     "linear": ["DampedModes", "Linearisation", "StateSpace", "linearise"],
+    "trajectory": ["Path"],
+    "path": ["PathIndex", "path_index", "path_loads"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = sorted([*_HOME_OF, "__version__"])
@@ -75,5 +86,7 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.kinematics import *  # noqa: F403
     from flexapod.linear import *  # noqa: F403
     from flexapod.modal import *  # noqa: F403
+    from flexapod.path import *  # noqa: F403
     from flexapod.pose import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403
+    from flexapod.trajectory import *  # noqa: F403

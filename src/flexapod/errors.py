@@ -5,6 +5,10 @@ class FlexapodError(Exception):
     """Base of all errors that Flexapod raises on purpose."""
 
 
+class ArgumentError(FlexapodError, ValueError):
+    """A number, table or name given to a study that it cannot work with."""
+
+
 class DesignError(FlexapodError, ValueError):
     """A design that cannot be a hexapod: a wrong key, unit, size or value."""
 
@@ -19,3 +23,11 @@ class KinematicsError(FlexapodError, ValueError):
 
 class SingularPoseError(FlexapodError, ValueError):
     """A pose at which the legs cannot hold the platform (H is singular)."""
+
+
+class PathError(FlexapodError, ValueError):
+    """Waypoints or times that make no path, or a path that cannot be found."""
+
+
+class UnstableError(FlexapodError, ValueError):
+    """A closed loop that the exact tangent shows to be unstable, or a controller that cannot be made."""
