@@ -62,6 +62,8 @@ _HOMES = {
     "linear": ["DampedModes", "Linearisation", "StateSpace", "linearise"],
     "trajectory": ["Path"],
     "path": ["PathIndex", "path_index", "path_loads"],
+    "requirements": ["PathRequirements"],
+    "planning": ["LegSpeed", "Plan", "plan_path"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = sorted([*_HOME_OF, "__version__"])
@@ -87,6 +89,8 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.linear import *  # noqa: F403
     from flexapod.modal import *  # noqa: F403
     from flexapod.path import *  # noqa: F403
+    from flexapod.planning import *  # noqa: F403
     from flexapod.pose import *  # noqa: F403
+    from flexapod.requirements import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403
     from flexapod.trajectory import *  # noqa: F403
