@@ -11,6 +11,9 @@ template <int N, class T = double> struct Dual {
 
   Dual() = default;
   Dual(T value) : v(value) {}  // NOLINT: a constant is a dual number with no derivative
+  Dual(double value)           // NOLINT: the same where T holds many numbers
+    requires(!std::is_same_v<T, double>)
+      : v(value) {}
 
   static Dual variable(T value, int index) {
     Dual x(value);
@@ -51,6 +54,10 @@ template <int N, class T> struct is_scalar<Dual<N, T>> : std::true_type {};
 template <int N, class T> Dual<N, T> sqrt(const Dual<N, T>& a) {
   const T root = sqrt(a.v);
   return Dual<N, T>::chain(root, T(0.5) / root, a);
+}
+template <int N, class T> Dual<N, T> rsqrt(const Dual<N, T>& a) {
+  const T root = rsqrt(a.v);
+  return Dual<N, T>::chain(root, T(-0.5) * root * root * root, a);
 }
 template <int N, class T> Dual<N, T> abs(const Dual<N, T>& a) {
   return Dual<N, T>::chain(abs(a.v), select(a.v < T(0.0), T(-1.0), T(1.0)), a);

@@ -7,8 +7,10 @@
 namespace flexapod {
 
 /// Where the legs are: vectors in the axes of the poses given.
-template <class T> struct Geometry {
-  Vec3<T> q_p[6], q_b[6];  // joints from the reference points of platform and base
+/// P is the type of the platform joints: in the platform's own axes they are constants of the design.
+template <class T, class P = T> struct Geometry {
+  Vec3<P> q_p[6];          // joints from the reference points of the platform
+  Vec3<T> q_b[6];          // and of the base
   Vec3<T> S[6];            // legs, base joint to platform joint (Eq. 6)
   Vec3<T> k[6];            // universal axes
 
@@ -21,21 +23,34 @@ template <class T> struct Geometry {
       k[i] = base.R * d.k[i];
     }
   }
+  /// In the platform's axes, for a base given in them.
+  Geometry(const Design<P>& d, const Pose<T>& base)
+    requires(!std::is_same_v<T, P>)
+  {
+    for (int i = 0; i < 6; ++i) {
+      q_p[i] = d.p[i];
+      q_b[i] = base.R * d.b[i];
+      S[i] = q_p[i] - q_b[i] - base.t;
+      k[i] = base.R * d.k[i];
+    }
+  }
 };
 
 /// H: column i is the wrench on the platform of a unit force in leg i, [s; q_p x s].
+template <class T, class P> Vec6<T> leg_wrench(const Vec3<P>& q_p, const Vec3<T>& s) {
+  return Vec6<T>::of(s, cross(q_p, s));
+}
 template <class T> Mat6<T> force_transformation(const Geometry<T>& g) {
   Mat6<T> H;
   for (int i = 0; i < 6; ++i) {
-    const Vec3<T> s = (T(1.0) / norm(g.S[i])) * g.S[i];
-    const Vec6<T> h = Vec6<T>::of(s, cross(g.q_p[i], s));
+    const Vec6<T> h = leg_wrench(g.q_p[i], rsqrt(dot(g.S[i], g.S[i])) * g.S[i]);
     for (int r = 0; r < 6; ++r) H[r][i] = h[r];
   }
   return H;
 }
 
 /// Adds [Q, -Q q~; q~ Q, -q~ Q q~] with Q symmetric: the inertia Q at the point q.
-template <class T> void add_inertia_at(Mat6<T>& J, const Vec3<T>& q, const Sym3<T>& Q) {
+template <class T, class P> void add_inertia_at(Mat6<T>& J, const Vec3<P>& q, const Sym3<T>& Q) {
   const Mat3<T> top{{{Q.xx, Q.xy, Q.xz}, {Q.xy, Q.yy, Q.yz}, {Q.xz, Q.yz, Q.zz}}};
   const Mat3<T> right{{cross(q, top.row[0]), cross(q, top.row[1]), cross(q, top.row[2])}};
   const Mat3<T> left = transpose(right);

@@ -34,7 +34,7 @@ template <class T> T segment_distance(const Vec3<T>& p, const Vec3<T>& a, const 
 }
 
 /// Least distance between any two leg axes (segments between their joints).
-template <class T> T least_leg_distance(const Geometry<T>& g) {
+template <class T, class P> T least_leg_distance(const Geometry<T, P>& g) {
   T least = segment_distance(g.q_b[0], g.S[0], g.q_b[1], g.S[1]);
   for (int i = 0; i < 5; ++i)
     for (int j = i + 1; j < 6; ++j) least = min(least, segment_distance(g.q_b[i], g.S[i], g.q_b[j], g.S[j]));

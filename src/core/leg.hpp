@@ -15,18 +15,19 @@ namespace flexapod {
 template <class T> struct LegAxes {
   T L, u;       // length and its reciprocal
   Mat3<T> axes;  // rows s, y, z in the axes of the vectors given
-  T tau;        // cotangent of the angle between leg and universal axis; zero in the paper's model
+  T cosecant;   // of the angle between leg and universal axis
+  T tau;        // its cotangent; zero in the paper's model
 
   /// S: vector from base joint to platform joint (Eq. 6); k: the universal joint's axis in the base.
   template <class U> LegAxes(const Vec3<T>& S, const Vec3<U>& k, Joint joint) {
     const T L2 = dot(S, S);
-    u = T(1.0) / sqrt(L2);
+    u = rsqrt(L2);
     L = L2 * u;
     const Vec3<T> s = u * S, k_x_s = cross(k, s);
-    const T scale = T(1.0) / sqrt(dot(k_x_s, k_x_s));
-    const Vec3<T> y = scale * k_x_s;
+    cosecant = rsqrt(dot(k_x_s, k_x_s));
+    const Vec3<T> y = cosecant * k_x_s;
     axes = {{s, y, cross(s, y)}};
-    tau = joint == Joint::universal ? dot(k, s) * scale : T(0.0);
+    tau = joint == Joint::universal ? dot(k, s) * cosecant : T(0.0);
   }
   const Vec3<T>& s() const { return axes.row[0]; }
 

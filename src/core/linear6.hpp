@@ -52,7 +52,7 @@ template <class T> struct Cholesky {
     for (int j = 0; j < 6; ++j) {
       T pivot = m[j][j];
       for (int k = 0; k < j; ++k) pivot = pivot - l[j][k] * l[j][k];
-      l[j][j] = T(1.0) / sqrt(pivot);
+      l[j][j] = rsqrt(pivot);
       for (int i = j + 1; i < 6; ++i) {
         T sum = m[i][j];
         for (int k = 0; k < j; ++k) sum = sum - l[i][k] * l[j][k];

@@ -39,20 +39,28 @@ inline Modes natural_modes(const Machine<double>& machine, const Geometry<double
   return modes;
 }
 
-/// v^T H K H^T v - lambda v^T J_p v for each mode's v and lambda = omega^2. Its derivative by anything, at fixed v and
+/// v^T H K H^T v - lambda v^T J_p v for a mode's v and lambda = omega^2. Its derivative by anything, at fixed v and
 /// lambda, is that of lambda (for a mode that is not repeated), since v^T J_p v = 1.
+template <class T, class D, class U>
+T rayleigh_residual(const Machine<D>& machine, const Mat6<T>& J, const Mat6<T>& H, const Vec6<U>& shape, const U& lambda) {
+  Vec6<T> v;
+  for (int i = 0; i < 6; ++i) v[i] = T(shape[i]);
+  const Vec6<T> stretch = transposed(H, v);
+  T sum = T(-lambda) * dot(v, J * v);
+  for (int i = 0; i < 6; ++i) sum += machine.design.leg[i].stiffness * (stretch[i] * stretch[i]);
+  return sum;
+}
+
+/// The residuals of all modes.
 template <class T, class D>
 Vec6<product_t<T, D>> rayleigh_residuals(const Machine<D>& machine, const Geometry<T>& g, const Mat3<T>& R,
                                          const Modes& modes) {
   const Mat6<T> J = inertia(machine, g, R), H = force_transformation(g);
   Vec6<T> residual;
   for (int m = 0; m < 6; ++m) {
-    Vec6<T> v;
-    for (int i = 0; i < 6; ++i) v[i] = T(modes.shape[i][m]);
-    const Vec6<T> stretch = transposed(H, v);
-    T sum = -(modes.omega[m] * modes.omega[m]) * dot(v, J * v);
-    for (int i = 0; i < 6; ++i) sum += machine.design.leg[i].stiffness * (stretch[i] * stretch[i]);
-    residual[m] = sum;
+    Vec6<double> v;
+    for (int i = 0; i < 6; ++i) v[i] = modes.shape[i][m];
+    residual[m] = rayleigh_residual(machine, J, H, v, modes.omega[m] * modes.omega[m]);
   }
   return residual;
 }

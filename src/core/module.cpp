@@ -6,6 +6,7 @@
 #include "modes.hpp"
 #include "reactions.hpp"
 #include "statics.hpp"
+#include "sweep_module.hpp"
 
 namespace flexapod {
 namespace {
@@ -273,4 +274,5 @@ NB_MODULE(_core, m) {
   m.def("frequency_derivatives", &frequency_derivatives);
   m.def("tangent", &tangent_);
   m.def("settle", &settle_);
+  bind_sweep(m);
 }

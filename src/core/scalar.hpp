@@ -18,10 +18,13 @@ template <class A, class B> using product_t = decltype(std::declval<A>() * std::
 template <class T> using mask_t = decltype(std::declval<T>() < std::declval<T>());
 
 inline double sqrt(double x) { return std::sqrt(x); }
+inline double rsqrt(double x) { return 1.0 / std::sqrt(x); }
 inline double abs(double x) { return std::abs(x); }
 inline double acos(double x) { return std::acos(x); }
 inline double atan2(double y, double x) { return std::atan2(y, x); }
 inline double select(bool take_a, double a, double b) { return take_a ? a : b; }
+
+inline bool any(bool condition) { return condition; }  // whether any lane is true
 
 template <class T> T min(T a, T b) { return select(a < b, a, b); }
 template <class T> T max(T a, T b) { return select(a > b, a, b); }

@@ -60,7 +60,7 @@ _HOMES = {
         "stability_index",
     ],
     "linear": ["DampedModes", "Linearisation", "StateSpace", "linearise"],
-    "trajectory": ["Path"],
+    "waypoints": ["Path"],
     "path": ["PathIndex", "path_index", "path_loads"],
     "requirements": ["PathRequirements"],
     "planning": ["LegSpeed", "Plan", "plan_path"],
@@ -93,4 +93,4 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.pose import *  # noqa: F403
     from flexapod.requirements import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403
-    from flexapod.trajectory import *  # noqa: F403
+    from flexapod.waypoints import *  # noqa: F403

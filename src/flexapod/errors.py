@@ -31,3 +31,11 @@ class PathError(FlexapodError, ValueError):
 
 class UnstableError(FlexapodError, ValueError):
     """A closed loop that the exact tangent shows to be unstable, or a controller that cannot be made."""
+
+
+class OutputError(FlexapodError, OSError):
+    """A file or store that cannot be written, read, or taken up again."""
+
+
+class ClusterError(FlexapodError, RuntimeError):
+    """A cluster of computers that cannot be reached, or that gave up."""

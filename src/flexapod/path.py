@@ -19,7 +19,7 @@ from flexapod.kinematics import check_limits, condition_number, force_transforma
 from flexapod.modal import natural_modes
 from flexapod.pose import Array, Pose
 from flexapod.states import ZERO, JointModel
-from flexapod.trajectory import Path
+from flexapod.waypoints import Path
 
 LEGS = ("1", "2", "3", "4", "5", "6")
 _ZERO_INDEX = 1e-6  # of the largest index on the path: what a singular pose leaves of the lowest frequency

@@ -17,7 +17,7 @@ from flexapod.pose import Array, Pose
 from flexapod.requirements import Margins, PathRequirements
 from flexapod.smoothing import Knots, Smoother, Speeds, duration, resampled
 from flexapod.states import check_pose_of_one
-from flexapod.trajectory import Chart, Path
+from flexapod.waypoints import Chart, Path
 
 Objective = Literal["length", "time"]
 Progress = Callable[[str, float], None]

@@ -12,7 +12,7 @@ from flexapod.hexapod import Hexapod
 from flexapod.kinematics import leg_rates
 from flexapod.pose import Array
 from flexapod.requirements import Margins, smooth_minimum
-from flexapod.trajectory import Chart, spline, turning
+from flexapod.waypoints import Chart, spline, turning
 
 _STEP = 1e-6  # of central differences, in scaled coordinates: truncation and rounding both near 1e-10
 _ROUGHNESS = 2e-3  # weight of the mean squared acceleration against length: fixes how fast the line is run

@@ -1,0 +1,178 @@
+// Many poses at once: a scalar made of lanes. `Pack<V, N>` is N hardware vectors V; more than one hides the latency of
+// square roots and quotients. V may be `double` itself, where a compiler has no vector types.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "scalar.hpp"
+
+#if defined(__AVX512F__) || defined(__AVX2__) || defined(__SSE2__)
+#include <immintrin.h>
+#endif
+
+#if defined(__GNUC__)
+#define FLEXAPOD_INLINE inline __attribute__((always_inline))
+#define FLEXAPOD_UNROLL _Pragma("GCC unroll 16")
+#else
+#define FLEXAPOD_INLINE inline
+#define FLEXAPOD_UNROLL
+#endif
+
+namespace flexapod {
+
+#if defined(__GNUC__)
+#if defined(__AVX512F__)
+using Vector = double __attribute__((vector_size(64)));
+#elif defined(__AVX2__)
+using Vector = double __attribute__((vector_size(32)));
+#else
+using Vector = double __attribute__((vector_size(16)));
+#endif
+#else
+using Vector = double;
+#endif
+
+/// Which lanes a condition holds in.
+template <class V, int N> struct Mask {
+  using Bits = decltype(V{} < V{});
+  Bits m[N];
+
+  friend FLEXAPOD_INLINE Mask operator&(Mask a, const Mask& b) {
+    for (int i = 0; i < N; ++i) a.m[i] = a.m[i] & b.m[i];
+    return a;
+  }
+  friend FLEXAPOD_INLINE Mask operator|(Mask a, const Mask& b) {
+    for (int i = 0; i < N; ++i) a.m[i] = a.m[i] | b.m[i];
+    return a;
+  }
+  friend FLEXAPOD_INLINE Mask operator!(Mask a) {
+    for (int i = 0; i < N; ++i) a.m[i] = a.m[i] == Bits{};
+    return a;
+  }
+};
+
+template <class V, int N> FLEXAPOD_INLINE bool any(const Mask<V, N>& mask) {
+  auto all = mask.m[0];
+  for (int i = 1; i < N; ++i) all = all | mask.m[i];
+#if defined(__AVX512F__)
+  if constexpr (sizeof(V) == 64) return _mm512_test_epi64_mask((__m512i)all, (__m512i)all) != 0;
+#endif
+#if defined(__AVX2__)
+  if constexpr (sizeof(V) == 32) return _mm256_movemask_pd((__m256d)all) != 0;
+#endif
+#if defined(__SSE2__)
+  if constexpr (sizeof(V) == 16) return _mm_movemask_pd((__m128d)all) != 0;
+#endif
+  std::int64_t bits[sizeof(all) > 8 ? sizeof(all) / 8 : 1] = {};
+  std::memcpy(bits, &all, sizeof(all));
+  std::int64_t found = 0;
+  for (const std::int64_t b : bits) found |= b;
+  return found != 0;
+}
+
+template <class V, int N> struct Pack {
+  static constexpr int lanes = N * static_cast<int>(sizeof(V) / sizeof(double));
+  V v[N];
+
+  Pack() = default;
+  FLEXAPOD_INLINE Pack(double x) {  // NOLINT: a number is a pack of equal lanes
+    for (int i = 0; i < N; ++i) v[i] = x - V{};
+  }
+  static FLEXAPOD_INLINE Pack load(const double* p) {
+    Pack r;
+    std::memcpy(r.v, p, sizeof(r.v));
+    return r;
+  }
+  FLEXAPOD_INLINE void store(double* p) const { std::memcpy(p, v, sizeof(v)); }
+
+  FLEXAPOD_INLINE Pack& operator+=(const Pack& b) { return *this = *this + b; }
+  FLEXAPOD_INLINE Pack& operator-=(const Pack& b) { return *this = *this - b; }
+  FLEXAPOD_INLINE Pack& operator*=(const Pack& b) { return *this = *this * b; }
+
+#define FLEXAPOD_OPERATOR(op)                                                 \
+  friend FLEXAPOD_INLINE Pack operator op(const Pack& a, const Pack& b) {     \
+    Pack r;                                                                   \
+    for (int i = 0; i < N; ++i) r.v[i] = a.v[i] op b.v[i];                    \
+    return r;                                                                 \
+  }
+  FLEXAPOD_OPERATOR(+)
+  FLEXAPOD_OPERATOR(-)
+  FLEXAPOD_OPERATOR(*)
+  FLEXAPOD_OPERATOR(/)
+#undef FLEXAPOD_OPERATOR
+#define FLEXAPOD_COMPARISON(op)                                                  \
+  friend FLEXAPOD_INLINE Mask<V, N> operator op(const Pack& a, const Pack& b) {  \
+    Mask<V, N> r;                                                                \
+    for (int i = 0; i < N; ++i) r.m[i] = a.v[i] op b.v[i];                       \
+    return r;                                                                    \
+  }
+  FLEXAPOD_COMPARISON(<)
+  FLEXAPOD_COMPARISON(>)
+  FLEXAPOD_COMPARISON(<=)
+  FLEXAPOD_COMPARISON(>=)
+#undef FLEXAPOD_COMPARISON
+  friend FLEXAPOD_INLINE Pack operator-(const Pack& a) {
+    Pack r;
+    for (int i = 0; i < N; ++i) r.v[i] = -a.v[i];
+    return r;
+  }
+};
+
+template <class V, int N> struct is_scalar<Pack<V, N>> : std::true_type {};
+
+template <class V, int N>
+FLEXAPOD_INLINE Pack<V, N> select(const Mask<V, N>& take_a, const Pack<V, N>& a, const Pack<V, N>& b) {
+  Pack<V, N> r;
+  for (int i = 0; i < N; ++i) r.v[i] = take_a.m[i] ? a.v[i] : b.v[i];
+  return r;
+}
+
+template <class V, int N> FLEXAPOD_INLINE Pack<V, N> abs(const Pack<V, N>& a) { return select(a < 0.0, -a, a); }
+
+namespace detail {
+template <class V> FLEXAPOD_INLINE V sqrt_vector(V a) {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(V) == 64) return (V)_mm512_maskz_sqrt_pd(0xff, (__m512d)a);
+#endif
+#if defined(__AVX2__)
+  if constexpr (sizeof(V) == 32) return (V)_mm256_sqrt_pd((__m256d)a);
+#endif
+#if defined(__SSE2__)
+  if constexpr (sizeof(V) == 16) return (V)_mm_sqrt_pd((__m128d)a);
+#endif
+  double x[sizeof(V) / sizeof(double)];
+  std::memcpy(x, &a, sizeof(V));
+  for (double& number : x) number = __builtin_sqrt(number);
+  std::memcpy(&a, x, sizeof(V));
+  return a;
+}
+
+/// 1 / sqrt(a) to about one rounding, for 0 < a < inf: an estimate of 14 bits, then steps of order three and two.
+template <class V> FLEXAPOD_INLINE V rsqrt_vector(V a) {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(V) == 64) {
+    V y = (V)_mm512_maskz_rsqrt14_pd(0xff, (__m512d)a);
+    V e = 1.0 - (a * y) * y;
+    y = y + (y * e) * (0.5 + 0.375 * e);
+    const V half = 0.5 * y;
+    e = 1.0 - (a * y) * y;
+    return y + half * e;
+  }
+#endif
+  return 1.0 / sqrt_vector(a);
+}
+}  // namespace detail
+
+template <class V, int N> FLEXAPOD_INLINE Pack<V, N> sqrt(const Pack<V, N>& a) {
+  Pack<V, N> r;
+  for (int i = 0; i < N; ++i) r.v[i] = detail::sqrt_vector(a.v[i]);
+  return r;
+}
+template <class V, int N> FLEXAPOD_INLINE Pack<V, N> rsqrt(const Pack<V, N>& a) {
+  Pack<V, N> r;
+  for (int i = 0; i < N; ++i) r.v[i] = detail::rsqrt_vector(a.v[i]);
+  return r;
+}
+
+}  // namespace flexapod

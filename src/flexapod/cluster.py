@@ -1,0 +1,90 @@
+"""Blocks of a stored sweep computed by the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from flexapod.errors import ClusterError
+from flexapod.posesets import GivenPoses
+from flexapod.sweepjob import Finished, Job, compute_block
+
+LOCAL = "local"
+_POLL = 0.5  # s between looks at whether to stop
+
+
+class Cluster:
+    """See `flexapod.sweepjob.Workers`. A block whose worker dies is computed anew by another."""
+
+    def __init__(self, client: Any) -> None:
+        self.client = client
+
+    def compute(self, job: Job, numbers: Iterable[int], stop: Callable[[], bool]) -> Iterator[Finished]:
+        from distributed import KilledWorker, wait
+
+        waiting = iter(numbers)
+        running: dict[Any, int] = {}
+        try:
+            while True:
+                while len(running) < self._most() and not stop():
+                    number = next(waiting, None)
+                    if number is None:
+                        break
+                    running[self._submit(job, number)] = number
+                if not running:
+                    return
+                try:
+                    wait(list(running), timeout=_POLL, return_when="FIRST_COMPLETED")
+                except TimeoutError:
+                    continue
+                for future in [future for future in running if future.done()]:
+                    del running[future]
+                    yield future.result()
+        except KilledWorker as error:
+            raise ClusterError(f"the cluster lost several workers over one block: {error}") from error
+        finally:
+            self.client.cancel(list(running))
+
+    def _most(self) -> int:
+        """Blocks to have under way: enough that no worker waits for its next one."""
+        return max(2, 2 * sum(self.client.nthreads().values()))
+
+    def _submit(self, job: Job, number: int) -> Any:
+        rows = None
+        if isinstance(job.points, GivenPoses):  # each worker gets the poses of its block, not all
+            block = job.blocks[number]
+            rows = job.points.rows(block.start, block.stop)
+            job = job._replace(points=None)
+        return self.client.submit(compute_block, job, number, rows, key=f"sweep-{job.token}-{number}", retries=2)
+
+
+@contextmanager
+def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
+    """The cluster of the Dask scheduler at an address such as tcp://host:8786; "local" starts one on this machine.
+
+    Raises ClusterError where no scheduler answers within `timeout` seconds, or where it has no worker.
+    """
+    try:
+        from distributed import Client, LocalCluster
+    except ImportError:
+        raise ClusterError("a cluster needs dask.distributed. Install it with: pip install 'flexapod[sweep]'") from None
+    if address == LOCAL:
+        with LocalCluster(threads_per_worker=1, dashboard_address=None) as own, Client(own) as client:
+            yield Cluster(client)
+        return
+    try:
+        client = Client(address, timeout=timeout)
+    except (OSError, TimeoutError, ValueError) as error:
+        raise ClusterError(
+            f"no Dask scheduler answers at {address} ({error}). Start one with `dask scheduler`, check the address "
+            "(tcp://host:port), or use the address `local`."
+        ) from error
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=timeout)
+        except TimeoutError:
+            raise ClusterError(
+                f"the scheduler at {address} has no workers. Start some with `dask worker {address}`."
+            ) from None
+        yield Cluster(client)
