@@ -22,7 +22,7 @@ class Search(NamedTuple):
 
 
 def search(
-    margins: Callable[[Array], Array],
+    met: Callable[[Array], np.ndarray],
     ends: Array,
     low: Array,
     high: Array,
@@ -31,7 +31,7 @@ def search(
     seed: int = 0,
     progress: Callable[[float], None] | None = None,
 ) -> Search:
-    """A short polyline from ends[0] to ends[1] within [low, high] on which margins (n, k) -> (n,) stay >= 0.
+    """A short polyline from ends[0] to ends[1] within [low, high] whose every point meets met((n, k)) -> (n,) bool.
 
     Lines are checked at points `step` apart. The same seed gives the same line. Raises PathError without OMPL.
     """
@@ -40,8 +40,8 @@ def search(
     util.RNG.setSeed(seed + 1)
     space = _space(base, low, high)
     information = base.SpaceInformation(space)
-    information.setStateValidityChecker(lambda state: bool(margins(_point(state, low.size)[None])[0] >= 0))
-    lines = _line_checker(base, information, margins, low.size, step)
+    information.setStateValidityChecker(lambda state: bool(met(_point(state, low.size)[None])[0]))
+    lines = _line_checker(base, information, met, low.size, step)
     information.setMotionValidator(lines)
     information.setup()
     problem = base.ProblemDefinition(information)
@@ -57,7 +57,7 @@ def search(
         batches = planner.numBatches()
         if progress is not None:
             progress(batches / BATCHES)
-        if problem.hasExactSolution() and not found_at:
+        if not found_at and np.isfinite(planner.bestCost().value()):
             found_at.append(batches)
         return batches >= BATCHES or (bool(found_at) and batches >= found_at[0] + _AFTER_FOUND)
 
@@ -97,7 +97,7 @@ def _point(state: Any, size: int) -> Array:
     return np.array([state[i] for i in range(size)])
 
 
-def _line_checker(base: Any, information: Any, margins: Callable[[Array], Array], size: int, step: float) -> Any:
+def _line_checker(base: Any, information: Any, met: Callable[[Array], np.ndarray], size: int, step: float) -> Any:
     class Lines(base.MotionValidator):
         """Checks all points of a line in one call, the ends and the middle first."""
 
@@ -106,6 +106,6 @@ def _line_checker(base: Any, information: Any, margins: Callable[[Array], Array]
             count = max(2, int(np.ceil(np.linalg.norm(b - a) / step)) + 1)
             shares = np.linspace(0.0, 1.0, count)[:, None]
             coarse = shares[:: max(1, count // 6)]
-            return bool((margins(a + (b - a) * coarse) >= 0).all() and (margins(a + (b - a) * shares) >= 0).all())
+            return bool(met(a + (b - a) * coarse).all() and met(a + (b - a) * shares).all())
 
     return Lines(information)

@@ -138,15 +138,15 @@ class _Task:
         room = np.repeat([self.margins.reach_from(both) / self.size, needed.turn], 3)
         self.low, self.high = self.ends.min(axis=0) - room, self.ends.max(axis=0) + room
 
-    def at(self, z: Array) -> Array:
-        """(n,) least margin at points (n, 6)."""
-        return self.margins.worst(self.chart.poses(z * self.scale))
+    def met(self, z: Array) -> np.ndarray:
+        """(n,) whether points (n, 6) meet every requirement."""
+        return self.margins.met(self.chart.poses(z * self.scale))
 
     def worst(self, path: Path, samples: int = 400) -> Array:
         return self.margins.worst(path(path.grid(samples)).pose)
 
     def explore(self, seed: int, progress: Callable[[float], None]) -> tuple[Array, int]:
-        found = search(self.at, self.ends, self.low, self.high, step=_STEP, seed=seed, progress=progress)
+        found = search(self.met, self.ends, self.low, self.high, step=_STEP, seed=seed, progress=progress)
         if found.points is None:
             raise PathError(self._why_not(seed))
         return found.points, found.batches
@@ -156,7 +156,7 @@ class _Task:
         points = self.low + (self.high - self.low) * np.random.default_rng(seed).random((2000, 6))
         poses = self.chart.poses(points * self.scale)
         index = self.margins.frequencies(poses)[:, 0]
-        share = float((self.margins.worst(poses) >= 0).mean())
+        share = float(self.margins.met(poses).mean())
         stiff = float((index >= self.required.index).mean())
         return (
             f"no path was found that keeps the index above {self.required.index:.5g} rad/s and all limits: of poses "

@@ -9,8 +9,8 @@ import numpy as np
 from flexapod.errors import PathError
 from flexapod.hexapod import Hexapod
 from flexapod.kinematics import check_limits, condition_number, inverse_kinematics, limit_excess
-from flexapod.modal import natural_modes
 from flexapod.pose import Array, Pose
+from flexapod.quantities import evaluate
 from flexapod.states import JointModel
 
 _SHARPNESS = 80.0  # of smooth minima: they lie below the true one by at most log(12)/80, 3 %
@@ -57,10 +57,19 @@ class Margins:
 
     def frequencies(self, poses: Pose) -> Array:
         """(n, 6) rad/s; zero where no leg can take the pose."""
-        return np.nan_to_num(natural_modes(self.hexapod, poses, self.required.joint).omega)
+        return np.nan_to_num(evaluate(self.hexapod, _rows(poses), ("omega",), self.required.joint, 1)["omega"])
+
+    def met(self, poses: Pose) -> np.ndarray:
+        """(n,) whether each pose meets every requirement."""
+        wanted = ("omega_1", "within_limits", "cond_H")[: 3 if self.required.condition_number else 2]
+        found = evaluate(self.limited, _rows(poses), wanted, self.required.joint, 1)
+        ok = (found["omega_1"] >= self.required.index) & found["within_limits"].astype(bool)
+        if self.required.condition_number is not None:
+            ok &= found["cond_H"] <= self.required.condition_number
+        return ok
 
     def worst(self, poses: Pose) -> Array:
-        """(n,) the least margin of each pose; exact."""
+        """(n,) the least margin of each pose."""
         parts = [self.frequencies(poses)[:, :1] / self.required.index - 1, *self._others(poses)]
         least = np.min([part.min(axis=1) for part in parts], axis=0)
         return np.where(np.isfinite(least), least, -np.inf)
@@ -89,7 +98,7 @@ class Margins:
 
     def check(self, pose: Pose, name: str) -> None:
         """Raises PathError for an end of a path that breaks a requirement, and says which."""
-        index = float(self.frequencies(pose[None])[0, 0])
+        index = float(self.frequencies(Pose(pose.position[None], pose.matrix[None]))[0, 0])
         required = self.required
         if not index >= required.index:
             raise PathError(
@@ -116,3 +125,7 @@ def smooth_minimum(values: Array) -> Array:
     least = values.min(axis=-1, keepdims=True)
     least = np.where(np.isfinite(least), least, -1e3)
     return least[..., 0] - np.log(np.exp(-_SHARPNESS * (values - least)).sum(axis=-1)) / _SHARPNESS
+
+
+def _rows(poses: Pose) -> Array:
+    return np.concatenate([poses.position, poses.matrix.reshape(-1, 9)], axis=1)
