@@ -16,6 +16,13 @@ inline double kinetic_energy(double m, const Vec3<double>& c, const Sym3<double>
   return 0.5 * m * dot(v, v) + dot(v, cross(w, c)) + 0.5 * dot(w, J * w);
 }
 
+/// Power lost in one leg's joints, W.
+inline double leg_dissipation(const Leg<double>& leg, const LegEnds<double>& end, const LegMotion<double>& motion) {
+  const Vec3<double> at_platform = motion.omega - end.omega_p;
+  return leg.C_p * end.v.x * end.v.x + leg.C_u * dot(motion.omega_rel, motion.omega_rel) +
+         leg.C_s * dot(at_platform, at_platform);
+}
+
 /// Of platform and legs; gravitational energy is zero at the inertial origin. The elastic part is that of legs with
 /// unstretched lengths L_0.
 inline Energy energy(const Machine<double>& machine, const Motion<double>& platform, const Motion<double>& base,
@@ -39,9 +46,7 @@ inline Energy energy(const Machine<double>& machine, const Motion<double>& platf
                                   transposed(leg.axes, in.c_d + in.c_u);
     e.gravitational -= dot(d.gravity, weighted);
     e.elastic += 0.5 * d.leg[i].stiffness * (leg.L - L_0[i]) * (leg.L - L_0[i]);
-    const Vec3<double> at_platform = motion.omega - end.omega_p;
-    e.dissipation += d.leg[i].C_p * end.v.x * end.v.x + d.leg[i].C_u * dot(motion.omega_rel, motion.omega_rel) +
-                     d.leg[i].C_s * dot(at_platform, at_platform);
+    e.dissipation += leg_dissipation(d.leg[i], end, motion);
   }
   return e;
 }

@@ -38,11 +38,21 @@ template <class T, class U> Pose<T> displaced(const Pose<U>& pose, const Vec3<T>
   return moved;
 }
 
+/// Coefficients of Rodrigues' formula exp(e) = 1 + sine e~ + versine e~ e~, precise for every angle.
+struct Turn {
+  double sine, versine;
+
+  explicit Turn(double angle2) {
+    const double half = 0.5 * std::sqrt(angle2), sinc = half > 0 ? std::sin(half) / half : 1.0;
+    sine = std::cos(half) * sinc;
+    versine = 0.5 * sinc * sinc;
+  }
+};
+
 /// The rotation exp(e) by Rodrigues' formula.
 inline Mat3<double> rotation(const Vec3<double>& e) {
-  const double angle2 = dot(e, e), angle = std::sqrt(angle2);
-  const double a = angle < 1e-4 ? 1.0 - angle2 / 6.0 : std::sin(angle) / angle;
-  const double half = angle < 1e-4 ? 0.5 - angle2 / 24.0 : (1.0 - std::cos(angle)) / angle2;
+  const double angle2 = dot(e, e);
+  const auto [a, half] = Turn(angle2);
   const double c = 1.0 - half * angle2;
   return {{{c + half * e.x * e.x, half * e.x * e.y - a * e.z, half * e.x * e.z + a * e.y},
            {half * e.x * e.y + a * e.z, c + half * e.y * e.y, half * e.y * e.z - a * e.x},

@@ -64,6 +64,7 @@ _HOMES = {
     "path": ["PathIndex", "path_index", "path_loads"],
     "requirements": ["PathRequirements"],
     "planning": ["LegSpeed", "Plan", "plan_path"],
+    "response": ["random_response", "transmissibility"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = sorted([*_HOME_OF, "__version__"])
@@ -92,5 +93,6 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.planning import *  # noqa: F403
     from flexapod.pose import *  # noqa: F403
     from flexapod.requirements import *  # noqa: F403
+    from flexapod.response import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403
     from flexapod.waypoints import *  # noqa: F403

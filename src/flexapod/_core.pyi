@@ -1,4 +1,6 @@
 # What the compiled core offers. `design` is Hexapod.packed; platform, base, start are rows of 24 numbers.
+from collections.abc import Callable
+
 from numpy import float64
 from numpy.typing import NDArray
 
@@ -23,3 +25,17 @@ def inertia_parts(design: _A, universal: bool, platform: _A, base: _A) -> tuple[
 def frequency_derivatives(design: _A, universal: bool, platform: _A, base: _A) -> tuple[_A, _A]: ...
 def tangent(design: _A, universal: bool, platform: _A, base: _A, wrench: _A, unstretched: _A) -> tuple[_A, ...]: ...
 def settle(design: _A, start: _A, base: _A, wrench: _A, unstretched: _A) -> tuple[_A, str]: ...
+
+setup_size: int
+
+def simulate(
+    designs: _A,
+    universal: bool,
+    setups: _A,
+    excitations: list[_A],
+    times: _A,
+    options: _A,
+    progress: Callable[[float], object] | None,
+) -> tuple[_A, _A, _A, _A, _A, _A, _A, _A]: ...
+def excitation(terms: _A, times: _A) -> _A: ...
+def base_motion(terms: _A, roll_pitch_yaw: bool, rest: _A, times: _A) -> _A: ...

@@ -1,5 +1,7 @@
 """What can go wrong, by name. Every message says the thing, its value, what is required and the remedy."""
 
+from typing import Any
+
 
 class FlexapodError(Exception):
     """Base of all errors that Flexapod raises on purpose."""
@@ -39,3 +41,11 @@ class OutputError(FlexapodError, OSError):
 
 class ClusterError(FlexapodError, RuntimeError):
     """A cluster of computers that cannot be reached, or that gave up."""
+
+
+class SimulationError(FlexapodError, RuntimeError):
+    """A simulation that could not be carried on. `time` (s) and `pose`: where it ended; `result`: the Dataset so far."""
+
+    def __init__(self, message: str, time: float = float("nan"), pose: Any = None, result: Any = None) -> None:
+        super().__init__(message)
+        self.time, self.pose, self.result = time, pose, result

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypedDict
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,6 +23,15 @@ INPUTS = ("base_acceleration", "leg_force", "wrench", "leg_command")
 OUTPUTS = ("position", "leg_length", "leg_force", "acceleration")
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 LEGS = ("1", "2", "3", "4", "5", "6")
+
+
+class RestOptions(TypedDict, total=False):
+    """What `linearise` takes beside the hexapod and the pose, for the studies that pass it on."""
+
+    base: Pose | None
+    force: ArrayLike
+    moment: ArrayLike
+    joint: JointModel
 
 
 class DampedModes(NamedTuple):
@@ -71,6 +80,7 @@ class Linearisation:
     leg_stiffness: Array
     rest: Equilibrium
     carry: Array  # displacement of a platform that moves rigidly with the base: x = carry x_b
+    gravity: Array
 
     def modes(self) -> DampedModes:
         """Complex modes with the base fixed. A pair of real poles (no vibration) is given by the one nearer to zero."""
@@ -158,4 +168,4 @@ def linearise(
     r = s.platform[0, :3] - s.base[0, :3]
     carry = np.eye(6)
     carry[:3, 3:] = [[0, r[2], -r[1]], [-r[2], 0, r[0]], [r[1], -r[0], 0]]
-    return Linearisation(M, C, K, M_b, C_b, K_b, H, hexapod.legs.stiffness, rest, carry)
+    return Linearisation(M, C, K, M_b, C_b, K_b, H, hexapod.legs.stiffness, rest, carry, hexapod.gravity)

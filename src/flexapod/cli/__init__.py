@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from importlib import import_module
 
@@ -9,7 +10,7 @@ import click
 
 from flexapod.errors import FlexapodError
 
-COMMANDS = ("check", "modes", "new", "report")
+COMMANDS = ("check", "designs", "modes", "new", "report")
 
 
 class _Lazy(click.Group):
@@ -22,16 +23,35 @@ class _Lazy(click.Group):
         return import_module(f"flexapod.cli.{name}").command
 
 
-@click.group(cls=_Lazy, context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=_Lazy, invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="flexapod", prog_name="flexapod")
-def group() -> None:
+@click.pass_context
+def group(ctx: click.Context) -> None:
     """Dynamic stability and vibration of flexible 6-UPS Stewart platforms (hexapods)."""
+    if ctx.invoked_subcommand is None:
+        click.echo(ctx.get_help())
 
 
-def main() -> None:
-    """Run the command line: exit code 0, or 2 for a wrong command line or design."""
+def main(arguments: list[str] | None = None) -> int:
+    """Run the command line and return its exit code: 0, or 2 for a wrong command line or design."""
+    given = sys.argv[1:] if arguments is None else arguments
     try:
-        group(standalone_mode=True)
+        group.main(given, prog_name="flexapod", standalone_mode=False)
+    except click.ClickException as error:
+        usage = error.ctx.get_usage() if isinstance(error, click.UsageError) and error.ctx else ""
+        return _fail(error.format_message(), given, type(error).__name__, usage)
     except FlexapodError as error:
-        click.echo(f"Error: {error}", err=True)
-        sys.exit(2)
+        return _fail(str(error), given, type(error).__name__)
+    except click.Abort:
+        click.echo("Interrupted.", err=True)
+        return 130
+    return 0
+
+
+def _fail(message: str, given: list[str], kind: str, usage: str = "") -> int:
+    """Say what is wrong on standard error, as JSON where JSON was asked for."""
+    if "--json" in given:
+        click.echo(json.dumps({"error": message, "kind": kind}), err=True)
+    else:
+        click.echo((usage + "\n" if usage else "") + f"Error: {message}", err=True)
+    return 2

@@ -1,0 +1,174 @@
+// Simulations as Python sees them: many at once on all threads, stopped by an interrupt.
+#include "bind_simulation.hpp"
+
+#include <nanobind/stl/vector.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+
+#include "arrays.hpp"
+#include "simulation.hpp"
+
+namespace flexapod {
+namespace {
+
+/// One simulation's numbers in a row of `setup`.
+struct Setup {
+  Pose<double> platform, base;
+  Vec6<double> leg_force, wrench, displacement, velocity;
+  double roll_pitch_yaw, carried;
+};
+constexpr size_t setup_size = sizeof(Setup) / sizeof(double);
+
+/// Runs job(i) for i < n on threads, while this one asks Python for interrupts and reports progress.
+class Crew {
+ public:
+  std::atomic<bool> stop{false};
+
+  template <class Job> void run(size_t n, size_t threads, nb::object report, const std::vector<std::atomic<double>>& done,
+                                Job&& job) {
+    std::atomic<size_t> next{0}, running{std::min(n, threads)};
+    std::vector<std::thread> workers;
+    for (size_t w = std::min(n, threads); w > 0; --w)
+      workers.emplace_back([&] {
+        for (size_t i; !stop && (i = next++) < n;) job(i);
+        const std::lock_guard lock(mutex_);
+        if (--running == 0) finished_.notify_all();
+      });
+    try {
+      wait(running, report, done);
+    } catch (...) {
+      stop = true;
+      join(workers);
+      throw;
+    }
+    join(workers);
+  }
+
+ private:
+  void wait(const std::atomic<size_t>& running, const nb::object& report, const std::vector<std::atomic<double>>& done) {
+    while (running > 0) {
+      {
+        const nb::gil_scoped_release free;
+        std::unique_lock lock(mutex_);
+        finished_.wait_for(lock, std::chrono::milliseconds(50), [&] { return running == 0; });
+      }
+      if (PyErr_CheckSignals() != 0) throw nb::python_error();
+      if (report.is_none()) continue;
+      double sum = 0;
+      for (const auto& part : done) sum += part;
+      report(sum / static_cast<double>(done.size()));
+    }
+  }
+  static void join(std::vector<std::thread>& workers) {
+    const nb::gil_scoped_release free;
+    for (std::thread& worker : workers) worker.join();
+  }
+
+  std::mutex mutex_;
+  std::condition_variable finished_;
+};
+
+RigInput rig_input(const double* design, bool universal, const Setup& s, bool works) {
+  return {*reinterpret_cast<const Design<double>*>(design),
+          universal ? Joint::universal : Joint::spin_free,
+          s.platform,
+          s.base,
+          s.leg_force,
+          s.wrench,
+          s.roll_pitch_yaw != 0.0,
+          works,
+          s.carried != 0.0,
+          s.displacement,
+          s.velocity};
+}
+
+Output nan_filled(std::initializer_list<size_t> shape) {
+  Output out(shape);
+  size_t size = 1;
+  for (const size_t n : shape) size *= n;
+  std::fill_n(out.data(), size, std::numeric_limits<double>::quiet_NaN());
+  return out;
+}
+
+/// `excitations`: for each simulation those of base, wrench and leg command. `options`: rtol, atol, max_step, max_steps,
+/// stop_at_singular, motions, works, threads.
+nb::tuple simulate(const Input& designs, bool universal, const Input& setups, const std::vector<Input>& excitations,
+                   const Input& times, const Input& options, nb::object progress) {
+  const size_t n = setups.size() / setup_size;
+  const double* design = rows(designs, n, design_size, "designs");
+  const auto* setup = reinterpret_cast<const Setup*>(rows(setups, n, setup_size, "setups"));
+  const double* o = rows(options, 1, 8, "options");
+  if (excitations.size() != 3 * n || n == 0 || times.size() % n != 0)
+    throw std::invalid_argument("excitations or times do not fit the number of simulations");
+  const size_t m = times.size() / n, kept = o[5] != 0.0 ? m : 0;
+  const Tolerances tolerances{o[0], o[1], o[2], o[3], o[4] != 0.0};
+  const bool works = o[6] != 0.0;
+
+  std::vector<Excitation> driven;
+  for (const Input& e : excitations) driven.emplace_back(e.data(), e.size());
+  Output displacement = nan_filled({n, m, 6}), work = nan_filled({n, m, 4}), platform = nan_filled({n, kept, 24}),
+         base = nan_filled({n, kept, 24}), outcome({n}), time({n}), last({n, 24}), counts({n, 3});
+  double *x = displacement.data(), *p = platform.data(), *b = base.data(), *W = work.data(), *how = outcome.data();
+  double *ended = time.data(), *c = counts.data();
+  auto* final_motion = reinterpret_cast<Motion<double>*>(last.data());
+  std::vector<std::atomic<double>> done(n);
+  Crew crew;
+  crew.run(n, static_cast<size_t>(o[7]), progress, done, [&](size_t i) {
+    Simulation simulation(rig_input(design + i * design_size, universal, setup[i], works), driven[3 * i],
+                          driven[3 * i + 1], driven[3 * i + 2], tolerances);
+    const Samples samples{times.data() + i * m, m, x + i * m * 6, kept ? p + i * m * 24 : nullptr,
+                          kept ? b + i * m * 24 : nullptr, W + i * m * 4};
+    how[i] = static_cast<double>(simulation.run(samples, crew.stop, done[i]));
+    done[i] = 1.0;
+    ended[i] = simulation.time();
+    final_motion[i] = simulation.last();
+    const Counts& count = simulation.counts();
+    c[3 * i] = count.accepted, c[3 * i + 1] = count.rejected, c[3 * i + 2] = count.evaluations;
+  });
+  return nb::make_tuple(displacement.array(), platform.array(), base.array(), work.array(), outcome.array(),
+                        time.array(), last.array(), counts.array());
+}
+
+/// Six channels with their first and second derivatives, (n, 3, 6).
+nb::object excitation(const Input& terms, const Input& times) {
+  Excitation e(terms.data(), terms.size());
+  const size_t n = times.size();
+  Output values({n, 3, 6});
+  double* out = values.data();
+  for (size_t i = 0; i < n; ++i) {
+    Jet channel[6];
+    e.at(times.data()[i], times.data()[i], channel);
+    for (const auto part : {&Jet::x, &Jet::v, &Jet::a})
+      for (const Jet& jet : channel) *out++ = jet.*part;
+  }
+  return nb::cast(values.array());
+}
+
+/// Rows of 24 numbers: how the base moves from its pose at rest.
+nb::object base_motion(const Input& terms, bool roll_pitch_yaw, const Input& rest, const Input& times) {
+  Excitation e(terms.data(), terms.size());
+  const Motion<double>* pose = motions(rest, 1, "rest");
+  const size_t n = times.size();
+  Output out({n, 24});
+  auto* motion = reinterpret_cast<Motion<double>*>(out.data());
+  for (size_t i = 0; i < n; ++i) {
+    Jet channel[6];
+    e.at(times.data()[i], times.data()[i], channel);
+    motion[i] = BaseMotion(pose->pose, channel, e.uses(3, 6), roll_pitch_yaw).motion;
+  }
+  return nb::cast(out.array());
+}
+
+}  // namespace
+
+void bind_simulation(nb::module_& m) {
+  m.attr("setup_size") = setup_size;
+  m.def("simulate", &simulate, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none());
+  m.def("excitation", &excitation);
+  m.def("base_motion", &base_motion);
+}
+
+}  // namespace flexapod

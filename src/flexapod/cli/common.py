@@ -1,0 +1,180 @@
+"""What the commands share: their common options, and how arguments become a design and a pose and results become JSON.
+
+A command stacks the decorators it needs on a function whose parameters carry the option's name:
+
+    @click.command()
+    @design_argument      # design: str      turn into a Hexapod with `load_design(design, changes)`
+    @set_option           # changes: tuple[str, ...]
+    @pose_option          # pose: tuple[float, ...] | None      turn into a Pose with `chosen_pose(hexapod, pose)`
+    @joint_option         # joint: JointModel
+    @json_option          # as_json: bool      print with `print_json`
+    def command(...): ...
+
+Nothing here imports NumPy before a command asks for a design, so that `flexapod --help` answers at once. A command
+raises FlexapodError or click.UsageError for what the user can put right; `flexapod.cli.main` prints it and exits with 2.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.shell_completion import CompletionItem
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from flexapod.hexapod import Hexapod
+    from flexapod.pose import Pose
+
+JOINT_MODELS = ("universal", "spin_free")
+
+
+class DesignName(click.ParamType):
+    """A packaged design's name or a path to a .toml file; completes both."""
+
+    name = "design"
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        from flexapod.designfile import packaged_designs
+
+        names = [CompletionItem(name) for name in packaged_designs() if name.startswith(incomplete)]
+        return [*names, CompletionItem(incomplete, type="file")]
+
+
+class Assignment(click.ParamType):
+    """KEY=VALUE of a design file; completes the keys."""
+
+    name = "key=value"
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        from flexapod.schema import KEYS
+
+        return [CompletionItem(f"{key}=") for key in KEYS if key.startswith(incomplete)]
+
+
+design_argument = click.argument("design", type=DesignName())
+set_option = click.option(
+    "--set",
+    "changes",
+    type=Assignment(),
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Change a number of the design, as platform.mass=400 or legs.stiffness_N_per_um[2]=10. Repeatable.",
+)
+pose_option = click.option(
+    "--pose",
+    type=float,
+    nargs=6,
+    default=None,
+    metavar="X Y Z ROLL PITCH YAW",
+    help="Pose of the platform in the base frame: m, and degrees about the fixed axes x, y, z. Default: home pose.",
+)
+joint_option = click.option(
+    "--joint",
+    type=click.Choice(JOINT_MODELS),
+    default="universal",
+    show_default=True,
+    help="Model of the base joints: exact, or the paper's legs that do not spin.",
+)
+characteristic_length_option = click.option(
+    "--characteristic-length",
+    type=click.FloatRange(min=0, min_open=True),
+    default=None,
+    metavar="M",
+    help="Divide the moment rows of H by this length before its condition number is taken.",
+)
+json_option = click.option("--json", "as_json", is_flag=True, help="Print the results as JSON, in SI units.")
+
+
+def stack(*decorators: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """Several decorators as one, the first outermost."""
+
+    def decorate(function: Any) -> Any:
+        for decorator in reversed(decorators):
+            function = decorator(function)
+        return function
+
+    return decorate
+
+
+def load_design(design: str, changes: Iterable[str] = ()) -> Hexapod:
+    """The design of a name or path, with the changes of `--set`. Raises DesignError."""
+    from flexapod.hexapod import load, parse_assignments
+
+    hexapod = load(design)
+    assignments = parse_assignments(changes)
+    return hexapod.replace(assignments) if assignments else hexapod
+
+
+def chosen_pose(hexapod: Hexapod, six: tuple[float, ...] | None) -> Pose:
+    """The pose of `--pose` (m, deg), or else the design's home pose. Raises UsageError where there is neither."""
+    pose = pose_or_none(hexapod, six)
+    if pose is None:
+        raise click.UsageError(
+            f"{hexapod.name!r} names no home pose, so a pose is needed. Give --pose X Y Z ROLL PITCH YAW (m, degrees), "
+            "or add a [home] table with position = [x, y, z] to the design."
+        )
+    return pose
+
+
+def pose_or_none(hexapod: Hexapod, six: tuple[float, ...] | None) -> Pose | None:
+    """As `chosen_pose`, but None where there is neither."""
+    from flexapod.kinematics import home_pose
+    from flexapod.pose import Pose
+
+    if six is None:
+        return home_pose(hexapod)
+    return Pose.from_rpy(*six[:3], *(math.radians(angle) for angle in six[3:]))
+
+
+def pose_numbers(pose: Pose) -> list[float]:
+    """A pose as the six numbers of `--pose`: m and degrees."""
+    return [*pose.position.tolist(), *(math.degrees(angle) for angle in pose.rpy)]
+
+
+def output_directory(path: Path) -> Path:
+    """The directory, made if it is not there. Raises UsageError where that cannot be."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise click.UsageError(f"{path} cannot be made a directory: {error.strerror}. Choose another --out.") from error
+    return path
+
+
+def write_file(path: Path, text: str) -> None:
+    """Write text. Raises UsageError where that cannot be."""
+    try:
+        path.write_text(text, encoding="utf-8", newline="\n")
+    except OSError as error:
+        raise click.UsageError(f"{path} cannot be written: {error.strerror}. Choose another place.") from error
+
+
+def print_json(result: Mapping[str, Any]) -> None:
+    """A result on standard output as JSON, a key a line; arrays become lists, NaN and infinity become null."""
+    lines = (f"  {json.dumps(key)}: {json.dumps(plain(value))}" for key, value in result.items())
+    click.echo("{\n" + ",\n".join(lines) + "\n}")
+
+
+def plain(value: Any) -> Any:
+    """A value in what JSON knows."""
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if hasattr(value, "tolist"):  # an array or a number of NumPy
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def console() -> Console:
+    """Where tables are printed: as wide as the terminal, plain text when the output is not one."""
+    from rich.console import Console
+
+    return Console(highlight=False)

@@ -1,0 +1,279 @@
+"""What drives the machine in time: base motions, wrenches and leg commands, with exact derivatives.
+
+An `Excitation` is a sum of terms on named channels. The same kit serves three uses: a base motion has the channels
+x, y, z (m) and roll, pitch, yaw (rad), in inertial axes and measured from the base's pose at rest; a force (N) or moment
+(N m) has x, y, z in the platform's axes; a leg command (m, change of unstretched length) has the legs 0 to 5.
+Its functions of time are evaluated in the compiled core, with their first and second derivatives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod import _core
+from flexapod.errors import ArgumentError
+from flexapod.pose import Array, Motion, Pose
+
+AXES = ("x", "y", "z", "roll", "pitch", "yaw")
+SINUSOIDS, CHIRP, PIECES = 0.0, 1.0, 2.0
+
+Channel = str | int  # an axis by name, or a leg 0 to 5
+
+
+@dataclass(frozen=True, eq=False)
+class Term:
+    """One function of time on one channel; it begins at `start`, may rise smoothly, and may end after `stop`."""
+
+    channel: Channel
+    kind: float
+    numbers: Array
+    start: float = 0.0
+    rise: float = 0.0
+    stop: float = np.inf
+    fall: float = 0.0
+    sampled: float = 0.0  # s between samples of a recording, 0 for a formula
+    last: float = np.inf  # s, end of a recording
+
+
+@dataclass(frozen=True, eq=False)
+class Excitation:
+    """A sum of terms. Excitations add; a number times one scales it. Made by the functions of this module.
+
+    rotation: how roll, pitch and yaw of a base motion turn the base, "rpy" (about the fixed axes x, y, z in this order)
+    or "vector" (a rotation vector).
+    """
+
+    terms: tuple[Term, ...] = ()
+    rotation: Literal["rpy", "vector"] = "rpy"
+
+    def __add__(self, other: Excitation) -> Excitation:
+        if not isinstance(other, Excitation):
+            return NotImplemented
+        if self.rotation != other.rotation and self._turns() and other._turns():
+            raise ArgumentError(
+                "one excitation turns by roll, pitch, yaw and the other by a rotation vector; their sum has no meaning. "
+                "Give both in the same way."
+            )
+        return Excitation(self.terms + other.terms, self.rotation if self._turns() else other.rotation)
+
+    def __mul__(self, factor: float) -> Excitation:
+        return replace(self, terms=tuple(_scaled(term, float(factor)) for term in self.terms))
+
+    __rmul__ = __mul__
+
+    def _turns(self) -> bool:
+        return any(term.channel in AXES[3:] for term in self.terms)
+
+    def ramped(self, duration: float) -> Excitation:
+        """Every term rises smoothly (three derivatives continuous) from nothing over `duration` s from its start."""
+        rise = _positive(duration, "ramp duration", "s")
+        return replace(self, terms=tuple(replace(term, rise=rise) for term in self.terms))
+
+    def stopped(self, time: float, fall: float) -> Excitation:
+        """Every term falls smoothly to nothing over `fall` s from `time`. The value falls, not the derivatives alone."""
+        stop, fall = _positive(time, "stop time", "s"), _positive(fall, "fall", "s")
+        if any(term.start + term.rise > stop for term in self.terms):
+            raise ArgumentError(f"stop time is {stop:.6g} s, before a term has risen; stop later or shorten the ramp.")
+        return replace(self, terms=tuple(replace(term, stop=stop, fall=fall) for term in self.terms))
+
+    def delayed(self, delay: float) -> Excitation:
+        """Every term later by `delay` s, and nothing before its start."""
+        if not (np.isfinite(delay) and delay >= 0):
+            raise ArgumentError(f"delay is {delay} s; it must be >= 0 and finite.")
+        moved = (
+            replace(term, start=term.start + delay, stop=term.stop + delay, last=term.last + delay)
+            for term in self.terms
+        )
+        return replace(self, terms=tuple(moved))
+
+    def as_rotation_vector(self) -> Excitation:
+        """The same, with roll, pitch, yaw read as the three components of a rotation vector."""
+        return replace(self, rotation="vector")
+
+    def on(self, channels: Mapping[Channel, Channel]) -> Excitation:
+        """The same functions of time on other channels, old to new."""
+        return replace(self, terms=tuple(replace(term, channel=channels[term.channel]) for term in self.terms))
+
+    @property
+    def channels(self) -> tuple[Channel, ...]:
+        """The channels driven, each once."""
+        return tuple(dict.fromkeys(term.channel for term in self.terms))
+
+    @property
+    def packed(self) -> Array:
+        """The terms as the core takes them, one after another."""
+        if not self.terms:
+            return np.zeros(0)
+        return np.concatenate([_packed(term) for term in self.terms])
+
+    def evaluate(self, times: ArrayLike) -> tuple[Array, Array, Array]:
+        """Values and their first and second time derivatives at `times` (...,), each (..., 6)."""
+        t = np.asarray(times, dtype=float)
+        found = _core.excitation(self.packed, np.ascontiguousarray(t.ravel()))
+        value, rate, acceleration = np.moveaxis(found, 1, 0).reshape(3, *t.shape, 6)
+        return value, rate, acceleration
+
+    def motion(self, times: ArrayLike, base: Pose | None = None) -> Motion:
+        """How a base driven by this moves in the inertial frame; `base` is its pose at rest (default: the origin)."""
+        check_channels(self, "base_motion", AXES)
+        t = np.asarray(times, dtype=float)
+        rest = Motion.fixed(base).packed
+        rows = _core.base_motion(self.packed, self.rotation == "rpy", rest, np.ascontiguousarray(t.ravel()))
+        rows = rows.reshape(*t.shape, 24)
+        pose = Pose(rows[..., :3], rows[..., 3:12].reshape(*t.shape, 3, 3))
+        return Motion(pose, *(rows[..., i : i + 3] for i in (12, 15, 18, 21)))
+
+    def __repr__(self) -> str:
+        return f"<Excitation of {', '.join(map(str, self.channels)) or 'nothing'}, {len(self.terms)} terms>"
+
+
+def harmonic(channel: Channel, amplitude: ArrayLike, omega: ArrayLike, phase: ArrayLike = 0.0) -> Excitation:
+    """Sum of A sin(omega t + phase); amplitude in the channel's unit, omega rad/s, phase rad, each one or many."""
+    parts = np.broadcast_arrays(*(np.atleast_1d(np.asarray(v, dtype=float)) for v in (amplitude, omega, phase)))
+    triples = np.stack([part.ravel() for part in parts], axis=1)
+    _finite(triples, "amplitude, omega or phase")
+    if np.any(triples[:, 1] < 0):
+        raise ArgumentError(f"omega is {triples[:, 1].min():.6g} rad/s; it must be >= 0.")
+    return _one(channel, SINUSOIDS, triples.ravel())
+
+
+def sine_sweep(
+    channel: Channel,
+    amplitude: float,
+    omega_start: float,
+    omega_end: float,
+    duration: float,
+    law: Literal["log", "linear"] = "log",
+    hold: Literal["displacement", "velocity", "acceleration"] = "displacement",
+) -> Excitation:
+    """A sine whose frequency goes from omega_start to omega_end (rad/s) in `duration` s, and then stays there.
+
+    amplitude: of the displacement at omega_start. hold: what keeps its amplitude while the frequency changes; with
+    "acceleration" the displacement's amplitude goes with 1/omega^2, as shaker tests do.
+    """
+    powers = {"displacement": 0.0, "velocity": 1.0, "acceleration": 2.0}
+    if law not in ("log", "linear"):
+        raise ArgumentError(f"law is {law!r}; it must be 'log' or 'linear'.")
+    if hold not in powers:
+        raise ArgumentError(f"hold is {hold!r}; it must be one of {', '.join(powers)}.")
+    start, end = _positive(omega_start, "omega_start", "rad/s"), _positive(omega_end, "omega_end", "rad/s")
+    numbers = [amplitude, start, end, _positive(duration, "duration", "s"), float(law == "log"), powers[hold]]
+    _finite(np.array(numbers), "amplitude")
+    return _one(channel, CHIRP, np.array(numbers))
+
+
+def half_sine_shock(
+    channel: Channel, acceleration: float, duration: float, recovery: float | None = None
+) -> Excitation:
+    """A half-sine pulse of acceleration (peak m/s2 or rad/s2, `duration` s), from rest.
+
+    The pulse leaves the velocity 2 acceleration duration / pi. With `recovery` a second half sine of that duration (s),
+    opposite and as strong as needed, brings it to rest again; without, the motion goes on at this speed.
+    """
+    _finite(np.array([acceleration]), "acceleration")
+    T = _positive(duration, "duration", "s")
+    speed = 2 * acceleration * T / np.pi
+    pieces = [_half_sine(0.0, 0.0, 0.0, acceleration, T)]
+    travel = acceleration * T**2 / np.pi
+    if recovery is not None:
+        T_2 = _positive(recovery, "recovery", "s")
+        pieces.append(_half_sine(T, travel, speed, -acceleration * T / T_2, T_2))
+        travel += speed * T_2 - acceleration * T * T_2 / np.pi
+        T, speed = T + T_2, 0.0
+    pieces.append(_piece(T, [travel, speed]))
+    return _one(channel, PIECES, _pieces(pieces, corners=True))
+
+
+def polynomial(channel: Channel, coefficients: ArrayLike) -> Excitation:
+    """c0 + c1 t + c2 t^2 + ..., up to eight coefficients: `polynomial("yaw", [0, rate])` spins the base."""
+    c = np.atleast_1d(np.asarray(coefficients, dtype=float))
+    _finite(c, "coefficients")
+    if c.ndim != 1 or not 1 <= c.size <= 8:
+        raise ArgumentError(f"coefficients have shape {c.shape}; one to eight numbers are needed.")
+    return _one(channel, PIECES, _pieces([_piece(0.0, c)], corners=True))
+
+
+def smooth_step(channel: Channel, change: float, duration: float) -> Excitation:
+    """From 0 to `change` in `duration` s with three continuous derivatives, and then at rest there."""
+    _finite(np.array([change]), "change")
+    T = _positive(duration, "duration", "s")
+    rise = np.array([0, 0, 0, 0, 35, -84, 70, -20]) * change / T ** np.arange(8)
+    return _one(channel, PIECES, _pieces([_piece(0.0, rise), _piece(T, [change])], corners=True))
+
+
+def check_channels(excitation: Excitation, use: str, allowed: Sequence[Channel]) -> None:
+    """Raises ArgumentError for a channel that a use does not have."""
+    for channel in excitation.channels:
+        if channel not in allowed:
+            raise ArgumentError(f"{use} drives {channel!r}; its channels are {', '.join(map(str, allowed))}.")
+
+
+def sampled_term(channel: Channel, knots: Array, coefficients: Array, end: float) -> Excitation:
+    """A recording as smoothly joined polynomials: coefficients (n, up to 8) of powers of the time since each knot (n,)."""
+    pieces = np.zeros((knots.size, 11))
+    pieces[:, 0] = knots
+    pieces[:, 1 : 1 + coefficients.shape[1]] = coefficients
+    spacing = (end - knots[0]) / knots.size
+    numbers = np.concatenate([[0.0], pieces.ravel()])
+    return Excitation((Term(_channel(channel), PIECES, numbers, sampled=spacing, last=end),))
+
+
+def _one(channel: Channel, kind: float, numbers: Array) -> Excitation:
+    return Excitation((Term(_channel(channel), kind, numbers),))
+
+
+def _channel(channel: Channel) -> Channel:
+    if channel in AXES or (isinstance(channel, int | np.integer) and 0 <= channel < 6):
+        return channel
+    raise ArgumentError(f"channel is {channel!r}; it must be one of {', '.join(AXES)}, or a leg 0 to 5.")
+
+
+def _packed(term: Term) -> Array:
+    index = AXES.index(term.channel) if isinstance(term.channel, str) else term.channel
+    header = [index, term.kind, term.start, term.rise, term.stop, term.fall, term.numbers.size]
+    return np.concatenate([header, term.numbers])
+
+
+def _scaled(term: Term, factor: float) -> Term:
+    numbers = term.numbers.copy()
+    if term.kind == SINUSOIDS:
+        numbers[::3] *= factor
+    elif term.kind == CHIRP:
+        numbers[0] *= factor
+    else:
+        pieces = numbers[1:].reshape(-1, 11)
+        pieces[:, 1:10] *= factor
+    return replace(term, numbers=numbers)
+
+
+def _piece(start: float, coefficients: ArrayLike, sine: float = 0.0, omega: float = 0.0) -> Array:
+    row = np.zeros(11)
+    c = np.asarray(coefficients, dtype=float)
+    row[0], row[1 : 1 + c.size], row[9], row[10] = start, c, sine, omega
+    return row
+
+
+def _half_sine(start: float, travel: float, speed: float, peak: float, duration: float) -> Array:
+    """x'' = peak sin(pi t / duration) from the travel and speed given."""
+    omega = np.pi / duration
+    return _piece(start, [travel, speed + peak / omega], -peak / omega**2, omega)
+
+
+def _pieces(pieces: list[Array], corners: bool) -> Array:
+    return np.concatenate([[float(corners)], *pieces])
+
+
+def _finite(numbers: Array, name: str) -> None:
+    if not np.isfinite(numbers).all():
+        raise ArgumentError(f"{name} holds NaN or infinity; all numbers must be finite.")
+
+
+def _positive(value: float, name: str, unit: str) -> float:
+    if not (np.isfinite(value) and value > 0):
+        raise ArgumentError(f"{name} is {value} {unit}; it must be > 0 and finite.")
+    return float(value)

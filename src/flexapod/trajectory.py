@@ -1,0 +1,219 @@
+"""Many simulations of the complete machine at once, integrated in the compiled core: arrays in, arrays out."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod import _core
+from flexapod.errors import ArgumentError, PoseError
+from flexapod.excitation import AXES, Excitation, check_channels
+from flexapod.hexapod import Hexapod
+from flexapod.kinematics import inverse_kinematics
+from flexapod.pose import Array, Motion, Pose, vectors
+from flexapod.states import JointModel, is_universal
+from flexapod.statics import hold
+
+OUTCOMES = (
+    "complete",
+    "singular",
+    "leg_collapsed",
+    "joint_locked",
+    "step_collapse",
+    "not_finite",
+    "max_steps",
+    "stopped",
+)
+LEGS = tuple(range(6))
+
+Load = Excitation | ArrayLike | None
+Start = Literal["rest", "carried"] | Pose | Motion
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One simulation: a machine at rest in `pose` on its base, and what drives it from t = 0.
+
+    pose: the equilibrium, inertial frame; the legs' unstretched lengths are those that hold it there under gravity and
+    the constant loads, unless `unstretched_length` (6,) m gives others (the legs' lengths at the pose let gravity ring).
+    base_motion: `Excitation` of x, y, z, roll, pitch, yaw from the base's pose at rest, `base` (default: the origin).
+    force (N), moment (N m): on the platform, in its axes, at its reference point; constant (3,), or an Excitation, which
+    comes on top of rest. leg_command: Excitation of legs 0 to 5, change of unstretched length, m.
+    start: "rest" (at the equilibrium, with no velocity in the inertial frame), "carried" (moving rigidly with the base
+    as it is at t = 0), or a Pose or Motion of the platform in the inertial frame.
+    """
+
+    hexapod: Hexapod
+    pose: Pose
+    base_motion: Excitation | None = None
+    force: Load = None
+    moment: Load = None
+    leg_command: Excitation | None = None
+    start: Start = "rest"
+    base: Pose | None = None
+    unstretched_length: ArrayLike | None = None
+
+
+class Trajectories(NamedTuple):
+    """n simulations at m instants; rows after the end of one that was stopped are NaN.
+
+    displacement: (n, m, 6) of the platform from its equilibrium pose, inertial axes, translation (m) and rotation
+    vector (rad), with full relative precision however small. platform, base: (n, m, 24) motions as `Motion.packed`
+    (m = 0 unless asked for). work: (n, m, 4) done by base, external wrench, leg commands and friction since t = 0, J
+    (zero unless asked for). status: (n,) of OUTCOMES. end_time: (n,) s. last: (n, 24), the platform's motion then.
+    steps: (n, 3) accepted, rejected, evaluations of the equations of motion. unstretched_length: (n, 6) m, without
+    commands.
+    """
+
+    displacement: Array
+    platform: Array
+    base: Array
+    work: Array
+    status: np.ndarray
+    end_time: Array
+    last: Array
+    steps: np.ndarray
+    unstretched_length: Array
+
+
+@dataclass(frozen=True)
+class Method:
+    """How accurately and how long to integrate.
+
+    rtol: error of one step relative to the displacement and speed of the last periods of the slowest mode. atol: m, the
+    absolute part (default 1e-16 of the platform's size: rounding). max_step: s. max_steps: per simulation.
+    stop_at_singular: end where H becomes singular (det H changes sign). threads: default all.
+    """
+
+    rtol: float = 1e-9
+    atol: float | None = None
+    max_step: float = np.inf
+    max_steps: float = 1e8
+    stop_at_singular: bool = True
+    threads: int | None = None
+
+    def __post_init__(self) -> None:
+        if not 1e-15 <= self.rtol <= 1e-2:
+            raise ArgumentError(f"rtol is {self.rtol:g}; it must be between 1e-15 and 1e-2.")
+        for name in ("atol", "max_step", "max_steps", "threads"):
+            value = getattr(self, name)
+            if value is not None and not value > 0:
+                raise ArgumentError(f"{name} is {value}; it must be > 0.")
+
+
+def integrate(
+    runs: Sequence[Run],
+    times: ArrayLike,
+    *,
+    joint: JointModel = "universal",
+    method: Method = Method(),  # noqa: B008: frozen
+    motions: bool = True,
+    works: bool = False,
+    progress: Callable[[float], object] | None = None,
+) -> Trajectories:
+    """Integrate all runs from t = 0 to the last of `times`, (m,) or (n, m) s, ascending, >= 0; on all threads.
+
+    Method: Runge-Kutta of order 8 (Dormand and Prince) with an interpolant of order 7, orientation on SO(3)
+    (corrections E7). Errors are those of `Run`'s parts; what happens later is data (`status`). An interrupt stops it.
+    `progress` is called with the fraction done, about 20 times a second.
+    """
+    if not runs:
+        raise ArgumentError("there is nothing to simulate: `runs` is empty.")
+    prepared = [_prepare(run) for run in runs]
+    t = _times(times, len(runs))
+    options = [
+        method.rtol,
+        method.atol or 0.0,
+        method.max_step,
+        method.max_steps,
+        method.stop_at_singular,
+        motions,
+        works,
+        method.threads or os.cpu_count() or 1,
+    ]
+    found = _core.simulate(
+        np.stack([run.hexapod.packed for run in runs]),
+        is_universal(joint),
+        np.stack([p.setup for p in prepared]),
+        [packed for p in prepared for packed in p.excitations],
+        t,
+        np.array(options, dtype=float),
+        progress,
+    )
+    displacement, platform, base, work, outcome, end_time, last, counts = found
+    status = np.array(OUTCOMES)[outcome.astype(int)]
+    lengths = np.stack([p.unstretched_length for p in prepared])
+    return Trajectories(displacement, platform, base, work, status, end_time, last, counts.astype(int), lengths)
+
+
+class _Prepared(NamedTuple):
+    setup: Array
+    excitations: list[Array]
+    unstretched_length: Array
+
+
+def _prepare(run: Run) -> _Prepared:
+    if run.pose.shape or (run.base is not None and run.base.shape):
+        raise PoseError(
+            f"a simulation takes one pose and one base; these have batch axes {run.pose.shape}. Index first."
+        )
+    force, force_history = _split(run.force, "force")
+    moment, moment_history = _split(run.moment, "moment")
+    if run.unstretched_length is None:
+        rest = hold(run.hexapod, run.pose, base=run.base, force=force, moment=moment)
+        leg_force, lengths = rest.leg_force, rest.unstretched_length
+    else:
+        lengths = vectors(run.unstretched_length, "unstretched_length", 6)
+        leg_force = run.hexapod.legs.stiffness * (lengths - inverse_kinematics(run.hexapod, run.pose, run.base))
+    base_motion, command = run.base_motion or Excitation(), run.leg_command or Excitation()
+    check_channels(base_motion, "base_motion", AXES)
+    check_channels(command, "leg_command", LEGS)
+    flags = [base_motion.rotation == "rpy", isinstance(run.start, str) and run.start == "carried"]
+    pose_rows = (Motion(run.pose).packed[:12], Motion.fixed(run.base).packed[:12])
+    setup = np.concatenate([*pose_rows, leg_force, force, moment, *_start(run), flags])
+    packed = [base_motion.packed, np.concatenate([force_history, moment_history]), command.packed]
+    return _Prepared(setup, packed, lengths)
+
+
+def _split(load: Load, name: str) -> tuple[Array, Array]:
+    """The constant part of a force or moment, and the packed terms of its history in the wrench's channels."""
+    if load is None:
+        return np.zeros(3), np.zeros(0)
+    if not isinstance(load, Excitation):
+        constant = vectors(load, name)
+        if constant.ndim != 1:
+            raise PoseError(f"{name} has shape {constant.shape}; one simulation takes three numbers")
+        return constant, np.zeros(0)
+    check_channels(load, name, AXES[:3])
+    if name == "force":
+        return np.zeros(3), load.packed
+    return np.zeros(3), load.on({axis: turned for axis, turned in zip(AXES[:3], AXES[3:], strict=True)}).packed
+
+
+def _start(run: Run) -> tuple[Array, Array]:
+    """Displacement from rest and velocity at t = 0, (6,) each, inertial axes."""
+    start = run.start
+    if isinstance(start, str):
+        if start not in ("rest", "carried"):
+            raise ArgumentError(f"start is {start!r}; it must be 'rest', 'carried', a Pose or a Motion.")
+        return np.zeros(6), np.zeros(6)
+    motion = start if isinstance(start, Motion) else Motion(start)
+    if motion.shape:
+        raise PoseError(f"start has batch axes {motion.shape}; a simulation starts from one motion. Index it first.")
+    turn = Pose(np.zeros(3), motion.pose.matrix @ run.pose.matrix.T).rotation.as_rotvec()
+    displacement = np.concatenate([motion.pose.position - run.pose.position, turn])
+    return displacement, np.concatenate([motion.velocity, motion.angular_velocity])
+
+
+def _times(times: ArrayLike, n: int) -> Array:
+    t = np.asarray(times, dtype=float)
+    if t.ndim not in (1, 2) or (t.ndim == 2 and t.shape[0] != n) or t.shape[-1] == 0:
+        raise ArgumentError(f"times have shape {t.shape}; (m,) or ({n}, m) is needed")
+    if not np.isfinite(t).all() or (t[..., 0] < 0).any() or (np.diff(t, axis=-1) < 0).any():
+        raise ArgumentError("times must be finite, >= 0 and ascending: a simulation starts at t = 0 s")
+    return np.ascontiguousarray(np.broadcast_to(t, (n, t.shape[-1])))
