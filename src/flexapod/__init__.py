@@ -11,9 +11,11 @@ __version__ = "0.1.0"
 _HOMES = {
     "errors": [
         "ArgumentError",
+        "ClusterError",
         "DesignError",
         "FlexapodError",
         "KinematicsError",
+        "OutputError",
         "PathError",
         "PoseError",
         "SingularPoseError",
@@ -65,6 +67,12 @@ _HOMES = {
     "requirements": ["PathRequirements"],
     "planning": ["LegSpeed", "Plan", "plan_path"],
     "response": ["random_response", "transmissibility"],
+    "posesets": ["Box", "PoseSet", "low_discrepancy", "pose_grid", "pose_path", "random_poses"],
+    "sweeps.dataset": ["sweep"],
+    "sweeps.store": ["SweepStore", "open_sweep"],
+    "sweeps.summary": ["SweepSummary", "summarise"],
+    "sweeps.worst": ["WorstPose", "worst_pose"],
+    "sweeps.cluster": ["cluster"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = sorted([*_HOME_OF, "__version__"])
@@ -92,7 +100,13 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.path import *  # noqa: F403
     from flexapod.planning import *  # noqa: F403
     from flexapod.pose import *  # noqa: F403
+    from flexapod.posesets import *  # noqa: F403
     from flexapod.requirements import *  # noqa: F403
     from flexapod.response import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403
+    from flexapod.sweeps.cluster import *  # noqa: F403
+    from flexapod.sweeps.dataset import *  # noqa: F403
+    from flexapod.sweeps.store import *  # noqa: F403
+    from flexapod.sweeps.summary import *  # noqa: F403
+    from flexapod.sweeps.worst import *  # noqa: F403
     from flexapod.waypoints import *  # noqa: F403

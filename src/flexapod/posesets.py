@@ -254,7 +254,7 @@ class GivenPoses(PoseSet):
     def identity(self) -> dict[str, Any]:
         from hashlib import sha256
 
-        content = sha256(np.ascontiguousarray(self._rows, dtype="<f8")).hexdigest()[:16]
+        content = sha256(np.ascontiguousarray(self._rows, dtype="<f8").data).hexdigest()[:16]
         return {**self.describe(), "digest": content}
 
 

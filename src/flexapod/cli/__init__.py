@@ -10,7 +10,7 @@ import click
 
 from flexapod.errors import FlexapodError
 
-COMMANDS = ("check", "designs", "modes", "new", "report")
+COMMANDS = ("check", "designs", "modes", "new", "paper", "report", "sweep")
 
 
 class _Lazy(click.Group):

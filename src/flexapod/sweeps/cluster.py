@@ -8,14 +8,14 @@ from typing import Any
 
 from flexapod.errors import ClusterError
 from flexapod.posesets import GivenPoses
-from flexapod.sweepjob import Finished, Job, compute_block
+from flexapod.sweeps.job import Finished, Job, compute_block
 
 LOCAL = "local"
 _POLL = 0.5  # s between looks at whether to stop
 
 
 class Cluster:
-    """See `flexapod.sweepjob.Workers`. A block whose worker dies is computed anew by another."""
+    """See `flexapod.sweeps.job.Workers`. A block whose worker dies is computed anew by another."""
 
     def __init__(self, client: Any) -> None:
         self.client = client

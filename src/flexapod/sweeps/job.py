@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from flexapod import _core
-from flexapod.blocks import Block, Blocks
 from flexapod.errors import OutputError
 from flexapod.hexapod import Hexapod
 from flexapod.pose import Array, Pose
 from flexapod.posesets import COORDINATES, PoseSet
 from flexapod.quantities import QUANTITIES, evaluate
 from flexapod.states import JointModel
+from flexapod.sweeps.blocks import Blocks
 
 if TYPE_CHECKING:
     import zarr
@@ -56,6 +56,13 @@ class Workers(Protocol):
 
 def compute_block(job: Job, number: int, rows: Array | None = None) -> Finished:
     """Compute a block and put it on the disk. `rows` are its poses where the job does not carry them."""
+    finished = write_block(job, number, rows)
+    flush_block(job, number)
+    return finished
+
+
+def write_block(job: Job, number: int, rows: Array | None = None) -> Finished:
+    """Compute a block and write it; the operating system may still hold it in memory."""
     block = job.blocks[number]
     if _core.simd() != job.instruction_set:
         raise OutputError(
@@ -72,7 +79,6 @@ def compute_block(job: Job, number: int, rows: Array | None = None) -> Finished:
     for name, values in found.items():
         shape = tuple(part.stop - part.start for part in block.region)
         arrays[name][block.region] = values.reshape(shape + values.shape[1:])
-    _flush(job, block, found)
     codes, counts = np.unique(found["status"], return_counts=True)
     return Finished(number, block.stop - block.start, dict(zip(codes.tolist(), counts.tolist(), strict=True)))
 
@@ -108,10 +114,11 @@ def open_arrays(path: str, token: str) -> dict[str, zarr.Array]:
     return dict(group.arrays())
 
 
-def _flush(job: Job, block: Block, names: Iterable[str]) -> None:
-    """Have the block's chunks on the disk itself, so that what is marked as done outlives a power cut."""
-    indices = [str(part.start // step) for part, step in zip(block.region, job.blocks.chunk, strict=True)]
-    for name in names:
+def flush_block(job: Job, number: int) -> None:
+    """Have a block's chunks on the disk itself, so that what is marked as done outlives a power cut."""
+    region = job.blocks[number].region
+    indices = [str(part.start // step) for part, step in zip(region, job.blocks.chunk, strict=True)]
+    for name in (*job.quantities, "status", *(COORDINATES if job.keep_poses else ())):
         last = ["0"] if name in QUANTITIES and QUANTITIES[name].trailing else []
         chunk = Path(job.path, name, "c", *indices, *last)
         sync(chunk)

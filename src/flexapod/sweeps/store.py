@@ -23,15 +23,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
-from flexapod.blocks import Blocks, blocks
 from flexapod.errors import OutputError
 from flexapod.hexapod import Hexapod
 from flexapod.pose import Pose
 from flexapod.posesets import COORDINATES, GivenPoses, GridPoses, PoseSet, pose_set
 from flexapod.quantities import DEFAULT, PENDING, QUANTITIES, attributes, chosen, provenance
 from flexapod.states import JointModel, is_universal
-from flexapod.sweepjob import Job, Workers, sync, zarr_package
-from flexapod.sweepthreads import Threads
+from flexapod.sweeps.blocks import Blocks, blocks
+from flexapod.sweeps.job import Job, Workers, sync, zarr_package
+from flexapod.sweeps.threads import Threads
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -111,23 +111,24 @@ class SweepStore:
 
     def run(
         self,
-        workers: Workers | None = None,
+        workers: Workers | int | None = None,
         progress: Callable[[Progress], None] | None = None,
         stop: Callable[[], bool] | None = None,
     ) -> Progress:
         """Compute what is missing, until all is done or `stop()` is true. Raises OutputError when the disk is full.
 
-        workers: default the threads of this process (`flexapod.sweepthreads`); or those of a `flexapod.cluster`.
+        workers: how many threads of this process, default one a core; or those of a `flexapod.cluster`.
         """
         cut = self.job.blocks
         todo = [number for number in range(cut.count) if number not in self.done]
         before = sum(cut[n].stop - cut[n].start for n in self.done)
         total = prod(cut.shape)
         poses, seen, marked = before, Counter[int](), time.monotonic()
+        crew = Threads(workers) if workers is None or isinstance(workers, int) else workers
         with _locked(self.job.path):
             _sweep_up(self.job.path)
             try:
-                for block in (workers or Threads()).compute(self.job, todo, stop or (lambda: False)):
+                for block in crew.compute(self.job, todo, stop or (lambda: False)):
                     self.done.add(block.number)
                     poses += block.poses
                     seen.update(block.statuses)
