@@ -77,6 +77,7 @@ class LegPart(_Value):
 
     @classmethod
     def massless(cls) -> "LegPart":
+        """No mass and no inertia, for legs that are springs and nothing else."""
         return cls(np.zeros(()), np.zeros(3), np.zeros((3, 3)))
 
 

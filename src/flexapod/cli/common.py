@@ -11,7 +11,8 @@ A command stacks the decorators it needs on a function whose parameters carry th
     def command(...): ...
 
 Nothing here imports NumPy before a command asks for a design, so that `flexapod --help` answers at once. A command
-raises FlexapodError or click.UsageError for what the user can put right; `flexapod.cli.main` prints it and exits with 2.
+raises FlexapodError or click.UsageError for what the user can put right; `flexapod.cli.main` prints it and exits
+with 2.
 """
 
 from __future__ import annotations

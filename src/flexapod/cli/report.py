@@ -45,7 +45,7 @@ def command(
     where = common.chosen_pose(hexapod, pose)
     from flexapod.report import findings
 
-    found = findings.gather(hexapod, where, joint, characteristic_length)
+    found = findings.gather(hexapod, where, joint, characteristic_length, changes)
     file = None
     if out is not None or not as_json:
         directory = common.output_directory(Path() if out is None else out)

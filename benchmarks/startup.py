@@ -1,0 +1,43 @@
+"""How long Flexapod takes to start: `import flexapod` and the whole command `flexapod modes`.
+
+The candidates take turns, so that a busy machine slows all of them alike; the least time of each is what it takes, the
+median what it took.
+"""
+
+import subprocess
+import sys
+import time
+from statistics import median
+
+TURNS = 15
+LIMITS = {"import flexapod": 0.3, "flexapod modes": 0.6}  # s, what a user does not notice and does not mind
+
+MODES = "modes mukherjee-ii --pose 0 0 0.085 0 0 0 --joint spin_free --json"
+COMMANDS = {
+    "python -c pass": [sys.executable, "-c", "pass"],
+    "import flexapod": [sys.executable, "-c", "import flexapod"],
+    "import flexapod, load": [sys.executable, "-c", "import flexapod as fx; fx.load('mukherjee-ii')"],
+    "flexapod modes": [sys.executable, "-m", "flexapod", *MODES.split()],
+}
+
+
+def seconds(command: list[str]) -> float:
+    """Wall time of one run."""
+    start = time.perf_counter()
+    subprocess.run(command, check=True, capture_output=True)
+    return time.perf_counter() - start
+
+
+def main() -> None:
+    """Print least and median times, and the limit where there is one."""
+    times: dict[str, list[float]] = {name: [] for name in COMMANDS}
+    for _ in range(TURNS):
+        for name, command in COMMANDS.items():
+            times[name].append(seconds(command))
+    for name, taken in times.items():
+        limit = f"  (limit {LIMITS[name]:.1f} s)" if name in LIMITS else ""
+        print(f"{name:24s} least {min(taken):.3f} s, median {median(taken):.3f} s{limit}")
+
+
+if __name__ == "__main__":
+    main()
