@@ -13,7 +13,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from flexapod.errors import ArgumentError, UnstableError
-from flexapod.feedback import Complex, Controller, Law, Measure, Plant, damping_ratios, poles, six_by_six
+from flexapod.feedback import Complex, Controller, Law, Measure, Plant, damping_ratios, is_stable, poles, six_by_six
 from flexapod.hexapod import Hexapod
 from flexapod.linear import Linearisation, RestOptions, linearise
 from flexapod.pose import Array, Pose
@@ -145,11 +145,6 @@ def assess(plant: Plant, controller: Controller, nearness: float = 0.1) -> Close
     vibrating = pole.imag > 0
     near = tuple(np.flatnonzero(vibrating & (distance < nearness)).tolist())
     return ClosedLoop(pole, ratio, omega, distance, near, float(ratio.min()), is_stable(pole, plant), controller)
-
-
-def is_stable(pole: Complex, plant: Plant) -> bool:
-    """Whether all poles are in the left half plane, with room for rounding."""
-    return bool((pole.real < 1e-11 * plant.omega_0).all())
 
 
 def unstable_words(found: ClosedLoop) -> str:

@@ -182,6 +182,11 @@ def poles(plant: Plant, controller: Controller) -> Complex:
     return found[np.lexsort((found.imag, np.abs(found)))]
 
 
+def is_stable(pole: Complex, plant: Plant) -> bool:
+    """Whether all poles are in the left half plane, with room for rounding."""
+    return bool((pole.real < 1e-11 * plant.omega_0).all())
+
+
 def damping_ratios(pole: Complex) -> Array:
     """-Re p / |p|; 1 for a pole at zero (an integrator that nothing moves)."""
     size = np.abs(pole)

@@ -43,12 +43,10 @@ class ForceFeedback:
         _check(self.legs, gain=self.gain, leak=self.leak)
 
     def on(self, linear: Linearisation) -> Controller:
-        """Its controller; six states, the forces."""
+        """Its controller; one state for each loop, the force."""
         loops = _loops(self.legs)
-        zero = np.zeros((6, 6))
-        return Controller(
-            -self.leak * np.eye(6), -self.gain * loops, np.eye(6), zero, ("leg_force",), "integral force feedback"
-        )
+        leak = -self.leak * np.eye(len(self.legs))
+        return Controller(leak, -self.gain * loops.T, loops, np.zeros((6, 6)), ("leg_force",), "integral force feedback")
 
 
 @dataclass(frozen=True)
@@ -66,7 +64,8 @@ class VelocityFeedback:
 
     def on(self, linear: Linearisation) -> Controller:
         """Its controller, without states."""
-        return static(-self.gain * _loops(self.legs), ("leg_rate",), "direct velocity feedback")
+        loops = _loops(self.legs)
+        return static(-self.gain * loops @ loops.T, ("leg_rate",), "direct velocity feedback")
 
 
 def open_zeros(linear: Linearisation, feedback: Feedback, legs: Sequence[int] = ALL) -> Array:
@@ -198,7 +197,8 @@ def _followed(pole: Complex) -> Complex:
 
 
 def _loops(legs: tuple[int, ...]) -> Array:
-    return np.diag([1.0 if i in legs else 0.0 for i in ALL])
+    """(6, n): which leg each loop drives."""
+    return np.eye(6)[:, np.array(legs) - 1]
 
 
 def _check(legs: tuple[int, ...], **gains: float) -> None:
