@@ -32,6 +32,7 @@ class Rig {
   static constexpr int mechanical = 12;  // numbers of the state before the works
   enum Work { of_base = 12, of_wrench, of_command, of_friction };
 
+  Vec6<double> held{};  // leg forces beside the springs, N: what a controller holds between its samples
   double inside = 0;  // an instant between the corners of the excitations that the present time lies between
 
   Rig(const RigInput& input, const Excitation& base, const Excitation& wrench, const Excitation& command)
@@ -103,6 +104,32 @@ class Rig {
                             (b.turn * turn.resolved(in_.base.R)).log());
   }
 
+  /// The same as seen from the base, in its axes: what a platform that rides with the base rigidly does not have.
+  Vec6<double> relative(const State& y) const {
+    return Vec6<double>::of(get(y, 0), (Quaternion::exp(get(y, 3)) * chart_).log());
+  }
+
+  /// What sensors show, each as a change from rest: leg lengths, their rates, leg forces, the platform's displacement
+  /// seen from the base and its rate (axes of the base at rest, turned to the inertial frame), absolute acceleration.
+  void measure(double t, const State& y, double (&out)[36]) {
+    const Moment now = moment(t, y);
+    const Mat3<double>& R_b = now.base.motion.pose.R;
+    const Geometry<double> g = geometry(y), rest(machine_.design, rest_, Pose<double>());
+    for (int i = 0; i < 6; ++i) {
+      const double L = norm(g.S[i]);
+      out[i] = dot(g.S[i] + rest.S[i], g.S[i] - rest.S[i]) / (L + norm(rest.S[i]));
+      out[6 + i] = dot(g.S[i], now.v + cross(now.w, g.q_p[i])) / L;
+      out[12 + i] = now.leg_force[i] - in_.leg_force[i];
+    }
+    const Vec6<double> x = relative(y);
+    const Vec3<double> a = R_b * now.platform.a + in_.design.gravity, alpha = R_b * now.platform.alpha;
+    const Vec3<double> turned[6] = {in_.base.R * x.top(),  in_.base.R * x.bottom(), in_.base.R * now.v,
+                                    in_.base.R * now.w,    a,                       alpha};
+    double* to = out + 18;
+    for (const Vec3<double>& v : turned)
+      for (const double c : {v.x, v.y, v.z}) *to++ = c;
+  }
+
   /// Where the legs are: base axes.
   Geometry<double> geometry(const State& y) const { return {machine_.design, pose(y), Pose<double>()}; }
   Pose<double> rest() const { return rest_; }
@@ -161,7 +188,7 @@ class Rig {
       const Vec3<double> change = d - d_chart_ + turned_change(theta, q_chart_[i]);
       const double product = dot(2.0 * S_chart_[i] + change, change);
       const double stretch = product / (std::sqrt(L_chart_[i] * L_chart_[i] + product) + L_chart_[i]);
-      now.leg_force[i] = force_[i] + machine_.design.leg[i].stiffness * (now.command[i].x - stretch);
+      now.leg_force[i] = force_[i] + held[i] + machine_.design.leg[i].stiffness * (now.command[i].x - stretch);
     }
   }
 

@@ -20,7 +20,7 @@ struct Tolerances {
 struct Samples {
   const double* times;
   size_t count;
-  double *displacement, *platform, *base, *work;
+  double *displacement, *relative, *platform, *base, *work;
 };
 
 struct Counts {
@@ -234,6 +234,7 @@ class Simulation {
       const State y = state(at);
       const Vec6<double> x = rig_.displacement(at, y);
       std::copy_n(x.a, 6, samples_.displacement + 6 * next_sample_);
+      std::copy_n(rig_.relative(y).a, 6, samples_.relative + 6 * next_sample_);
       std::copy_n(y.data() + Rig::mechanical, 4, samples_.work + 4 * next_sample_);
       if (!samples_.platform) continue;
       auto* platform = reinterpret_cast<Motion<double>*>(samples_.platform) + next_sample_;

@@ -18,6 +18,7 @@ _HOMES = {
         "OutputError",
         "PathError",
         "PoseError",
+        "SimulationError",
         "SingularPoseError",
         "UnstableError",
     ],
@@ -66,6 +67,11 @@ _HOMES = {
     "path": ["PathIndex", "path_index", "path_loads"],
     "requirements": ["PathRequirements"],
     "planning": ["LegSpeed", "Plan", "plan_path"],
+    "excitation": ["Excitation", "half_sine_shock", "harmonic", "polynomial", "sine_sweep", "smooth_step"],
+    "recordings": ["read_time_series", "time_series"],
+    "spectra": ["Spectrum", "flat_spectrum", "ground_noise", "random_motion", "sea_motion", "sea_spectrum", "vc_curve"],
+    "trajectory": ["Run"],
+    "simulation": ["simulate", "simulate_many"],
     "response": ["random_response", "transmissibility"],
     "posesets": ["Box", "PoseSet", "low_discrepancy", "pose_grid", "pose_path", "random_poses"],
     "sweeps.dataset": ["sweep"],
@@ -93,6 +99,7 @@ def __dir__() -> list[str]:
 if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.dynamics import *  # noqa: F403
     from flexapod.errors import *  # noqa: F403
+    from flexapod.excitation import *  # noqa: F403
     from flexapod.hexapod import *  # noqa: F403
     from flexapod.kinematics import *  # noqa: F403
     from flexapod.linear import *  # noqa: F403
@@ -102,7 +109,10 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.pose import *  # noqa: F403
     from flexapod.posesets import *  # noqa: F403
     from flexapod.requirements import *  # noqa: F403
+    from flexapod.recordings import *  # noqa: F403
     from flexapod.response import *  # noqa: F403
+    from flexapod.simulation import *  # noqa: F403
+    from flexapod.spectra import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403
     from flexapod.sweeps.cluster import *  # noqa: F403
     from flexapod.sweeps.dataset import *  # noqa: F403
@@ -110,3 +120,4 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.sweeps.summary import *  # noqa: F403
     from flexapod.sweeps.worst import *  # noqa: F403
     from flexapod.waypoints import *  # noqa: F403
+    from flexapod.trajectory import *  # noqa: F403

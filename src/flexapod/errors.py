@@ -44,7 +44,7 @@ class ClusterError(FlexapodError, RuntimeError):
 
 
 class SimulationError(FlexapodError, RuntimeError):
-    """A simulation that could not be carried on. `time` (s) and `pose`: where it ended; `result`: the Dataset so far."""
+    """A simulation that could not go on. `time` (s) and `pose`: where it ended; `result`: the Dataset so far."""
 
     def __init__(self, message: str, time: float = float("nan"), pose: Any = None, result: Any = None) -> None:
         super().__init__(message)

@@ -1,9 +1,9 @@
 """What drives the machine in time: base motions, wrenches and leg commands, with exact derivatives.
 
 An `Excitation` is a sum of terms on named channels. The same kit serves three uses: a base motion has the channels
-x, y, z (m) and roll, pitch, yaw (rad), in inertial axes and measured from the base's pose at rest; a force (N) or moment
-(N m) has x, y, z in the platform's axes; a leg command (m, change of unstretched length) has the legs 0 to 5.
-Its functions of time are evaluated in the compiled core, with their first and second derivatives.
+x, y, z (m) and roll, pitch, yaw (rad), in inertial axes and measured from the base's pose at rest; a force (N) or
+moment (N m) has x, y, z in the platform's axes; a leg command (m, change of unstretched length) has legs "1" to "6".
+The functions of time are evaluated in the compiled core, with their first and second derivatives.
 """
 
 from __future__ import annotations
@@ -20,16 +20,15 @@ from flexapod.errors import ArgumentError
 from flexapod.pose import Array, Motion, Pose
 
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
+LEGS = ("1", "2", "3", "4", "5", "6")
 SINUSOIDS, CHIRP, PIECES = 0.0, 1.0, 2.0
-
-Channel = str | int  # an axis by name, or a leg 0 to 5
 
 
 @dataclass(frozen=True, eq=False)
 class Term:
     """One function of time on one channel; it begins at `start`, may rise smoothly, and may end after `stop`."""
 
-    channel: Channel
+    channel: str
     kind: float
     numbers: Array
     start: float = 0.0
@@ -56,7 +55,7 @@ class Excitation:
             return NotImplemented
         if self.rotation != other.rotation and self._turns() and other._turns():
             raise ArgumentError(
-                "one excitation turns by roll, pitch, yaw and the other by a rotation vector; their sum has no meaning. "
+                "one excitation turns by roll, pitch, yaw and the other by a rotation vector; they have no sum. "
                 "Give both in the same way."
             )
         return Excitation(self.terms + other.terms, self.rotation if self._turns() else other.rotation)
@@ -75,7 +74,7 @@ class Excitation:
         return replace(self, terms=tuple(replace(term, rise=rise) for term in self.terms))
 
     def stopped(self, time: float, fall: float) -> Excitation:
-        """Every term falls smoothly to nothing over `fall` s from `time`. The value falls, not the derivatives alone."""
+        """Every term falls smoothly to nothing over `fall` s from `time`."""
         stop, fall = _positive(time, "stop time", "s"), _positive(fall, "fall", "s")
         if any(term.start + term.rise > stop for term in self.terms):
             raise ArgumentError(f"stop time is {stop:.6g} s, before a term has risen; stop later or shorten the ramp.")
@@ -95,12 +94,12 @@ class Excitation:
         """The same, with roll, pitch, yaw read as the three components of a rotation vector."""
         return replace(self, rotation="vector")
 
-    def on(self, channels: Mapping[Channel, Channel]) -> Excitation:
+    def on(self, channels: Mapping[str, str]) -> Excitation:
         """The same functions of time on other channels, old to new."""
         return replace(self, terms=tuple(replace(term, channel=channels[term.channel]) for term in self.terms))
 
     @property
-    def channels(self) -> tuple[Channel, ...]:
+    def channels(self) -> tuple[str, ...]:
         """The channels driven, each once."""
         return tuple(dict.fromkeys(term.channel for term in self.terms))
 
@@ -129,10 +128,10 @@ class Excitation:
         return Motion(pose, *(rows[..., i : i + 3] for i in (12, 15, 18, 21)))
 
     def __repr__(self) -> str:
-        return f"<Excitation of {', '.join(map(str, self.channels)) or 'nothing'}, {len(self.terms)} terms>"
+        return f"<Excitation of {', '.join(self.channels) or 'nothing'}, {len(self.terms)} terms>"
 
 
-def harmonic(channel: Channel, amplitude: ArrayLike, omega: ArrayLike, phase: ArrayLike = 0.0) -> Excitation:
+def harmonic(channel: str, amplitude: ArrayLike, omega: ArrayLike, phase: ArrayLike = 0.0) -> Excitation:
     """Sum of A sin(omega t + phase); amplitude in the channel's unit, omega rad/s, phase rad, each one or many."""
     parts = np.broadcast_arrays(*(np.atleast_1d(np.asarray(v, dtype=float)) for v in (amplitude, omega, phase)))
     triples = np.stack([part.ravel() for part in parts], axis=1)
@@ -143,7 +142,7 @@ def harmonic(channel: Channel, amplitude: ArrayLike, omega: ArrayLike, phase: Ar
 
 
 def sine_sweep(
-    channel: Channel,
+    channel: str,
     amplitude: float,
     omega_start: float,
     omega_end: float,
@@ -167,9 +166,7 @@ def sine_sweep(
     return _one(channel, CHIRP, np.array(numbers))
 
 
-def half_sine_shock(
-    channel: Channel, acceleration: float, duration: float, recovery: float | None = None
-) -> Excitation:
+def half_sine_shock(channel: str, acceleration: float, duration: float, recovery: float | None = None) -> Excitation:
     """A half-sine pulse of acceleration (peak m/s2 or rad/s2, `duration` s), from rest.
 
     The pulse leaves the velocity 2 acceleration duration / pi. With `recovery` a second half sine of that duration (s),
@@ -189,7 +186,7 @@ def half_sine_shock(
     return _one(channel, PIECES, _pieces(pieces, corners=True))
 
 
-def polynomial(channel: Channel, coefficients: ArrayLike) -> Excitation:
+def polynomial(channel: str, coefficients: ArrayLike) -> Excitation:
     """c0 + c1 t + c2 t^2 + ..., up to eight coefficients: `polynomial("yaw", [0, rate])` spins the base."""
     c = np.atleast_1d(np.asarray(coefficients, dtype=float))
     _finite(c, "coefficients")
@@ -198,7 +195,7 @@ def polynomial(channel: Channel, coefficients: ArrayLike) -> Excitation:
     return _one(channel, PIECES, _pieces([_piece(0.0, c)], corners=True))
 
 
-def smooth_step(channel: Channel, change: float, duration: float) -> Excitation:
+def smooth_step(channel: str, change: float, duration: float) -> Excitation:
     """From 0 to `change` in `duration` s with three continuous derivatives, and then at rest there."""
     _finite(np.array([change]), "change")
     T = _positive(duration, "duration", "s")
@@ -206,15 +203,15 @@ def smooth_step(channel: Channel, change: float, duration: float) -> Excitation:
     return _one(channel, PIECES, _pieces([_piece(0.0, rise), _piece(T, [change])], corners=True))
 
 
-def check_channels(excitation: Excitation, use: str, allowed: Sequence[Channel]) -> None:
+def check_channels(excitation: Excitation, use: str, allowed: Sequence[str]) -> None:
     """Raises ArgumentError for a channel that a use does not have."""
     for channel in excitation.channels:
         if channel not in allowed:
-            raise ArgumentError(f"{use} drives {channel!r}; its channels are {', '.join(map(str, allowed))}.")
+            raise ArgumentError(f"{use} drives {channel!r}; its channels are {', '.join(allowed)}.")
 
 
-def sampled_term(channel: Channel, knots: Array, coefficients: Array, end: float) -> Excitation:
-    """A recording as smoothly joined polynomials: coefficients (n, up to 8) of powers of the time since each knot (n,)."""
+def sampled_term(channel: str, knots: Array, coefficients: Array, end: float) -> Excitation:
+    """A recording as smoothly joined polynomials: coefficients (n, <= 8) of powers of the time since each knot (n,)."""
     pieces = np.zeros((knots.size, 11))
     pieces[:, 0] = knots
     pieces[:, 1 : 1 + coefficients.shape[1]] = coefficients
@@ -223,18 +220,18 @@ def sampled_term(channel: Channel, knots: Array, coefficients: Array, end: float
     return Excitation((Term(_channel(channel), PIECES, numbers, sampled=spacing, last=end),))
 
 
-def _one(channel: Channel, kind: float, numbers: Array) -> Excitation:
+def _one(channel: str, kind: float, numbers: Array) -> Excitation:
     return Excitation((Term(_channel(channel), kind, numbers),))
 
 
-def _channel(channel: Channel) -> Channel:
-    if channel in AXES or (isinstance(channel, int | np.integer) and 0 <= channel < 6):
+def _channel(channel: str) -> str:
+    if channel in AXES + LEGS:
         return channel
-    raise ArgumentError(f"channel is {channel!r}; it must be one of {', '.join(AXES)}, or a leg 0 to 5.")
+    raise ArgumentError(f"channel is {channel!r}; it must be one of {', '.join(AXES)}, or a leg '1' to '6'.")
 
 
 def _packed(term: Term) -> Array:
-    index = AXES.index(term.channel) if isinstance(term.channel, str) else term.channel
+    index = (AXES if term.channel in AXES else LEGS).index(term.channel)
     header = [index, term.kind, term.start, term.rise, term.stop, term.fall, term.numbers.size]
     return np.concatenate([header, term.numbers])
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod.errors import ArgumentError, PoseError
-from flexapod.excitation import AXES, Excitation, check_channels
+from flexapod.excitation import AXES, LEGS, Excitation, check_channels
 from flexapod.hexapod import Hexapod
 from flexapod.kinematics import inverse_kinematics
 from flexapod.pose import Array, Motion, Pose, vectors
@@ -29,7 +29,6 @@ OUTCOMES = (
     "max_steps",
     "stopped",
 )
-LEGS = tuple(range(6))
 
 Load = Excitation | ArrayLike | None
 Start = Literal["rest", "carried"] | Pose | Motion
@@ -40,10 +39,10 @@ class Run:
     """One simulation: a machine at rest in `pose` on its base, and what drives it from t = 0.
 
     pose: the equilibrium, inertial frame; the legs' unstretched lengths are those that hold it there under gravity and
-    the constant loads, unless `unstretched_length` (6,) m gives others (the legs' lengths at the pose let gravity ring).
+    the constant loads, unless `unstretched_length` (6,) m gives others (the lengths at the pose let gravity ring).
     base_motion: `Excitation` of x, y, z, roll, pitch, yaw from the base's pose at rest, `base` (default: the origin).
-    force (N), moment (N m): on the platform, in its axes, at its reference point; constant (3,), or an Excitation, which
-    comes on top of rest. leg_command: Excitation of legs 0 to 5, change of unstretched length, m.
+    force (N), moment (N m): on the platform, in its axes, at its reference point; constant (3,), or an Excitation,
+    which comes on top of rest. leg_command: Excitation of legs "1" to "6", change of unstretched length, m.
     start: "rest" (at the equilibrium, with no velocity in the inertial frame), "carried" (moving rigidly with the base
     as it is at t = 0), or a Pose or Motion of the platform in the inertial frame.
     """
@@ -58,12 +57,23 @@ class Run:
     base: Pose | None = None
     unstretched_length: ArrayLike | None = None
 
+    def histories(self) -> dict[str, Excitation]:
+        """What drives the machine in time, by name."""
+        uses = {
+            "base_motion": self.base_motion,
+            "force": self.force,
+            "moment": self.moment,
+            "leg_command": self.leg_command,
+        }
+        return {name: use for name, use in uses.items() if isinstance(use, Excitation)}
+
 
 class Trajectories(NamedTuple):
     """n simulations at m instants; rows after the end of one that was stopped are NaN.
 
     displacement: (n, m, 6) of the platform from its equilibrium pose, inertial axes, translation (m) and rotation
-    vector (rad), with full relative precision however small. platform, base: (n, m, 24) motions as `Motion.packed`
+    vector (rad), with full relative precision however small. relative: the same seen from the base, in its axes: zero
+    where the platform rides with the base rigidly. platform, base: (n, m, 24) motions as `Motion.packed`
     (m = 0 unless asked for). work: (n, m, 4) done by base, external wrench, leg commands and friction since t = 0, J
     (zero unless asked for). status: (n,) of OUTCOMES. end_time: (n,) s. last: (n, 24), the platform's motion then.
     steps: (n, 3) accepted, rejected, evaluations of the equations of motion. unstretched_length: (n, 6) m, without
@@ -71,6 +81,7 @@ class Trajectories(NamedTuple):
     """
 
     displacement: Array
+    relative: Array
     platform: Array
     base: Array
     work: Array
@@ -111,7 +122,7 @@ def integrate(
     times: ArrayLike,
     *,
     joint: JointModel = "universal",
-    method: Method = Method(),  # noqa: B008: frozen
+    method: Method = Method(),
     motions: bool = True,
     works: bool = False,
     progress: Callable[[float], object] | None = None,
@@ -124,8 +135,8 @@ def integrate(
     """
     if not runs:
         raise ArgumentError("there is nothing to simulate: `runs` is empty.")
-    prepared = [_prepare(run) for run in runs]
     t = _times(times, len(runs))
+    prepared = [_prepare(run, until) for run, until in zip(runs, t[:, -1], strict=True)]
     options = [
         method.rtol,
         method.atol or 0.0,
@@ -145,10 +156,12 @@ def integrate(
         np.array(options, dtype=float),
         progress,
     )
-    displacement, platform, base, work, outcome, end_time, last, counts = found
+    displacement, relative, platform, base, work, outcome, end_time, last, counts = found
     status = np.array(OUTCOMES)[outcome.astype(int)]
     lengths = np.stack([p.unstretched_length for p in prepared])
-    return Trajectories(displacement, platform, base, work, status, end_time, last, counts.astype(int), lengths)
+    return Trajectories(
+        displacement, relative, platform, base, work, status, end_time, last, counts.astype(int), lengths
+    )
 
 
 class _Prepared(NamedTuple):
@@ -157,11 +170,9 @@ class _Prepared(NamedTuple):
     unstretched_length: Array
 
 
-def _prepare(run: Run) -> _Prepared:
+def _prepare(run: Run, until: float) -> _Prepared:
     if run.pose.shape or (run.base is not None and run.base.shape):
-        raise PoseError(
-            f"a simulation takes one pose and one base; these have batch axes {run.pose.shape}. Index first."
-        )
+        raise PoseError("a simulation takes one pose and one base; one has batch axes. Index it first.")
     force, force_history = _split(run.force, "force")
     moment, moment_history = _split(run.moment, "moment")
     if run.unstretched_length is None:
@@ -171,6 +182,8 @@ def _prepare(run: Run) -> _Prepared:
         lengths = vectors(run.unstretched_length, "unstretched_length", 6)
         leg_force = run.hexapod.legs.stiffness * (lengths - inverse_kinematics(run.hexapod, run.pose, run.base))
     base_motion, command = run.base_motion or Excitation(), run.leg_command or Excitation()
+    for use, history in run.histories().items():
+        _check_recordings(use, history, until)
     check_channels(base_motion, "base_motion", AXES)
     check_channels(command, "leg_command", LEGS)
     flags = [base_motion.rotation == "rpy", isinstance(run.start, str) and run.start == "carried"]
@@ -178,6 +191,15 @@ def _prepare(run: Run) -> _Prepared:
     setup = np.concatenate([*pose_rows, leg_force, force, moment, *_start(run), flags])
     packed = [base_motion.packed, np.concatenate([force_history, moment_history]), command.packed]
     return _Prepared(setup, packed, lengths)
+
+
+def _check_recordings(use: str, history: Excitation, until: float) -> None:
+    for term in history.terms:
+        if term.last < min(until, term.stop) * (1 - 1e-12):
+            raise ArgumentError(
+                f"the recording of {use} {term.channel} ends at {term.last:.9g} s, the simulation at {until:.9g} s; "
+                "shorten the simulation, or give a longer recording."
+            )
 
 
 def _split(load: Load, name: str) -> tuple[Array, Array]:
@@ -192,7 +214,7 @@ def _split(load: Load, name: str) -> tuple[Array, Array]:
     check_channels(load, name, AXES[:3])
     if name == "force":
         return np.zeros(3), load.packed
-    return np.zeros(3), load.on({axis: turned for axis, turned in zip(AXES[:3], AXES[3:], strict=True)}).packed
+    return np.zeros(3), load.on(dict(zip(AXES[:3], AXES[3:], strict=True))).packed
 
 
 def _start(run: Run) -> tuple[Array, Array]:
