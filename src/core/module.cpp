@@ -1,6 +1,7 @@
 // The core as Python sees it: functions of a design (211 numbers) and motions (n rows of 24 numbers) that return
 // arrays with n rows. Shapes and values are checked in Python; here only sizes are.
 #include "arrays.hpp"
+#include "bind_designs.hpp"
 #include "bind_simulation.hpp"
 #include "energy.hpp"
 #include "kinematics.hpp"
@@ -276,5 +277,6 @@ NB_MODULE(_core, m) {
   m.def("tangent", &tangent_);
   m.def("settle", &settle_);
   bind_sweep(m);
+  bind_designs(m);
   bind_simulation(m);
 }

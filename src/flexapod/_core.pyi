@@ -37,5 +37,15 @@ def simulate(
     options: _A,
     progress: Callable[[float], object] | None,
 ) -> tuple[_A, _A, _A, _A, _A, _A, _A, _A, _A]: ...
+def control_loop(
+    design: _A,
+    universal: bool,
+    setup: _A,
+    base: _A,
+    controller: list[_A],
+    noise: _A,
+    timing: _A,
+    progress: Callable[[float], object] | None,
+) -> tuple[_A, _A, _A, _A, _A]: ...
 def excitation(terms: _A, times: _A) -> _A: ...
 def base_motion(terms: _A, roll_pitch_yaw: bool, rest: _A, times: _A) -> _A: ...

@@ -129,7 +129,7 @@ def closed_loop(
         first = found.near[0]
         warnings.warn(
             f"{len(found.near)} poles of {controller.name} lie within {nearness:.0%} of a natural frequency, such as "
-            f"{found.pole[first]:.5g} rad/s beside {nearest(found.pole[first], found.omega):.5g} rad/s; the machine may "
+            f"{_pole_words(found.pole[first])} rad/s beside {nearest(found.pole[first], found.omega):.5g} rad/s; the machine may "
             "vibrate more than without control. Move the gains away.",
             GainWarning,
             stacklevel=2,
@@ -150,13 +150,19 @@ def assess(plant: Plant, controller: Controller, nearness: float = 0.1) -> Close
 def unstable_words(found: ClosedLoop) -> str:
     """What is wrong with an unstable loop, and what to do."""
     worst = found.pole[int(np.argmax(found.pole.real))]
+    if abs(worst.imag) < 1e-6 * abs(worst):
+        worst = complex(worst.real)
     growth = f"grows e-fold in {1 / worst.real:.3g} s"
     how = f"oscillates at {abs(worst.imag):.5g} rad/s and {growth}" if worst.imag else growth
     remedy = "reduce the gains" if found.controller.dt is None else "reduce the gains, or sample faster"
     return (
-        f"the machine is unstable with {found.controller.name}: the pole {worst:.5g} rad/s {how}. To cure it, {remedy}; "
+        f"the machine is unstable with {found.controller.name}: the pole at {_pole_words(worst)} rad/s {how}. To cure it, {remedy}; "
         "an integral that takes the legs' static stiffness away needs a leak."
     )
+
+
+def _pole_words(pole: complex) -> str:
+    return f"{pole.real:.4g}" + (f" +- {abs(pole.imag):.5g}i" if pole.imag else "")
 
 
 def nearest(pole: complex, omega: Array) -> float:

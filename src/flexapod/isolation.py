@@ -27,7 +27,7 @@ def lqg(
     measure: Measure | Sequence[Measure] = "acceleration",
     effort: float = 0.1,
     stroke: float = 0.1,
-    noise: float = 0.01,
+    noise: float = 0.1,
     **rest: Unpack[RestOptions],
 ) -> Controller:
     """The controller of least mean square absolute acceleration under white base acceleration (LQG), 12 states.
@@ -58,22 +58,26 @@ def h_infinity(
     *,
     measure: Measure | Sequence[Measure] = "acceleration",
     corner: float | None = None,
-    depth: float = 10.0,
+    depth: float = 3.0,
     effort: float = 0.1,
-    noise: float = 0.01,
+    noise: float = 0.1,
+    bandwidth: float | None = None,
     **rest: Unpack[RestOptions],
 ) -> Controller:
-    """The controller with the least worst-case weighted transmissibility of base acceleration (H-infinity), 18 states.
+    """The controller with the least worst-case weighted transmissibility of base acceleration (H-infinity), 24 states.
 
     The weight on the platform's absolute acceleration is depth (s + corner)/(s + depth corner): 1 below `corner`
     (rad/s; default half the lowest natural frequency), where the platform has to follow the base, rising to `depth`
-    above it. effort, noise, measure: as for `lqg`. Needs slycot (extra "control"). The bound reached, gamma, is in the
+    above it. The weight on forces rises from `effort` to that of acceleration at `bandwidth` (rad/s; default twice the
+    highest natural frequency), beyond which the controller does nothing. noise, measure: as for `lqg`. Needs slycot (extra "control"). The bound reached, gamma, is in the
     controller's name: transmissibility is at most gamma over the weight at every frequency.
     """
     task = _Task(Plant(linearise(hexapod, pose, **rest)), _measures(measure))
-    wanted = 0.5 * task.omega_1 if corner is None else corner
-    _positive(effort=effort, noise=noise, corner=wanted, depth=depth)
-    system = _weighted(task, wanted / task.pace, depth, effort, noise)
+    omega = task.plant.omega
+    low = 0.5 * float(omega[0]) if corner is None else corner
+    high = 2.0 * float(omega[-1]) if bandwidth is None else bandwidth
+    _positive(effort=effort, noise=noise, corner=low, depth=depth, bandwidth=high)
+    system = _weighted(task, _Weights(low / task.pace, depth, high / task.pace, effort, noise))
     gamma, matrices = _suboptimal(system, len(task.C))
     name = f"H-infinity isolation (gamma {gamma:.3g})"
     found = task.controller(*matrices, name)
@@ -151,22 +155,45 @@ class _Weighted(NamedTuple):
     D: Array
 
 
-def _weighted(task: _Task, corner: float, depth: float, effort: float, noise: float) -> _Weighted:
-    """Inputs base acceleration, sensor noise, force; outputs weighted acceleration and force, then measurement."""
-    one, zero, m = np.eye(6), np.zeros, len(task.C)
-    A = np.block([[task.A, zero((12, 6))], [task.C_a, -depth * corner * one]])
-    B = np.block([[task.E, zero((12, m)), task.B], [task.G_a, zero((6, m)), task.D_a]])
+class _Weights(NamedTuple):
+    """Of an H-infinity problem, frequencies over the pace."""
+
+    corner: float
+    depth: float
+    bandwidth: float
+    effort: float
+    noise: float
+
+
+def _weighted(task: _Task, weights: _Weights) -> _Weighted:
+    """Inputs base acceleration, sensor noise, force; outputs weighted acceleration and force, then measurement.
+
+    Weights have a state for each signal: on acceleration x' = a - depth corner x, depth (a + corner (1 - depth) x); on
+    force (depth s/bandwidth + effort)/(s/(far bandwidth) + 1) with `far` so high that it only makes it proper.
+    """
+    corner, depth, bandwidth, effort, noise = weights
+    far = 30.0
+    pole, rise = far * bandwidth, far * depth  # the force's weight is rise - pole (rise - effort)/(s + pole)
+    one, o, m = np.eye(6), np.zeros, len(task.C)
+    A = np.block(
+        [
+            [task.A, o((12, 12))],
+            [task.C_a, -depth * corner * one, o((6, 6))],
+            [o((6, 18)), -pole * one],
+        ]
+    )
+    B = np.block([[task.E, o((12, m)), task.B], [task.G_a, o((6, m)), task.D_a], [o((6, 6 + m)), one]])
     C = np.block(
         [
-            [depth * task.C_a, depth * corner * (1 - depth) * one],
-            [zero((6, 18))],
-            [task.C, zero((m, 6))],
+            [depth * task.C_a, depth * corner * (1 - depth) * one, o((6, 6))],
+            [o((6, 18)), -pole * (rise - effort) * one],
+            [task.C, o((m, 12))],
         ]
     )
     D = np.block(
         [
-            [depth * task.G_a, zero((6, m)), depth * task.D_a],
-            [zero((6, 6)), zero((6, m)), effort * one],
+            [depth * task.G_a, o((6, m)), depth * task.D_a],
+            [o((6, 6)), o((6, m)), rise * one],
             [task.G, noise * np.eye(m), task.D],
         ]
     )
@@ -207,10 +234,11 @@ def _suboptimal(system: _Weighted, measurements: int) -> tuple[float, tuple[Arra
     while high > 1.01 * low:
         middle = float(np.sqrt(high * low))
         low, high = (low, middle) if attempt(middle) is not None else (middle, high)
-    gamma = 1.2 * high
-    found = attempt(gamma)
-    assert found is not None
-    return gamma, found
+    for room in (1.2, 1.1, 1.4, 1.05, 2.0, 1.0):  # the routine fails here and there for reasons of rounding
+        found = attempt(room * high)
+        if found is not None:
+            return room * high, found
+    raise UnstableError("the H-infinity design is too badly conditioned. Raise effort and noise, or lower the depth.")
 
 
 class _Task:

@@ -136,7 +136,7 @@ def integrate(
     if not runs:
         raise ArgumentError("there is nothing to simulate: `runs` is empty.")
     t = _times(times, len(runs))
-    prepared = [_prepare(run, until) for run, until in zip(runs, t[:, -1], strict=True)]
+    prepared = [prepare(run, until) for run, until in zip(runs, t[:, -1], strict=True)]
     options = [
         method.rtol,
         method.atol or 0.0,
@@ -164,13 +164,13 @@ def integrate(
     )
 
 
-class _Prepared(NamedTuple):
+class Prepared(NamedTuple):
     setup: Array
     excitations: list[Array]
     unstretched_length: Array
 
 
-def _prepare(run: Run, until: float) -> _Prepared:
+def prepare(run: Run, until: float) -> Prepared:
     if run.pose.shape or (run.base is not None and run.base.shape):
         raise PoseError("a simulation takes one pose and one base; one has batch axes. Index it first.")
     force, force_history = _split(run.force, "force")
@@ -190,7 +190,7 @@ def _prepare(run: Run, until: float) -> _Prepared:
     pose_rows = (Motion(run.pose).packed[:12], Motion.fixed(run.base).packed[:12])
     setup = np.concatenate([*pose_rows, leg_force, force, moment, *_start(run), flags])
     packed = [base_motion.packed, np.concatenate([force_history, moment_history]), command.packed]
-    return _Prepared(setup, packed, lengths)
+    return Prepared(setup, packed, lengths)
 
 
 def _check_recordings(use: str, history: Excitation, until: float) -> None:
