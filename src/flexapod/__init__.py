@@ -59,7 +59,6 @@ _HOMES = {
         "frequency_sensitivity",
         "natural_modes",
         "near_repeated",
-        "sampling_time",
         "stability_index",
     ],
     "linear": ["DampedModes", "Linearisation", "StateSpace", "linearise"],
@@ -67,6 +66,15 @@ _HOMES = {
     "path": ["PathIndex", "path_index", "path_loads"],
     "requirements": ["PathRequirements"],
     "planning": ["LegSpeed", "Plan", "plan_path"],
+    "sampling": ["sampling_time"],
+    "feedback": ["Controller"],
+    "laws": ["ForceFeedback", "PID", "VelocityFeedback"],
+    "assessment": ["ClosedLoop"],
+    "closed_loop": ["GainWarning", "closed_loop", "gain_map"],
+    "damping_loops": ["open_zeros", "root_locus"],
+    "isolation": ["h_infinity", "isolation", "lqg"],
+    "sampled": ["Hardware", "simulate_control"],
+    "schedule": ["gain_schedule"],
     "excitation": ["Excitation", "half_sine_shock", "harmonic", "polynomial", "sine_sweep", "smooth_step"],
     "recordings": ["read_time_series", "time_series"],
     "spectra": ["Spectrum", "flat_spectrum", "ground_noise", "random_motion", "sea_motion", "sea_spectrum", "vc_curve"],
@@ -104,11 +112,8 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.kinematics import *  # noqa: F403
     from flexapod.linear import *  # noqa: F403
     from flexapod.modal import *  # noqa: F403
-    from flexapod.path import *  # noqa: F403
-    from flexapod.planning import *  # noqa: F403
     from flexapod.pose import *  # noqa: F403
     from flexapod.posesets import *  # noqa: F403
-    from flexapod.requirements import *  # noqa: F403
     from flexapod.recordings import *  # noqa: F403
     from flexapod.response import *  # noqa: F403
     from flexapod.simulation import *  # noqa: F403
@@ -119,5 +124,17 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.sweeps.store import *  # noqa: F403
     from flexapod.sweeps.summary import *  # noqa: F403
     from flexapod.sweeps.worst import *  # noqa: F403
-    from flexapod.waypoints import *  # noqa: F403
     from flexapod.trajectory import *  # noqa: F403
+    from flexapod.assessment import ClosedLoop as ClosedLoop
+    from flexapod.closed_loop import GainWarning as GainWarning, closed_loop as closed_loop, gain_map as gain_map
+    from flexapod.damping_loops import open_zeros as open_zeros, root_locus as root_locus
+    from flexapod.feedback import Controller as Controller
+    from flexapod.isolation import h_infinity as h_infinity, isolation as isolation, lqg as lqg
+    from flexapod.laws import ForceFeedback as ForceFeedback, PID as PID, VelocityFeedback as VelocityFeedback
+    from flexapod.path import PathIndex as PathIndex, path_index as path_index, path_loads as path_loads
+    from flexapod.planning import LegSpeed as LegSpeed, Plan as Plan, plan_path as plan_path
+    from flexapod.requirements import PathRequirements as PathRequirements
+    from flexapod.sampled import Hardware as Hardware, simulate_control as simulate_control
+    from flexapod.sampling import sampling_time as sampling_time
+    from flexapod.schedule import gain_schedule as gain_schedule
+    from flexapod.waypoints import Path as Path

@@ -69,8 +69,9 @@ def h_infinity(
     The weight on the platform's absolute acceleration is depth (s + corner)/(s + depth corner): 1 below `corner`
     (rad/s; default half the lowest natural frequency), where the platform has to follow the base, rising to `depth`
     above it. The weight on forces rises from `effort` to that of acceleration at `bandwidth` (rad/s; default twice the
-    highest natural frequency), beyond which the controller does nothing. noise, measure: as for `lqg`. Needs slycot (extra "control"). The bound reached, gamma, is in the
-    controller's name: transmissibility is at most gamma over the weight at every frequency.
+    highest natural frequency), beyond which the controller does nothing. noise, measure: as for `lqg`. Needs slycot
+    (extra "control"). The bound reached, gamma, is in the controller's name: transmissibility is at most gamma over
+    the weight at every frequency.
     """
     task = _Task(Plant(linearise(hexapod, pose, **rest)), _measures(measure))
     omega = task.plant.omega
@@ -80,15 +81,14 @@ def h_infinity(
     system = _weighted(task, _Weights(low / task.pace, depth, high / task.pace, effort, noise))
     gamma, matrices = _suboptimal(system, len(task.C))
     name = f"H-infinity isolation (gamma {gamma:.3g})"
-    found = task.controller(*matrices, name)
+    A, B, C, D = matrices
+    found = task.controller(A, B, C, D, name)
     if not is_stable(poles(task.plant, found), task.plant):
         raise UnstableError(f"{name}: the design is too badly conditioned to be used. Raise effort and noise.")
     return found
 
 
-def isolation(
-    hexapod: Hexapod, pose: Pose, law: Law, omega: ArrayLike, **rest: Unpack[RestOptions]
-) -> xr.Dataset:
+def isolation(hexapod: Hexapod, pose: Pose, law: Law, omega: ArrayLike, **rest: Unpack[RestOptions]) -> xr.Dataset:
     """Transmissibility of base motion to the platform with and without control, on the tangent.
 
     omega: (n,) rad/s, > 0. Complex `controlled` and `passive` over (omega, output, base): absolute displacement of the
@@ -122,10 +122,10 @@ def isolation(
 def _response(plant: Plant, omega: Array, controller: Controller | None) -> tuple[Complex, Complex]:
     """Absolute displacement and leg force per base displacement."""
     s = 1j * omega[:, None, None]
-    base = np.concatenate([s**2 * np.eye(6), np.broadcast_to(np.eye(6), s.shape[:1] + (6, 6))], axis=1)
-    right = np.concatenate([np.broadcast_to(plant.B, s.shape[:1] + (12, 6)), plant.E @ base], axis=2)
+    base = np.concatenate([s**2 * np.eye(6), np.broadcast_to(np.eye(6), (*s.shape[:1], 6, 6))], axis=1)
+    right = np.concatenate([np.broadcast_to(plant.B, (*s.shape[:1], 12, 6)), plant.E @ base], axis=2)
     z = np.linalg.solve(s * np.eye(12) - plant.A, right.astype(complex))
-    y = plant.C @ z + np.concatenate([np.broadcast_to(plant.D, s.shape[:1] + plant.D.shape), plant.G @ base], axis=2)
+    y = plant.C @ z + np.concatenate([np.broadcast_to(plant.D, (*s.shape[:1], *plant.D.shape)), plant.G @ base], axis=2)
     by_force, by_base = y[..., :6], y[..., 6:]
     force = np.zeros((omega.size, 6, 6), dtype=complex)
     if controller is not None:
@@ -141,9 +141,9 @@ def _gain_at(controller: Controller, omega: Array) -> Complex:
     K = controller
     at, hold = (s, 1.0) if K.dt is None else (np.exp(s * K.dt), (1 - np.exp(-s * K.dt)) / (s * K.dt))
     if K.order == 0:
-        return hold * np.broadcast_to(K.D, (omega.size, *K.D.shape)).astype(complex)
+        return np.asarray(hold * np.broadcast_to(K.D, (omega.size, *K.D.shape)), dtype=np.complex128)
     inner = np.linalg.solve(at * np.eye(K.order) - K.A, np.broadcast_to(K.B, (omega.size, *K.B.shape)).astype(complex))
-    return hold * (K.C @ inner + K.D)
+    return np.asarray(hold * (K.C @ inner + K.D), dtype=np.complex128)
 
 
 class _Weighted(NamedTuple):
@@ -250,7 +250,7 @@ class _Task:
         linear = plant.linear
         self.omega_1 = float(plant.omega[0])
         self.pace = float(np.sqrt(plant.omega[0] * plant.omega[-1]))
-        size = float(np.sqrt(np.linalg.norm(linear.H[3:], axis=0).mean() ** 2))  # the legs' lever about the reference
+        size = float(np.linalg.norm(linear.H[3:], axis=0).mean())  # the legs' lever about the reference
         self.axis = np.repeat([1.0, 1.0 / size], 3)  # of a unit motion: m, and rad
         rows = plant.measured(("acceleration",))
         D_a = plant.D[rows] / self.axis[:, None]

@@ -81,8 +81,8 @@ def plan_path(
     result is checked on points four times as dense. The same seed gives the same path. progress: called with a stage
     and its share done.
 
-    Raises PathError where an end breaks a requirement or no path is found, and says which requirement; SingularPoseError
-    where singular poses lie between start and goal on any path.
+    Raises PathError where an end breaks a requirement or no path is found, and says which requirement;
+    SingularPoseError where singular poses lie between start and goal on any path.
     """
     task = _Task(hexapod, start, goal, requirements, objective, timing)
     report = progress or (lambda stage, share: None)
@@ -161,8 +161,8 @@ class _Task:
         return (
             f"no path was found that keeps the index above {self.required.index:.5g} rad/s and all limits: of poses "
             f"sampled around start and goal {stiff:.2%} have that index and {share:.2%} also keep the limits "
-            f"(the highest index seen is {index.max():.5g} rad/s). Lower the bound, widen the limits, or raise reach and "
-            "turn so that the search may go farther."
+            f"(the highest index seen is {index.max():.5g} rad/s). Lower the bound, widen the limits, or raise "
+            "reach and turn so that the search may go farther."
         )
 
     def smoothed(self, rough: Array, progress: Callable[[float], None]) -> Path:
@@ -198,7 +198,9 @@ class _Task:
         if not isinstance(self.timing, LegSpeed):
             return unit.retimed(float(self.timing))
         curve = tuple((B @ z) * self.scale for B in Knots(len(z), 401).B)
-        return unit.retimed(duration(self.hexapod, self.chart, curve, Speeds(self.timing.rate, self.timing.acceleration)))
+        return unit.retimed(
+            duration(self.hexapod, self.chart, curve, Speeds(self.timing.rate, self.timing.acceleration))
+        )
 
     def plan(self, path: Path, straight: Path, rough: Pose | None, batches: int) -> Plan:
         def least(path: Path) -> float:

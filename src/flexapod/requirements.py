@@ -85,7 +85,9 @@ class Margins:
     def _others(self, poses: Pose) -> list[Array]:
         found = []
         if self.required.condition_number is not None:
-            found.append(1 - np.asarray(condition_number(self.hexapod, poses))[:, None] / self.required.condition_number)
+            found.append(
+                1 - np.asarray(condition_number(self.hexapod, poses))[:, None] / self.required.condition_number
+            )
         for quantity in limit_excess(self.limited, poses):
             value = quantity.value.reshape(poses.shape[0], -1)
             least, most = np.broadcast_to(quantity.least, value.shape), np.broadcast_to(quantity.most, value.shape)
@@ -113,7 +115,9 @@ class Margins:
             )
         exceeded = check_limits(self.limited, pose).exceeded
         if exceeded:
-            raise PathError(f"the {name} pose is outside the limits: {'; '.join(exceeded)}. Move it, or widen the limits.")
+            raise PathError(
+                f"the {name} pose is outside the limits: {'; '.join(exceeded)}. Move it, or widen the limits."
+            )
 
     def reach_from(self, ends: Pose) -> float:
         """How far the search may go beyond the ends, m."""

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.linalg import expm
 
 from flexapod import _core
-from flexapod.closed_loop import assess, unstable_words
+from flexapod.assessment import assess, unstable_words
 from flexapod.errors import ArgumentError, SimulationError, UnstableError
 from flexapod.excitation import Excitation
 from flexapod.feedback import MEASURES, Controller, Plant, static
@@ -61,7 +61,8 @@ class Hardware:
             if part.shape not in ((), (6,)) or not np.isfinite(part).all() or (part < 0).any():
                 raise ArgumentError(f"noise of {name} is {value!r}; give a finite number >= 0, or six")
             rms[6 * MEASURES.index(name) :][:6] = part
-        return rms * np.random.default_rng(self.seed).standard_normal((samples, _SIGNALS))
+        drawn: Array = rms * np.random.default_rng(self.seed).standard_normal((samples, _SIGNALS))
+        return drawn
 
 
 def simulate_control(
@@ -79,7 +80,8 @@ def simulate_control(
     """The non-linear machine on a moving base, with a sampled controller and without.
 
     controller: sampled (see Controller.sampled); its forces are held between samples. base_motion: of the base from its
-    pose at rest; at t = 0 the platform moves with it. duration: s. after: root mean squares are taken from this time on. rest: as for `linearise`.
+    pose at rest; at t = 0 the platform moves with it. duration: s. after: root mean squares are taken from this time
+    on. rest: as for `linearise`.
 
     Dataset over (case, time, axis), cases "controlled" and "passive": `acceleration`, absolute, m/s2 and rad/s2;
     `displacement` from rest, inertial axes, m and rad; `relative`, the same seen from the base; over (sample_time,
@@ -101,7 +103,7 @@ def simulate_control(
     loop = assess(plant, controller)
     if not loop.stable:
         raise UnstableError(unstable_words(loop))
-    samples = int(round(duration / controller.dt))
+    samples = round(duration / controller.dt)
     steps = max(1, int(np.ceil(controller.dt * plant.omega_0 / _TURN_A_STEP)))
     noise = hardware.drawn(samples)
     bench = _Bench(hexapod, pose, base_motion, rest, controller.dt, samples, steps)
@@ -149,7 +151,7 @@ class _Bench:
     @property
     def times(self) -> Array:
         """(rows,) at which motions are recorded, s."""
-        return np.arange(self.samples * self.steps + 1) * (self.dt / self.steps)
+        return np.asarray(np.arange(self.samples * self.steps + 1) * (self.dt / self.steps), dtype=np.float64)
 
     def run(self, law: Controller, limit: Array, noise: Array, progress: Callable[[float], Any] | None) -> _Found:
         """The simulation in the core."""

@@ -146,10 +146,10 @@ class Smoother:
                     parts.append(smooth_minimum(np.concatenate([1 - value / most, 1 + value / most], axis=-1)))
             return np.stack(parts, axis=-1)
 
-        q = tuple(B @ P for B in knots.B)
-        durations = np.full((len(q[0]), 1), T)
-        values = margin(*q, durations)
-        slopes = _differences(margin, (*q, durations))
+        q, rate, acceleration = (B @ P for B in knots.B)
+        durations = np.full((len(q), 1), T)
+        values = margin(q, rate, acceleration, durations)
+        slopes = _differences(margin, (q, rate, acceleration, durations))
         by_points = sum(
             np.einsum("sw,skc->skwc", B[:, 1:-1], slope) for B, slope in zip(knots.B, slopes[:3], strict=True)
         )
