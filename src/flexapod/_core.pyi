@@ -1,5 +1,6 @@
 # What the compiled core offers. `design` is Hexapod.packed; platform, base, start are rows of 24 numbers.
 from collections.abc import Callable
+from typing import Any
 
 from numpy import float64
 from numpy.typing import NDArray
