@@ -65,14 +65,14 @@ _HOMES = {
     "waypoints": ["Path"],
     "path": ["PathIndex", "path_index", "path_loads"],
     "requirements": ["PathRequirements"],
-    "planning": ["LegSpeed", "Plan", "plan_path"],
+    "planning": ["LegSpeed", "Plan", "plan_path", "plan_slice"],
     "sampling": ["sampling_time"],
     "feedback": ["Controller"],
     "laws": ["ForceFeedback", "PID", "VelocityFeedback"],
     "assessment": ["ClosedLoop"],
-    "closed_loop": ["GainWarning", "closed_loop", "gain_map"],
+    "position_loops": ["GainWarning", "closed_loop", "gain_map"],
     "damping_loops": ["open_zeros", "root_locus"],
-    "isolation": ["h_infinity", "isolation", "lqg"],
+    "isolators": ["controlled_transmissibility", "h_infinity", "lqg"],
     "sampled": ["Hardware", "simulate_control"],
     "schedule": ["gain_schedule"],
     "excitation": ["Excitation", "half_sine_shock", "harmonic", "polynomial", "sine_sweep", "smooth_step"],
@@ -105,17 +105,42 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:  # what type checkers and editors see
+    from flexapod.assessment import ClosedLoop as ClosedLoop
+    from flexapod.position_loops import GainWarning as GainWarning
+    from flexapod.position_loops import closed_loop as closed_loop
+    from flexapod.position_loops import gain_map as gain_map
+    from flexapod.damping_loops import open_zeros as open_zeros
+    from flexapod.damping_loops import root_locus as root_locus
     from flexapod.dynamics import *  # noqa: F403
     from flexapod.errors import *  # noqa: F403
     from flexapod.excitation import *  # noqa: F403
+    from flexapod.feedback import Controller as Controller
     from flexapod.hexapod import *  # noqa: F403
+    from flexapod.isolators import controlled_transmissibility as controlled_transmissibility
+    from flexapod.isolators import h_infinity as h_infinity
+    from flexapod.isolators import lqg as lqg
     from flexapod.kinematics import *  # noqa: F403
+    from flexapod.laws import PID as PID
+    from flexapod.laws import ForceFeedback as ForceFeedback
+    from flexapod.laws import VelocityFeedback as VelocityFeedback
     from flexapod.linear import *  # noqa: F403
     from flexapod.modal import *  # noqa: F403
+    from flexapod.path import PathIndex as PathIndex
+    from flexapod.path import path_index as path_index
+    from flexapod.path import path_loads as path_loads
+    from flexapod.planning import LegSpeed as LegSpeed
+    from flexapod.planning import Plan as Plan
+    from flexapod.planning import plan_path as plan_path
+    from flexapod.planning import plan_slice as plan_slice
     from flexapod.pose import *  # noqa: F403
     from flexapod.posesets import *  # noqa: F403
     from flexapod.recordings import *  # noqa: F403
+    from flexapod.requirements import PathRequirements as PathRequirements
     from flexapod.response import *  # noqa: F403
+    from flexapod.sampled import Hardware as Hardware
+    from flexapod.sampled import simulate_control as simulate_control
+    from flexapod.sampling import sampling_time as sampling_time
+    from flexapod.schedule import gain_schedule as gain_schedule
     from flexapod.simulation import *  # noqa: F403
     from flexapod.spectra import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403
@@ -125,16 +150,4 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.sweeps.summary import *  # noqa: F403
     from flexapod.sweeps.worst import *  # noqa: F403
     from flexapod.trajectory import *  # noqa: F403
-    from flexapod.assessment import ClosedLoop as ClosedLoop
-    from flexapod.closed_loop import GainWarning as GainWarning, closed_loop as closed_loop, gain_map as gain_map
-    from flexapod.damping_loops import open_zeros as open_zeros, root_locus as root_locus
-    from flexapod.feedback import Controller as Controller
-    from flexapod.isolation import h_infinity as h_infinity, isolation as isolation, lqg as lqg
-    from flexapod.laws import ForceFeedback as ForceFeedback, PID as PID, VelocityFeedback as VelocityFeedback
-    from flexapod.path import PathIndex as PathIndex, path_index as path_index, path_loads as path_loads
-    from flexapod.planning import LegSpeed as LegSpeed, Plan as Plan, plan_path as plan_path
-    from flexapod.requirements import PathRequirements as PathRequirements
-    from flexapod.sampled import Hardware as Hardware, simulate_control as simulate_control
-    from flexapod.sampling import sampling_time as sampling_time
-    from flexapod.schedule import gain_schedule as gain_schedule
     from flexapod.waypoints import Path as Path

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 import numpy as np
+import xarray as xr
 
 from flexapod.errors import PathError, SingularPoseError
 from flexapod.freespace import search
@@ -95,6 +96,44 @@ def plan_path(
     path = task.smoothed(rough, lambda share: report("smoothing", share))
     corners = None if batches == 0 else task.chart.poses(rough * task.scale)
     return task.plan(path, straight, corners, batches)
+
+
+def plan_slice(hexapod: Hexapod, plan: Plan, points: int = 81) -> xr.Dataset:
+    """The index on the plane through a plan's start, goal and the point of its path farthest from the straight line.
+
+    Dataset over (aside, along), m, one radian counted as the plan's `size`: `index`, rad/s; `met`, whether all
+    requirements are. `path_along`, `path_aside` over `step`: the path projected on the plane. Attribute straight: where
+    the goal lies on `along`. Raises PathError for a plan that is straight.
+    """
+    scale = np.repeat([1.0, plan.size], 3)
+    chart = plan.path.chart
+    z = chart.coordinates(plan.path(plan.path.grid(400)).pose) * scale
+    line = z[-1] - z[0]
+    length = float(np.linalg.norm(line))
+    along = (z - z[0]) @ (line / length)
+    off = z - z[0] - along[:, None] * (line / length)
+    far = int(np.linalg.norm(off, axis=1).argmax())
+    reach = float(np.linalg.norm(off[far]))
+    if reach < 1e-6 * length:
+        raise PathError("the planned path is straight; it spans no plane to show")
+    basis = np.stack([line / length, off[far] / reach])
+    place = (z - z[0]) @ basis.T
+    room = 0.15 * max(length, reach)
+    axes = [np.linspace(place[:, k].min() - room, place[:, k].max() + room, points) for k in range(2)]
+    axes[1] = np.linspace(min(axes[1][0], -0.6 * reach - room), axes[1][-1], points)
+    grid = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
+    poses = chart.poses((z[0] + grid @ basis) / scale)
+    margins = Margins(hexapod, plan.requirements)
+    return xr.Dataset(
+        {
+            "index": (("aside", "along"), margins.frequencies(poses)[:, 0].reshape(points, points), {"units": "rad/s"}),
+            "met": (("aside", "along"), margins.met(poses).reshape(points, points)),
+            "path_along": ("step", place[:, 0], {"units": "m"}),
+            "path_aside": ("step", place[:, 1], {"units": "m"}),
+        },
+        {"along": ("along", axes[0], {"units": "m"}), "aside": ("aside", axes[1], {"units": "m"})},
+        {"design": hexapod.name, "digest": hexapod.digest, "bound": plan.requirements.index, "straight": length},
+    )
 
 
 class _Task:
