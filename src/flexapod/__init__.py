@@ -106,9 +106,6 @@ def __dir__() -> list[str]:
 
 if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.assessment import ClosedLoop as ClosedLoop
-    from flexapod.position_loops import GainWarning as GainWarning
-    from flexapod.position_loops import closed_loop as closed_loop
-    from flexapod.position_loops import gain_map as gain_map
     from flexapod.damping_loops import open_zeros as open_zeros
     from flexapod.damping_loops import root_locus as root_locus
     from flexapod.dynamics import *  # noqa: F403
@@ -134,6 +131,9 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.planning import plan_slice as plan_slice
     from flexapod.pose import *  # noqa: F403
     from flexapod.posesets import *  # noqa: F403
+    from flexapod.position_loops import GainWarning as GainWarning
+    from flexapod.position_loops import closed_loop as closed_loop
+    from flexapod.position_loops import gain_map as gain_map
     from flexapod.recordings import *  # noqa: F403
     from flexapod.requirements import PathRequirements as PathRequirements
     from flexapod.response import *  # noqa: F403

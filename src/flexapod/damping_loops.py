@@ -52,7 +52,7 @@ def root_locus(
 ) -> xr.Dataset:
     """Poles over the gain of decentralised feedback ("force": integral, rad/s; "velocity": N s/m), and the best gain.
 
-    gains: (n,) > 0; default: 200 that span the modes. Dataset over `gain`: `pole` (gain, branch), rad/s, each branch
+    gains: (n,) > 0; default: 400 that span the modes. Dataset over `gain`: `pole` (gain, branch), rad/s, each branch
     followed from gain to gain; `damping_ratio`; `least_damping`, of the vibrating poles. Over `zero_number`: `zero`,
     rad/s (see `open_zeros`). Attributes: best_gain, best_damping: the gain, refined between samples, with the largest
     least damping.

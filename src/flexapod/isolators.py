@@ -88,7 +88,9 @@ def h_infinity(
     return found
 
 
-def controlled_transmissibility(hexapod: Hexapod, pose: Pose, law: Law, omega: ArrayLike, **rest: Unpack[RestOptions]) -> xr.Dataset:
+def controlled_transmissibility(
+    hexapod: Hexapod, pose: Pose, law: Law, omega: ArrayLike, **rest: Unpack[RestOptions]
+) -> xr.Dataset:
     """Transmissibility of base motion to the platform with and without control, on the tangent.
 
     omega: (n,) rad/s, > 0. Complex `controlled` and `passive` over (omega, output, base): absolute displacement of the

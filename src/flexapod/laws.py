@@ -24,6 +24,7 @@ Space = Literal["joint", "task"]
 Actuator = Literal["force", "command"]
 Feedback = Literal["force", "velocity"]
 ALL = (1, 2, 3, 4, 5, 6)
+_STILL = 1 - 1e-6  # damping ratio that counts as no vibration
 
 
 @dataclass(frozen=True)
@@ -141,13 +142,19 @@ def make(feedback: Feedback, gain: float, leak: float, legs: tuple[int, ...] = A
 
 
 def best_gain(plant: Plant, law: Callable[[float], Law], gains: Array) -> tuple[float, float]:
-    """The gain with the largest least damping, refined between those given, and that damping."""
+    """The gain with the largest least damping, refined between those given, and that damping.
+
+    Where nothing vibrates any more at high gain, the least gain at which that is so: more only slows the machine.
+    """
 
     def damping(log_gain: float) -> float:
         return least_damping(poles(plant, law(float(np.exp(log_gain))).on(plant.linear)))
 
     logs = np.log(gains)
     values = np.array([damping(x) for x in logs])
+    still = np.flatnonzero(values >= _STILL)
+    if still.size:
+        return _first_still(damping, logs, int(still[0]))
     best = int(values.argmax())
     span = (logs[max(best - 1, 0)], logs[min(best + 1, len(logs) - 1)])
     refined = minimize_scalar(lambda x: -damping(x), bounds=span, method="bounded", options={"xatol": 1e-7})
@@ -156,12 +163,20 @@ def best_gain(plant: Plant, law: Callable[[float], Law], gains: Array) -> tuple[
     return float(gains[best]), float(values[best])
 
 
+def _first_still(damping: Callable[[float], float], logs: Array, first: int) -> tuple[float, float]:
+    low, high = logs[max(first - 1, 0)], logs[first]
+    while high - low > 1e-9:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if damping(middle) >= _STILL else (middle, high)
+    return float(np.exp(high)), 1.0
+
+
 def default_gains(plant: Plant, feedback: Feedback) -> Array:
-    """(200,) gains from next to nothing to far too much."""
+    """(400,) gains from next to nothing to far too much."""
     omega = plant.omega
     low, high = 0.01 * omega[0], 30 * omega[-1]
     if feedback == "force":
-        return np.geomspace(low, high, 200)
+        return np.geomspace(low, high, 400)
     # In a mode of frequency w, a rate gain g on legs of stiffness k damps as g w/(2 k): 2 k/w is critical.
     k = plant.linear.leg_stiffness.mean()
     return k / np.geomspace(high, low, 200)

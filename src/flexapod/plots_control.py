@@ -55,7 +55,7 @@ def gain_map(dataset: xr.Dataset) -> Figure:
         _spread(ax, kd, kp)
     left.set_ylabel(f"proportional gain kp, {dataset.kp.attrs['units']}")
     words = f"{dataset.attrs['design']}: {dataset.attrs['space']} space, {dataset.attrs['actuator']}"
-    note = f"   (orange: a pole within {nearness:.0%} of a natural frequency; ×: unstable)"
+    note = f"   (orange: a pole within {nearness:.0%} of a natural frequency; ×: unstable; white: no vibration)"
     figure.suptitle(words + note, color=INK, fontsize=11)
     return figure
 
@@ -74,26 +74,26 @@ def root_locus(dataset: xr.Dataset) -> Figure:
     left.plot(np.zeros_like(omega), omega, ls="none", marker="x", ms=8, mew=1.8, color=INK, label="no control")
     zero = dataset.zero.values[np.isfinite(dataset.zero.values)]
     left.plot(np.zeros_like(zero), zero, "o", ms=7, mfc="none", mec=INK, mew=1.3, label="zeros", clip_on=False)
-    best = int(np.argmin(np.abs(dataset.gain.values - dataset.attrs["best_gain"])))
-    at = shown[best][shown[best].imag > 1e-6 * top]
-    left.plot(at.real, at.imag, "D", ms=6, color=ORANGE, mec="white", mew=0.8, label="most damping")
+    helps = dataset.attrs["best_damping"] > 0
+    if helps:
+        best = int(np.argmin(np.abs(dataset.gain.values - dataset.attrs["best_gain"])))
+        at = shown[best][shown[best].imag > 1e-6 * top]
+        left.plot(at.real, at.imag, "D", ms=6, color=ORANGE, mec="white", mew=0.8, label="most damping")
     left.set(
         xlim=(-top, 0.06 * top), ylim=(-0.02 * top, top), xlabel="real part, rad/s", ylabel="imaginary part, rad/s"
     )
-    left.legend(loc="upper left", fontsize=9, framealpha=0.9, edgecolor="none")
-    right.semilogx(dataset.gain.values, dataset.least_damping.values, color=BLUE, lw=1.8)
-    right.plot(dataset.attrs["best_gain"], dataset.attrs["best_damping"], "D", ms=7, color=ORANGE, mec="white")
-    right.annotate(
-        f"{dataset.attrs['best_damping']:.3g} at {dataset.attrs['best_gain']:.4g} {dataset.gain.attrs['units']}",
-        (dataset.attrs["best_gain"], dataset.attrs["best_damping"]),
-        xytext=(0, 9),
-        textcoords="offset points",
-        ha="center",
-        color=INK,
-        fontsize=9,
-    )
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower left", ncols=3, fontsize=9, frameon=False)
+    least = np.maximum(dataset.least_damping.values, -0.2)  # below zero it is unstable, however much
+    right.semilogx(dataset.gain.values, least, color=BLUE, lw=1.8)
+    right.axhspan(-0.25, 0, color=ORANGE, alpha=0.12, lw=0)
+    right.set_ylim(-0.22, 1.15 * max(dataset.attrs["best_damping"], 0.3))
+    right.annotate("unstable", (0.02, -0.11), xycoords=("axes fraction", "data"), color=INK, fontsize=9, va="center")
+    if helps:
+        peak = (dataset.attrs["best_gain"], dataset.attrs["best_damping"])
+        right.plot(*peak, "D", ms=7, color=ORANGE, mec="white")
+        words = f"{peak[1]:.3g} at {peak[0]:.4g} {dataset.gain.attrs['units']}"
+        right.annotate(words, peak, xytext=(-8, 4), textcoords="offset points", ha="right", color=INK, fontsize=9)
     right.set(xlabel=f"gain, {dataset.gain.attrs['units']}", ylabel="least damping ratio")
-    right.margins(y=0.14)
     for ax in (left, right):
         _dress(ax)
     kind = {"force": "integral force feedback", "velocity": "direct velocity feedback"}[dataset.attrs["feedback"]]
@@ -184,7 +184,7 @@ def schedule(dataset: xr.Dataset) -> Figure:
     else:
         rest = {str(name): dataset.sizes[name] // 2 for name in dims[2:]}
         cut = dataset.isel(rest)
-        for ax, name in ((left, "gain"), (right, "least_damping")):
+        for ax, name in ((left, "gain"), (right, "fixed_damping")):
             x, y = (str(name) for name in cut.gain.dims)
             mesh = ax.pcolormesh(_shown(cut, x), _shown(cut, y), cut[name].values.T, cmap="viridis", shading="nearest")
             figure.colorbar(mesh, ax=ax).set_label(str(cut[name].attrs["long_name"]), color=INK)

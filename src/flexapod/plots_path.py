@@ -66,7 +66,8 @@ def _x(result: PathIndex, shared: bool) -> np.ndarray:
 
 def plan_map(dataset: xr.Dataset) -> Figure:
     """The index on the plane through start, goal and the planned path's farthest point, from `fx.plan_slice`."""
-    figure = Figure(figsize=(7.4, 5.6), layout="constrained", dpi=130)
+    width, height = np.ptp(dataset.along.values), np.ptp(dataset.aside.values)
+    figure = Figure(figsize=(7.4, 1.4 + 5.6 * min(height / width, 1.2)), layout="constrained", dpi=130)
     ax = figure.subplots()
     bound = dataset.attrs["bound"]
     x, y, values = dataset.along.values, dataset.aside.values, dataset["index"].values

@@ -95,7 +95,7 @@ class _Rule:
 
     def choose(self, plant: Plant) -> tuple[float, float]:
         """Gain and least damping, or NaN twice."""
-        row = default_gains(plant, self.law)[::4] if self.gains is None else self.gains  # type: ignore[arg-type]
+        row = default_gains(plant, self.law)[::8] if self.gains is None else self.gains  # type: ignore[arg-type]
         if self.damping is None:
             gain, damping = best_gain(plant, self.law_of, row)
             return (gain, damping) if damping > 0 else (np.nan, np.nan)
