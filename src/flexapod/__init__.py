@@ -14,6 +14,7 @@ _HOMES = {
         "ClusterError",
         "DesignError",
         "FlexapodError",
+        "InfeasibleError",
         "KinematicsError",
         "OutputError",
         "PathError",
@@ -87,6 +88,21 @@ _HOMES = {
     "sweeps.summary": ["SweepSummary", "summarise"],
     "sweeps.worst": ["WorstPose", "worst_pose"],
     "sweeps.cluster": ["cluster"],
+    "optimal.variables": ["JointCircle", "Variable"],
+    "optimal.places": ["Workspace"],
+    "optimal.objectives": ["LeastIndex", "MeanIndex"],
+    "optimal.constraints": [
+        "ConditionNumber",
+        "Deflection",
+        "DesignLimits",
+        "Footprint",
+        "JointAngle",
+        "LegClearance",
+        "LegLength",
+        "Stroke",
+        "TotalMass",
+    ],
+    "optimal.optimise": ["OptimalDesign", "optimise"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = sorted([*_HOME_OF, "__version__"])

@@ -27,6 +27,10 @@ class SingularPoseError(FlexapodError, ValueError):
     """A pose at which the legs cannot hold the platform (H is singular)."""
 
 
+class InfeasibleError(FlexapodError, ValueError):
+    """No design that keeps every constraint: the start breaks one, or a search found none."""
+
+
 class PathError(FlexapodError, ValueError):
     """Waypoints or times that make no path, or a path that cannot be found."""
 
