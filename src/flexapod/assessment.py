@@ -34,7 +34,7 @@ def assess(plant: Plant, controller: Controller, nearness: float = 0.1) -> Close
     distance = distances(pole, omega)
     vibrating = pole.imag > 0
     near = tuple(np.flatnonzero(vibrating & (distance < nearness)).tolist())
-    return ClosedLoop(pole, ratio, omega, distance, near, float(ratio.min()), is_stable(pole, plant), controller)
+    return ClosedLoop(pole, ratio, omega, distance, near, float(ratio.min()), bool(is_stable(pole, plant)), controller)
 
 
 def unstable_words(found: ClosedLoop) -> str:

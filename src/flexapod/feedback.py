@@ -182,9 +182,9 @@ def poles(plant: Plant, controller: Controller) -> Complex:
     return found[np.lexsort((found.imag, np.abs(found)))]
 
 
-def is_stable(pole: Complex, plant: Plant) -> bool:
-    """Whether all poles are in the left half plane, with room for rounding."""
-    return bool((pole.real < 1e-11 * plant.omega_0).all())
+def is_stable(pole: Complex, plant: Plant) -> np.ndarray:
+    """(...) whether all poles (..., n) are in the left half plane, with room for rounding."""
+    return np.asarray((pole.real < 1e-11 * plant.omega_0).all(axis=-1))
 
 
 def damping_ratios(pole: Complex) -> Array:

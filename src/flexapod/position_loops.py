@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.assessment import ClosedLoop, assess, distances, nearest, pole_words, unstable_words
 from flexapod.errors import ArgumentError, UnstableError
-from flexapod.feedback import Law, Plant, damping_ratios, poles
+from flexapod.feedback import Complex, Law, Plant, damping_ratios, is_stable, poles
 from flexapod.hexapod import Hexapod
 from flexapod.laws import PID
 from flexapod.linear import RestOptions, linearise
@@ -79,31 +79,8 @@ def gain_map(
     shape = (rows["kp"].size, rows["kd"].size)
     found = [_with(base, p, d).on(plant.linear) for p, d in product(*rows.values())]
     pole = np.stack([poles(plant, controller) for controller in found]).reshape(*shape, -1)
-    omega = plant.omega
-    distance = np.where(pole.imag > 0, distances(pole, omega), np.inf).min(axis=-1)
-    near = distance < nearness
-    grid = ("kp", "kd")
-    dataset = xr.Dataset(
-        {
-            "distance": (grid, distance, {"long_name": "least distance of poles to natural frequencies, relative"}),
-            "worst_damping": (grid, damping_ratios(pole).min(axis=-1), {"long_name": "least damping ratio"}),
-            "stable": (grid, (pole.real < 1e-11 * plant.omega_0).all(axis=-1)),
-            "near": (grid, near),
-            "pole": ((*grid, "pole_number"), pole, {"units": "rad/s"}),
-        },
-        {
-            "kp": ("kp", rows["kp"], {"long_name": "proportional gain", "units": _unit(base, 0)}),
-            "kd": ("kd", rows["kd"], {"long_name": "derivative gain", "units": _unit(base, 1)}),
-        },
-        {
-            "design": hexapod.name,
-            "digest": hexapod.digest,
-            "space": base.space,
-            "actuator": base.actuator,
-            "nearness": nearness,
-            "natural_frequencies_rad_s": omega.tolist(),
-        },
-    )
+    dataset = _map(rows, pole, plant, base, nearness).assign_attrs(design=hexapod.name, digest=hexapod.digest)
+    near = dataset.near.values
     if near.any():
         warnings.warn(
             f"{int(near.sum())} of {near.size} pairs of gains put a pole within {nearness:.0%} of a natural frequency; "
@@ -112,6 +89,30 @@ def gain_map(
             stacklevel=2,
         )
     return dataset
+
+
+def _map(rows: dict[str, Array], pole: Complex, plant: Plant, law: PID, nearness: float) -> xr.Dataset:
+    distance = np.where(pole.imag > 0, distances(pole, plant.omega), np.inf).min(axis=-1)
+    grid = ("kp", "kd")
+    return xr.Dataset(
+        {
+            "distance": (grid, distance, {"long_name": "least distance of poles to natural frequencies, relative"}),
+            "worst_damping": (grid, damping_ratios(pole).min(axis=-1), {"long_name": "least damping ratio"}),
+            "stable": (grid, is_stable(pole, plant)),
+            "near": (grid, distance < nearness),
+            "pole": ((*grid, "pole_number"), pole, {"units": "rad/s"}),
+        },
+        {
+            "kp": ("kp", rows["kp"], {"long_name": "proportional gain", "units": _unit(law, 0)}),
+            "kd": ("kd", rows["kd"], {"long_name": "derivative gain", "units": _unit(law, 1)}),
+        },
+        {
+            "space": law.space,
+            "actuator": law.actuator,
+            "nearness": nearness,
+            "natural_frequencies_rad_s": plant.omega.tolist(),
+        },
+    )
 
 
 def _with(law: PID, kp: float, kd: float) -> PID:

@@ -92,6 +92,30 @@ def simulate_control(
     Raises UnstableError where the tangent shows the sampled loop to be unstable, SimulationError where the machine
     passes a singular pose or the motion grows without bound.
     """
+    plant = Plant(linearise(hexapod, pose, **rest))
+    dt = _checked(plant, controller, duration, after)
+    samples = round(duration / dt)
+    steps = max(1, int(np.ceil(dt * plant.omega_0 / _TURN_A_STEP)))
+    noise, limits = hardware.drawn(samples), hardware.limits()
+    bench = _Bench(hexapod, pose, base_motion, rest, dt, samples, steps)
+    idle = static(np.zeros((6, 6)), ("leg_rate",), "no control")
+    found, predicted = {}, {}
+    for number, (case, law) in enumerate(zip(CASES, (controller, idle), strict=True)):
+        report = None if progress is None else _part(progress, 0.5 * number, 0.5)
+        found[case] = bench.run(law, limits, noise, report)
+        predicted[case] = bench.predict(plant, law, noise)
+    return _dataset(bench, found, predicted, after).assign_attrs(
+        design=hexapod.name,
+        digest=hexapod.digest,
+        controller=controller.name,
+        dt_s=dt,
+        steps=steps,
+        saturated=float(found["controlled"].cut.mean()),
+    )
+
+
+def _checked(plant: Plant, controller: Controller, duration: float, after: float) -> float:
+    """The sampling time, s, of a controller that can be run."""
     if controller.dt is None:
         raise ArgumentError(f"{controller.name} is continuous; sample it first: controller.sampled(dt)")
     if not (np.isfinite(duration) and duration > after >= 0 and duration >= controller.dt):
@@ -99,30 +123,10 @@ def simulate_control(
             f"duration is {duration} s and after is {after} s; a sample of {controller.dt:.5g} s must fit, and "
             "duration must be > after >= 0"
         )
-    plant = Plant(linearise(hexapod, pose, **rest))
     loop = assess(plant, controller)
     if not loop.stable:
         raise UnstableError(unstable_words(loop))
-    samples = round(duration / controller.dt)
-    steps = max(1, int(np.ceil(controller.dt * plant.omega_0 / _TURN_A_STEP)))
-    noise = hardware.drawn(samples)
-    bench = _Bench(hexapod, pose, base_motion, rest, controller.dt, samples, steps)
-    shares = {"controlled": (0.0, 0.5), "passive": (0.5, 0.5)}
-    idle = static(np.zeros((6, 6)), ("leg_rate",), "no control")
-    found, predicted = {}, {}
-    for case, law in zip(CASES, (controller, idle), strict=True):
-        first, share = shares[case]
-        report = None if progress is None else _part(progress, first, share)
-        found[case] = bench.run(law, hardware.limits(), noise, report)
-        predicted[case] = bench.predict(plant, law, noise)
-    return _dataset(bench, found, predicted, after).assign_attrs(
-        design=hexapod.name,
-        digest=hexapod.digest,
-        controller=controller.name,
-        dt_s=controller.dt,
-        steps=steps,
-        saturated=float(found["controlled"].cut.mean()),
-    )
+    return controller.dt
 
 
 def _part(progress: Callable[[float], Any], first: float, share: float) -> Callable[[float], Any]:

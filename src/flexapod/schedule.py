@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Unpack
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 import xarray as xr
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from flexapod.assessment import least_damping
-from flexapod.errors import ArgumentError, FlexapodError
+from flexapod.errors import ArgumentError, PoseError, SingularPoseError
 from flexapod.feedback import Law, Plant, poles
 from flexapod.hexapod import Hexapod
 from flexapod.laws import best_gain, default_gains, make
@@ -52,33 +52,45 @@ def gain_schedule(
         raise ArgumentError("a law of your own needs `gains`, a row of gains to choose from")
     rule = _Rule(law, None if gains is None else _ascending(gains), damping, leak)
     rows = points.rows(0, points.count)
-    matrix = rpy_matrix(rows[:, 3:]) if rows.shape[1] == 6 else rows[:, 3:].reshape(-1, 3, 3)
-    plants: list[Plant | None] = []
-    gain, achieved = np.full((2, len(rows)), np.nan)
-    status = np.full(len(rows), STATUS[0], "U8")
-    for i in range(len(rows)):
-        try:
-            plants.append(Plant(linearise(hexapod, Pose(rows[i, :3], matrix[i]), **rest)))
-        except FlexapodError:
-            plants.append(None)
-            status[i] = STATUS[1]
-        else:
-            gain[i], achieved[i] = rule.choose(plants[-1])  # type: ignore[arg-type]
-            if not np.isfinite(gain[i]):
-                status[i] = STATUS[2]
-        if progress is not None:
-            progress((i + 1) / len(rows))
+    found = _search(hexapod, rows, rule, progress or (lambda share: None), rest)
+    gain = found.gain
     fixed = float(np.nanmedian(gain)) if np.isfinite(gain).any() else np.nan
-    with_fixed = np.array([np.nan if p is None or np.isnan(fixed) else rule.damping_with(p, fixed) for p in plants])
-    return _dataset(
-        points, rows, {"gain": gain, "least_damping": achieved, "fixed_damping": with_fixed}, status
-    ).assign_attrs(
+    return _dataset(points, rows, found).assign_attrs(
         design=hexapod.name,
         digest=hexapod.digest,
-        law=law if isinstance(law, str) else "of the caller",
+        law=law if isinstance(law, str) else "own",
         leak_rad_s=leak,
         fixed_gain=fixed,
     )
+
+
+class _Found(NamedTuple):
+    gain: Array
+    least_damping: Array
+    fixed_damping: Array
+    status: np.ndarray
+
+
+def _search(hexapod: Hexapod, rows: Array, rule: _Rule, progress: Callable[[float], Any], rest: RestOptions) -> _Found:
+    matrix = rpy_matrix(rows[:, 3:]) if rows.shape[1] == 6 else rows[:, 3:].reshape(-1, 3, 3)
+    plants: dict[int, Plant] = {}
+    gain, achieved, with_fixed = np.full((3, len(rows)), np.nan)
+    status = np.full(len(rows), STATUS[0], "U8")
+    for i in range(len(rows)):
+        try:
+            plants[i] = Plant(linearise(hexapod, Pose(rows[i, :3], matrix[i]), **rest))
+        except (PoseError, SingularPoseError):
+            status[i] = STATUS[1]
+        else:
+            gain[i], achieved[i] = rule.choose(plants[i])
+            if not np.isfinite(gain[i]):
+                status[i] = STATUS[2]
+        progress((i + 1) / len(rows))
+    if np.isfinite(gain).any():
+        fixed = float(np.nanmedian(gain))
+        for i, plant in plants.items():
+            with_fixed[i] = rule.damping_with(plant, fixed)
+    return _Found(gain, achieved, with_fixed, status)
 
 
 class _Rule:
@@ -118,16 +130,17 @@ def _ascending(gains: ArrayLike) -> Array:
     return row
 
 
-def _dataset(points: PoseSet, rows: Array, values: dict[str, Array], status: np.ndarray) -> xr.Dataset:
+def _dataset(points: PoseSet, rows: Array, found: _Found) -> xr.Dataset:
     words = {
         "gain": "gain",
         "least_damping": "least damping ratio with it",
         "fixed_damping": "least damping ratio with one gain for all poses",
     }
     variables: dict[str, Any] = {
-        name: (points.dims, value.reshape(points.shape), {"long_name": words[name]}) for name, value in values.items()
+        name: (points.dims, getattr(found, name).reshape(points.shape), {"long_name": text})
+        for name, text in words.items()
     }
-    variables["status"] = (points.dims, status.reshape(points.shape))
+    variables["status"] = (points.dims, found.status.reshape(points.shape))
     coordinates: dict[str, Any] = {}
     if isinstance(points, GridPoses):
         for name, unit in zip(COORDINATES, UNITS, strict=True):
