@@ -103,6 +103,8 @@ _HOMES = {
         "TotalMass",
     ],
     "optimal.optimise": ["OptimalDesign", "optimise"],
+    "optimal.pareto": ["ParetoFront", "pareto_front"],
+    "robust": ["Payload", "Robustness", "Uncertain", "robustness"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = sorted([*_HOME_OF, "__version__"])
@@ -159,6 +161,7 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.schedule import gain_schedule as gain_schedule
     from flexapod.simulation import *  # noqa: F403
     from flexapod.spectra import *  # noqa: F403
+    from flexapod.robust import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403
     from flexapod.sweeps.cluster import *  # noqa: F403
     from flexapod.sweeps.dataset import *  # noqa: F403

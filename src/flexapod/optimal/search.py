@@ -244,7 +244,9 @@ def _sampler(problem: Problem, space: Mapping[str, Any], seed: int, kind: str) -
             return dict(zip(space, x.tolist(), strict=True))
 
         def sample_independent(self, study: Any, trial: Any, name: str, distribution: Any) -> Any:
-            raise NotImplementedError("every variable is sampled together with the others")
+            k = list(space).index(name)  # a mutation of the genetic sampler: anywhere between the bounds
+            u = np.full(len(space), np.random.default_rng([seed, trial.number, k]).random())
+            return float(problem.map.from_unit(u)[0][k])
 
         def after_trial(self, study: Any, trial: Any, state: Any, values: Any) -> None:
             if kind == "nsga2":
