@@ -30,7 +30,7 @@ class PathIndex:
     """The index along a path; see `path_index`.
 
     samples: Dataset over `time` (s) with `index` (rad/s), `condition_number`, `within_limits` (bool), `weight`,
-    `cumulative` (integral of weight times index from the start, rad), `position` (m) and `rpy` (rad).
+    `cumulative_index` (integral of weight times index from the start, rad), `position` (m) and `rpy` (rad).
     minimum, minimum_time, minimum_pose: the least index, rad/s, refined between samples, and where. bound: rad/s or
     None. below: (start, end) times, s, between which the index lies below the bound. weighted_mean: rad/s.
     crossings: times, s, at which the path passes through a singular pose (only with singular="keep").
@@ -87,7 +87,7 @@ def path_index(
         )
     all_times = np.unique(np.concatenate([times, [t for t, _ in dips], crossings]))
     dataset = _samples(hexapod, path, all_times, index(all_times), joint)
-    mean = float(dataset["cumulative"][-1] / np.trapezoid(path.weights, path.times))
+    mean = float(dataset["cumulative_index"][-1] / np.trapezoid(path.weights, path.times))
     below = () if bound is None else _below(index, all_times, dataset["index"].values, bound)
     return PathIndex(
         dataset, float(least), float(least_time), path(least_time).pose, bound, below, mean, tuple(crossings)
@@ -205,7 +205,7 @@ def _samples(hexapod: Hexapod, path: Path, times: Array, values: Array, joint: J
         "condition_number": ("time", condition_number(hexapod, pose), {"long_name": "condition number of H (metres)"}),
         "within_limits": ("time", check_limits(hexapod, pose).ok),
         "weight": ("time", weight),
-        "cumulative": ("time", cumulative, {"units": "rad", "long_name": "integral of weight times index"}),
+        "cumulative_index": ("time", cumulative, {"units": "rad", "long_name": "integral of weight times index"}),
         "position": (("time", "axis"), pose.position, {"units": "m"}),
         "rpy": (("time", "axis"), pose.rpy, {"units": "rad"}),
     }

@@ -10,7 +10,7 @@ from flexapod.errors import PathError
 from flexapod.hexapod import Hexapod
 from flexapod.kinematics import check_limits, condition_number, inverse_kinematics, limit_excess
 from flexapod.pose import Array, Pose
-from flexapod.quantities import evaluate
+from flexapod.quantities import evaluate, packed_limits
 from flexapod.states import JointModel
 
 _SHARPNESS = 80.0  # of smooth minima: they lie below the true one by at most log(12)/80, 3 %
@@ -54,15 +54,18 @@ class Margins:
         self.limited = hexapod.replace({"limits": None}) if not requirements.limits else hexapod
         if requirements.clearance is not None:
             self.limited = self.limited.replace({"limits.leg_distance": requirements.clearance})
+        self._packed = packed_limits(self.limited)
 
     def frequencies(self, poses: Pose) -> Array:
         """(n, 6) rad/s; zero where no leg can take the pose."""
-        return np.nan_to_num(evaluate(self.hexapod, _rows(poses), ("omega",), self.required.joint, 1)["omega"])
+        return np.nan_to_num(
+            evaluate(self.hexapod, _rows(poses), ("omega",), self.required.joint, 1, self._packed)["omega"]
+        )
 
     def met(self, poses: Pose) -> np.ndarray:
         """(n,) whether each pose meets every requirement."""
         wanted = ("omega_1", "within_limits", "cond_H")[: 3 if self.required.condition_number else 2]
-        found = evaluate(self.limited, _rows(poses), wanted, self.required.joint, 1)
+        found = evaluate(self.limited, _rows(poses), wanted, self.required.joint, 1, self._packed)
         ok = (found["omega_1"] >= self.required.index) & found["within_limits"].astype(bool)
         if self.required.condition_number is not None:
             ok &= found["cond_H"] <= self.required.condition_number

@@ -18,7 +18,7 @@ from flexapod.states import JointModel
 from flexapod.waypoints import Path
 
 _POINTS = 2**14
-_STARTS = 6
+_STARTS = 4
 
 
 def sampling_time(
@@ -76,7 +76,7 @@ def _in_box(hexapod: Hexapod, box: Box, joint: JointModel) -> float:
     for i in np.argsort(-np.nan_to_num(values))[:_STARTS]:
         if free.any():
             start = ((rows[i] - box.low) / np.where(free, box.high - box.low, 1.0))[free]
-            options = {"xatol": 1e-7, "fatol": 1e-9 * best, "maxfev": 4000, "adaptive": True}
+            options = {"xatol": 1e-7, "fatol": 1e-9 * best, "maxfev": 800, "adaptive": True}
             bounds = [(0.0, 1.0)] * start.size
             end = minimize(lower, start, args=(rows[i],), method="Nelder-Mead", bounds=bounds, options=options)
             best = max(best, -float(end.fun))
