@@ -110,6 +110,9 @@ class Study:
                 return
             trial = self._study.ask(self._space)
             trial.set_user_attr("worker", f"{socket.gethostname()}:{os.getpid()}")
+            if self._ahead(optuna, trial.number) >= trials:  # another process asked for the last one first
+                self._study.tell(trial, state=optuna.trial.TrialState.FAIL)
+                return
             x = np.array([trial.params[name] for name in self._space])
             assessment, values = evaluate(x)
             trial.set_constraint("index is zero", 0.0 if assessment.index > 0 else 1.0)
@@ -123,6 +126,11 @@ class Study:
         """Whether other processes are at work on all trials that are missing."""
         running = self._study.get_trials(deepcopy=False, states=(optuna.trial.TrialState.RUNNING,))
         return done + len(running) >= trials and self.file is not None and bool(running)
+
+    def _ahead(self, optuna: Any, number: int) -> int:
+        """Trials before this one that are finished or under way."""
+        counted = (optuna.trial.TrialState.COMPLETE, optuna.trial.TrialState.RUNNING)
+        return sum(t.number < number for t in self._study.get_trials(deepcopy=False, states=counted))
 
     def finished(self) -> list[Trial]:
         """In order of their numbers."""
