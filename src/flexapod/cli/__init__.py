@@ -10,7 +10,7 @@ import click
 
 from flexapod.errors import FlexapodError
 
-COMMANDS = ("check", "designs", "modes", "new", "paper", "report", "sweep")
+COMMANDS = ("check", "control", "designs", "modes", "new", "optimise", "paper", "path", "report", "robust", "sweep")
 
 
 class _Lazy(click.Group):

@@ -109,13 +109,13 @@ def _nondominated(values: Sequence[tuple[float, ...]]) -> list[int]:
 
 
 def _refined(problem: Problem, front: Sequence[Trial], count: int, settings: Settings) -> list[Array]:
-    """Variables of the front's designs; `count` of them, evenly spread, are improved at their own bound."""
+    """Variables of the front's designs, and of `count` improved ones whose bounds are evenly spread along it."""
     xs = [t.x for t in front]
     if count < 1:
         return xs
     traded: Requirement = problem.requirements[-1]
     values = np.array([t.values[1] for t in front])
-    levels = np.unique(values[np.unique(np.linspace(0, len(front) - 1, count).round().astype(int))])
+    levels = np.unique(np.linspace(values[0], values[-1], count))
     for level in levels:
         begin = front[int(np.flatnonzero(values <= level)[-1])].x
         problem.requirements[-1] = replace(traded, bound=np.array(float(level)))

@@ -67,6 +67,9 @@ class Workspace:
         return {"box": self._box.ranges(), "from_home": self.from_home}
 
     def __repr__(self) -> str:
+        low, high = self._box.low, self._box.high
+        if self.from_home and np.array_equal(-low, high) and np.ptp(high[:3]) == np.ptp(high[3:]) == 0:
+            return f"all poses within {high[0]:.6g} m and {np.degrees(high[3]):.6g} degrees of home"
         return f"{'home + ' if self.from_home else ''}{self._box!r}"
 
 
@@ -88,6 +91,8 @@ class PoseList:
     def __repr__(self) -> str:
         if self.from_home and not self._rows.any():
             return "home"
+        if len(self._rows) == 1:
+            return "one pose"
         return f"{len(self._rows)} poses{' from home' if self.from_home else ''}"
 
 
