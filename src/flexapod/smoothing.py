@@ -96,7 +96,7 @@ class Smoother:
             method="SLSQP",
             bounds=inner,
             constraints={"type": "ineq", "fun": lambda x: last(x)[0], "jac": lambda x: last(x)[1]},
-            options={"maxiter": 60, "ftol": 1e-6},
+            options={"maxiter": 60, "ftol": 1e-5},
             callback=lambda _: report(),
         )
         return waypoints(result.x)
