@@ -76,12 +76,22 @@ _HOMES = {
     "isolators": ["controlled_transmissibility", "h_infinity", "lqg"],
     "sampled": ["Hardware", "simulate_control"],
     "schedule": ["gain_schedule"],
-    "excitation": ["Excitation", "half_sine_shock", "harmonic", "polynomial", "sine_sweep", "smooth_step"],
+    "excitation": [
+        "Excitation",
+        "half_sine_pulse",
+        "half_sine_shock",
+        "harmonic",
+        "polynomial",
+        "sine_sweep",
+        "smooth_step",
+    ],
     "recordings": ["read_time_series", "time_series"],
     "spectra": ["Spectrum", "flat_spectrum", "ground_noise", "random_motion", "sea_motion", "sea_spectrum", "vc_curve"],
     "trajectory": ["Run"],
     "simulation": ["simulate", "simulate_many"],
     "response": ["random_response", "transmissibility"],
+    "stepped": ["stepped_sine"],
+    "animate": ["animate_mode", "animate_simulation"],
     "posesets": ["Box", "PoseSet", "low_discrepancy", "pose_grid", "pose_path", "random_poses"],
     "sweeps.dataset": ["sweep"],
     "sweeps.store": ["SweepStore", "open_sweep"],
@@ -123,23 +133,79 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:  # what type checkers and editors see
+    from flexapod.animate import animate_mode as animate_mode
+    from flexapod.animate import animate_simulation as animate_simulation
     from flexapod.assessment import ClosedLoop as ClosedLoop
     from flexapod.damping_loops import open_zeros as open_zeros
     from flexapod.damping_loops import root_locus as root_locus
-    from flexapod.dynamics import *  # noqa: F403
-    from flexapod.errors import *  # noqa: F403
-    from flexapod.excitation import *  # noqa: F403
+    from flexapod.dynamics import Energy as Energy
+    from flexapod.dynamics import EquationsOfMotion as EquationsOfMotion
+    from flexapod.dynamics import Reactions as Reactions
+    from flexapod.dynamics import energy as energy
+    from flexapod.dynamics import equations_of_motion as equations_of_motion
+    from flexapod.dynamics import forward_dynamics as forward_dynamics
+    from flexapod.dynamics import inverse_dynamics as inverse_dynamics
+    from flexapod.dynamics import joint_reactions as joint_reactions
+    from flexapod.errors import ArgumentError as ArgumentError
+    from flexapod.errors import ClusterError as ClusterError
+    from flexapod.errors import DesignError as DesignError
+    from flexapod.errors import FlexapodError as FlexapodError
+    from flexapod.errors import InfeasibleError as InfeasibleError
+    from flexapod.errors import KinematicsError as KinematicsError
+    from flexapod.errors import OutputError as OutputError
+    from flexapod.errors import PathError as PathError
+    from flexapod.errors import PoseError as PoseError
+    from flexapod.errors import SimulationError as SimulationError
+    from flexapod.errors import SingularPoseError as SingularPoseError
+    from flexapod.errors import UnstableError as UnstableError
+    from flexapod.excitation import Excitation as Excitation
+    from flexapod.excitation import half_sine_pulse as half_sine_pulse
+    from flexapod.excitation import half_sine_shock as half_sine_shock
+    from flexapod.excitation import harmonic as harmonic
+    from flexapod.excitation import polynomial as polynomial
+    from flexapod.excitation import sine_sweep as sine_sweep
+    from flexapod.excitation import smooth_step as smooth_step
     from flexapod.feedback import Controller as Controller
-    from flexapod.hexapod import *  # noqa: F403
+    from flexapod.hexapod import Damping as Damping
+    from flexapod.hexapod import Hexapod as Hexapod
+    from flexapod.hexapod import LegPart as LegPart
+    from flexapod.hexapod import Legs as Legs
+    from flexapod.hexapod import Limits as Limits
+    from flexapod.hexapod import load as load
+    from flexapod.hexapod import packaged_designs as packaged_designs
+    from flexapod.hexapod import template as template
     from flexapod.isolators import controlled_transmissibility as controlled_transmissibility
     from flexapod.isolators import h_infinity as h_infinity
     from flexapod.isolators import lqg as lqg
-    from flexapod.kinematics import *  # noqa: F403
+    from flexapod.kinematics import JointAngles as JointAngles
+    from flexapod.kinematics import LegRates as LegRates
+    from flexapod.kinematics import LimitsCheck as LimitsCheck
+    from flexapod.kinematics import check_limits as check_limits
+    from flexapod.kinematics import condition_number as condition_number
+    from flexapod.kinematics import force_transformation as force_transformation
+    from flexapod.kinematics import forward_kinematics as forward_kinematics
+    from flexapod.kinematics import home_pose as home_pose
+    from flexapod.kinematics import inverse_kinematics as inverse_kinematics
+    from flexapod.kinematics import joint_angles as joint_angles
+    from flexapod.kinematics import leg_distance as leg_distance
+    from flexapod.kinematics import leg_rates as leg_rates
     from flexapod.laws import PID as PID
     from flexapod.laws import ForceFeedback as ForceFeedback
     from flexapod.laws import VelocityFeedback as VelocityFeedback
-    from flexapod.linear import *  # noqa: F403
-    from flexapod.modal import *  # noqa: F403
+    from flexapod.linear import DampedModes as DampedModes
+    from flexapod.linear import Linearisation as Linearisation
+    from flexapod.linear import StateSpace as StateSpace
+    from flexapod.linear import linearise as linearise
+    from flexapod.modal import EnergyShares as EnergyShares
+    from flexapod.modal import ModeDescription as ModeDescription
+    from flexapod.modal import NaturalModes as NaturalModes
+    from flexapod.modal import Sensitivity as Sensitivity
+    from flexapod.modal import describe_modes as describe_modes
+    from flexapod.modal import energy_shares as energy_shares
+    from flexapod.modal import frequency_sensitivity as frequency_sensitivity
+    from flexapod.modal import natural_modes as natural_modes
+    from flexapod.modal import near_repeated as near_repeated
+    from flexapod.modal import stability_index as stability_index
     from flexapod.optimal.constraints import ConditionNumber as ConditionNumber
     from flexapod.optimal.constraints import Deflection as Deflection
     from flexapod.optimal.constraints import DesignLimits as DesignLimits
@@ -166,14 +232,22 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.planning import Plan as Plan
     from flexapod.planning import plan_path as plan_path
     from flexapod.planning import plan_slice as plan_slice
-    from flexapod.pose import *  # noqa: F403
-    from flexapod.posesets import *  # noqa: F403
+    from flexapod.pose import Motion as Motion
+    from flexapod.pose import Pose as Pose
+    from flexapod.posesets import Box as Box
+    from flexapod.posesets import PoseSet as PoseSet
+    from flexapod.posesets import low_discrepancy as low_discrepancy
+    from flexapod.posesets import pose_grid as pose_grid
+    from flexapod.posesets import pose_path as pose_path
+    from flexapod.posesets import random_poses as random_poses
     from flexapod.position_loops import GainWarning as GainWarning
     from flexapod.position_loops import closed_loop as closed_loop
     from flexapod.position_loops import gain_map as gain_map
-    from flexapod.recordings import *  # noqa: F403
+    from flexapod.recordings import read_time_series as read_time_series
+    from flexapod.recordings import time_series as time_series
     from flexapod.requirements import PathRequirements as PathRequirements
-    from flexapod.response import *  # noqa: F403
+    from flexapod.response import random_response as random_response
+    from flexapod.response import transmissibility as transmissibility
     from flexapod.robust import Payload as Payload
     from flexapod.robust import Robustness as Robustness
     from flexapod.robust import Uncertain as Uncertain
@@ -182,13 +256,26 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.sampled import simulate_control as simulate_control
     from flexapod.sampling import sampling_time as sampling_time
     from flexapod.schedule import gain_schedule as gain_schedule
-    from flexapod.simulation import *  # noqa: F403
-    from flexapod.spectra import *  # noqa: F403
-    from flexapod.statics import *  # noqa: F403
-    from flexapod.sweeps.cluster import *  # noqa: F403
-    from flexapod.sweeps.dataset import *  # noqa: F403
-    from flexapod.sweeps.store import *  # noqa: F403
-    from flexapod.sweeps.summary import *  # noqa: F403
-    from flexapod.sweeps.worst import *  # noqa: F403
-    from flexapod.trajectory import *  # noqa: F403
+    from flexapod.simulation import simulate as simulate
+    from flexapod.simulation import simulate_many as simulate_many
+    from flexapod.spectra import Spectrum as Spectrum
+    from flexapod.spectra import flat_spectrum as flat_spectrum
+    from flexapod.spectra import ground_noise as ground_noise
+    from flexapod.spectra import random_motion as random_motion
+    from flexapod.spectra import sea_motion as sea_motion
+    from flexapod.spectra import sea_spectrum as sea_spectrum
+    from flexapod.spectra import vc_curve as vc_curve
+    from flexapod.statics import Equilibrium as Equilibrium
+    from flexapod.statics import hold as hold
+    from flexapod.statics import static_equilibrium as static_equilibrium
+    from flexapod.stepped import stepped_sine as stepped_sine
+    from flexapod.sweeps.cluster import cluster as cluster
+    from flexapod.sweeps.dataset import sweep as sweep
+    from flexapod.sweeps.store import SweepStore as SweepStore
+    from flexapod.sweeps.store import open_sweep as open_sweep
+    from flexapod.sweeps.summary import SweepSummary as SweepSummary
+    from flexapod.sweeps.summary import summarise as summarise
+    from flexapod.sweeps.worst import WorstPose as WorstPose
+    from flexapod.sweeps.worst import worst_pose as worst_pose
+    from flexapod.trajectory import Run as Run
     from flexapod.waypoints import Path as Path

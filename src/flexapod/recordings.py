@@ -41,13 +41,14 @@ def time_series(
         raise ArgumentError(f"recorded is {recorded!r}; it must be one of {', '.join(INTEGRATIONS)}.")
     t, x = _checked(times, values, names)
     t = t - t[0]
+    spacing = float(np.median(np.diff(t)))
     total = Excitation()
     for name, column in zip(names, x.T, strict=True):
         spline = PPoly.from_spline(make_interp_spline(t, column, k=5 if recorded == "value" else 3))
         for _ in range(INTEGRATIONS[recorded]):
             spline = spline.antiderivative()
         kept = np.diff(spline.x) > 0  # knots are repeated at the ends
-        total = total + sampled_term(name, spline.x[:-1][kept], spline.c[::-1, kept].T, float(t[-1]))
+        total = total + sampled_term(name, spline.x[:-1][kept], spline.c[::-1, kept].T, spacing, float(t[-1]))
     return total
 
 
@@ -64,12 +65,13 @@ def read_time_series(path: str | Path, recorded: Recorded | None = None) -> Exci
     except (OSError, UnicodeDecodeError) as error:
         raise ArgumentError(f"{file} cannot be read: {error}. Give a CSV file in UTF-8.") from error
     try:
-        return _read(text, recorded)
+        return parse_time_series(text, recorded)
     except ArgumentError as error:
         raise ArgumentError(f"{file}: {error}") from error
 
 
-def _read(text: str, recorded: Recorded | None) -> Excitation:
+def parse_time_series(text: str, recorded: Recorded | None = None) -> Excitation:
+    """A recording from the text of a CSV file; see `read_time_series`."""
     lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
     if not lines:
         raise ArgumentError("there is nothing in it; a header and at least six lines of numbers are needed.")
