@@ -79,6 +79,56 @@ def test_equations_of_motion_agree_with_engine(name):
         assert relative(equations.eta, chain.bias(state.platform, state.base)) < 1e-11
 
 
+@pytest.mark.parametrize("name", ["mukherjee-i", "mukherjee-ii"])
+def test_joint_reactions_agree_with_engine(name):
+    rng = np.random.default_rng(12)
+    for _ in range(10):
+        hexapod = perturbed(fx.load(name), rng)
+        state, chain = draw_state(hexapod, rng), ClosedChain(hexapod)
+        expected = chain.joint_forces(state.platform, state.base, **state.loads)
+        linear, angular = chain.acceleration(state.platform, state.base, **state.loads)
+        motion = fx.Motion(
+            state.platform.pose, state.platform.velocity, state.platform.angular_velocity, linear, angular
+        )
+        # Section 1.0: the engine takes the prismatic pair's moment about the platform joint.
+        found = fx.joint_reactions(hexapod, motion, state.base, state.leg_force, section=1.0)
+        for field in expected._fields:
+            # The engine names what acts on the legs; the library what the legs do to platform and base.
+            sign = -1.0 if field.startswith(("spherical", "universal")) else 1.0
+            # Both round at 1e-13; the accelerations, and the light leg's share of them, cost the rest.
+            assert relative(getattr(found, field), sign * getattr(expected, field)) < 1e-10, field
+
+
+@pytest.mark.parametrize("name", ["mukherjee-i", "mukherjee-ii"])
+def test_moment_in_the_prismatic_pair_depends_on_the_section(name):
+    """Moving the section along the leg changes the moment by the lever of the force."""
+    rng = np.random.default_rng(13)
+    hexapod = perturbed(fx.load(name), rng)
+    state = draw_state(hexapod, rng)
+    near, far = (fx.joint_reactions(hexapod, state.platform, state.base, state.leg_force, f) for f in (0.25, 0.75))
+    s, _, _ = _leg_vectors(hexapod, state.platform, state.base)
+    lengths = fx.inverse_kinematics(hexapod, state.platform.pose, state.base.pose)
+    lever = 0.5 * lengths[:, None] * np.cross(s, near.prismatic_force)
+    assert relative(near.prismatic_moment - far.prismatic_moment, lever) < 1e-12  # the same sums in another order
+
+
+@pytest.mark.parametrize("name", ["mukherjee-i", "mukherjee-ii", "motion-base"])
+def test_energies_agree_with_engine(name):
+    rng = np.random.default_rng(14)
+    for _ in range(10):
+        hexapod = perturbed(fx.load(name), rng)
+        state, chain = draw_state(hexapod, rng), ClosedChain(hexapod)
+        found = fx.energy(hexapod, state.platform, state.base)
+        # Sums of positive terms (or nearly so: the paper's leg inertias are not) of a few dozen products.
+        assert found.kinetic == pytest.approx(chain.kinetic_energy(state.platform, state.base), rel=1e-12)
+        assert found.dissipation == pytest.approx(chain.dissipation(state.platform, state.base), rel=1e-12)
+        # Terms of both signs: against their size, the platform's weight at a leg's length or so.
+        weight = hexapod.platform_mass * np.linalg.norm(hexapod.gravity) * np.linalg.norm(state.platform.pose.position)
+        potential = chain.potential_energy(state.platform, state.base)
+        assert found.gravitational == pytest.approx(potential, abs=1e-12 * weight)
+        assert found.elastic == 0
+
+
 # --- the engine against laws ----------------------------------------------------------------------------------------
 
 

@@ -7,8 +7,8 @@ from scipy.linalg import solve_continuous_lyapunov
 from tests.states import CENTER
 
 import flexapod as fx
-from flexapod.harmonic import complex_poles, steady_response
 from flexapod.linear import AXES
+from flexapod.steady import complex_poles, steady_response
 
 II = fx.Pose(CENTER["mukherjee-ii"])
 DAMPED = {"legs.damping.prismatic": 2000.0, "legs.damping.universal": 0.3, "legs.damping.spherical": 0.2}
@@ -268,7 +268,7 @@ def test_white_base_acceleration_of_one_mass_has_the_closed_form(damping):
     natural, level = np.sqrt(k / m), 2.5
     zeta = c / (2 * np.sqrt(k * m))
     low, high = 1e-5 * natural, 1e5 * natural
-    found = fx.random_response(hexapod, pose, [low, high], [level, level], axis="z")
+    found = fx.random_response(hexapod, pose, [level, level], [low, high], axis="z")
     # Mean square of relative displacement: pi G / (4 zeta omega^3); the band leaves out low * G / omega^4 and less.
     expected = np.sqrt(np.pi * level / (4 * zeta * natural**3))
     left_out = low / natural * zeta
@@ -294,7 +294,7 @@ def test_rms_agrees_with_the_lyapunov_equation(paper, share):
     root = rng.normal(size=(6, 6)) * np.repeat([1.0, 10.0], 3)[:, None]
     density = root @ root.T
     omega = [1e-6, 1e9]
-    found = fx.random_response(hexapod, II, omega, np.tile(density, (2, 1, 1)))
+    found = fx.random_response(hexapod, II, np.tile(density, (2, 1, 1)), omega)
     # Quadrature is good to 1e-9; the Lyapunov solver loses cond(A) eps over the damping ratio.
     expected = lyapunov(fx.linearise(hexapod, II), density)
     np.testing.assert_allclose(found.rms_relative, expected, rtol=1e-8 + 1e-11 / share)
@@ -303,16 +303,16 @@ def test_rms_agrees_with_the_lyapunov_equation(paper, share):
 def test_independent_axes_one_axis_and_a_matrix_agree(damped):
     omega = np.geomspace(10, 2e4, 20)
     level = omega**-1.0
-    one = fx.random_response(damped, II, omega, level, axis="y", of="velocity")
-    six = fx.random_response(damped, II, omega, level[:, None] * np.eye(6)[1], of="velocity")
+    one = fx.random_response(damped, II, level, omega, axis="y", of="velocity")
+    six = fx.random_response(damped, II, level[:, None] * np.eye(6)[1], omega, of="velocity")
     np.testing.assert_array_equal(one.rms_displacement, six.rms_displacement)
-    function = fx.random_response(damped, II, omega, lambda w: 1 / w, axis="y", of="velocity")
+    function = fx.random_response(damped, II, lambda w: 1 / w, omega, axis="y", of="velocity")
     np.testing.assert_allclose(function.rms_acceleration, one.rms_acceleration, rtol=1e-12)  # 1/w is a power law
 
     def matrix(w: np.ndarray) -> np.ndarray:
         return np.einsum("n,i,j->nij", 1 / w, np.eye(6)[1], np.eye(6)[1])
 
-    full = fx.random_response(damped, II, omega, matrix, of="velocity")
+    full = fx.random_response(damped, II, matrix, omega, of="velocity")
     for name in ("displacement", "relative", "acceleration", "leg_force"):
         np.testing.assert_allclose(full[f"rms_{name}"], one[f"rms_{name}"], rtol=1e-10)
 
@@ -320,9 +320,9 @@ def test_independent_axes_one_axis_and_a_matrix_agree(damped):
 def test_what_the_spectrum_is_of_does_not_matter(damped):
     omega = np.geomspace(10, 2e4, 30)
     by = {
-        "displacement": fx.random_response(damped, II, omega, omega**-4.0, axis="z", of="displacement"),
-        "velocity": fx.random_response(damped, II, omega, omega**-2.0, axis="z", of="velocity"),
-        "acceleration": fx.random_response(damped, II, omega, np.ones(30), axis="z"),
+        "displacement": fx.random_response(damped, II, omega**-4.0, omega, axis="z", of="displacement"),
+        "velocity": fx.random_response(damped, II, omega**-2.0, omega, axis="z", of="velocity"),
+        "acceleration": fx.random_response(damped, II, np.ones(30), omega, axis="z"),
     }
     for name in ("displacement", "acceleration", "leg_force"):
         for found in by.values():
@@ -335,13 +335,13 @@ def test_coherent_axes_interfere(damped):
     for sign in (1, -1, 1j):
         mix = np.array([1, sign, 0, 0, 0, 0])
         density = np.broadcast_to(np.outer(mix, mix.conj()), (10, 6, 6))
-        found = fx.random_response(damped, II, omega, density)
+        found = fx.random_response(damped, II, density, omega)
         H = fx.transmissibility(damped, II, found.omega).absolute.values @ mix
         np.testing.assert_allclose(found.psd_acceleration, np.abs(H) ** 2, rtol=1e-10, atol=1e-13)
 
 
 def test_spectra_show_every_peak_and_cumulate_to_the_rms(paper):
-    found = fx.random_response(paper, II, [100.0, 2e4], np.ones((2, 6)))
+    found = fx.random_response(paper, II, np.ones((2, 6)), [100.0, 2e4])
     for pole in complex_poles(fx.linearise(paper, II)):
         assert np.abs(found.omega - pole.imag).min() <= 0.51 * abs(pole.real)
     for name in ("displacement", "leg_force"):
@@ -354,7 +354,7 @@ def test_structural_damping_alone_has_its_closed_form():
     """One mass with a loss factor: the mean square of the relative motion is an elementary integral."""
     hexapod, pose, m, _, k = vertical_mass(0.0)
     natural, eta = np.sqrt(k / m), 1e-3
-    found = fx.random_response(hexapod, pose, [1e-6 * natural, 1e6 * natural], [1.0, 1.0], axis="z", loss_factor=eta)
+    found = fx.random_response(hexapod, pose, [1.0, 1.0], [1e-6 * natural, 1e6 * natural], axis="z", loss_factor=eta)
     # Integral of dw / |w_0^2 (1 + i eta) - w^2|^2 from zero = pi Re(1/sqrt(1 + i eta)) / (2 eta w_0^3).
     expected = np.sqrt(np.pi / (2 * eta * natural**3) * (1 / np.sqrt(1 + 1j * eta)).real)
     assert found.rms_relative.sel(output="z") == pytest.approx(expected, rel=1e-6)  # band starts at 1e-6
@@ -363,9 +363,42 @@ def test_structural_damping_alone_has_its_closed_form():
 def test_undamped_or_growing_modes_have_no_stationary_response(paper):
     free = paper.replace({f"legs.damping.{joint}": 0.0 for joint in ("prismatic", "universal", "spherical")})
     with pytest.raises(fx.ArgumentError, match=r"mode 1 .* damping"):
-        fx.random_response(free, II, [100.0, 1e3], [1.0, 1.0], axis="z")
-    below = fx.random_response(free, II, [10.0, 400.0], [1.0, 1.0], axis="z")
+        fx.random_response(free, II, [1.0, 1.0], [100.0, 1e3], axis="z")
+    below = fx.random_response(free, II, [1.0, 1.0], [10.0, 400.0], axis="z")
     assert np.isfinite(below.rms_displacement).all()
+
+
+def test_spectra_by_axis(damped):
+    """Ready-made spectra give what their numbers give, and independent axes add their mean squares."""
+    floor = fx.vc_curve("VC-C")
+    grid = np.geomspace(floor.omega_min, floor.omega_max, 50)
+    by_name = fx.random_response(damped, II, floor, axis="z")
+    by_numbers = fx.random_response(damped, II, floor.density(grid), grid, of="velocity", axis="z")
+    np.testing.assert_allclose(by_name.rms_leg_force, by_numbers.rms_leg_force, rtol=1e-10)
+    below = fx.random_response(damped, II, floor, [floor.omega_min / 2, 100.0], axis="z")
+    assert float(below.rms_acceleration.sel(output="z")) == pytest.approx(
+        float(np.interp(100.0, by_name.omega, by_name.cumulative_acceleration.sel(output="z"))), rel=1e-6
+    )
+    both = fx.random_response(damped, II, {"z": floor, "x": floor})
+    x = fx.random_response(damped, II, {"x": floor})
+    np.testing.assert_allclose(both.rms_relative**2, by_name.rms_relative**2 + x.rms_relative**2, rtol=1e-10)
+
+
+def test_bad_ready_made_spectra(damped):
+    floor, ground = fx.vc_curve("VC-A"), fx.ground_noise()
+    cases = [
+        ({"psd": floor}, "axis"),
+        ({"psd": {"z": floor}, "axis": "z"}, "axis is 'z'"),
+        ({"psd": {}}, "none"),
+        ({"psd": {"up": floor}}, "'up'"),
+        ({"psd": {"z": 1.0}}, "Spectrum"),
+        ({"psd": {"x": floor, "z": ground}}, "acceleration and velocity"),
+        ({"psd": {"z": floor}, "omega": [1e5, 1e6]}, "outside"),
+        ({"psd": [1.0, 1.0], "axis": "z"}, "omega is missing"),
+    ]
+    for arguments, message in cases:
+        with pytest.raises(fx.ArgumentError, match=message):
+            fx.random_response(damped, II, **arguments)
 
 
 @pytest.mark.parametrize(

@@ -16,9 +16,9 @@ inline double kinetic_energy(double m, const Vec3<double>& c, const Sym3<double>
   return 0.5 * m * dot(v, v) + dot(v, cross(w, c)) + 0.5 * dot(w, J * w);
 }
 
-/// Power lost in one leg's joints, W.
-inline double leg_dissipation(const Leg<double>& leg, const LegEnds<double>& end, const LegMotion<double>& motion) {
-  const Vec3<double> at_platform = motion.omega - end.omega_p;
+/// Power lost in a leg's joints, W.
+template <class T> T leg_dissipation(const Leg<T>& leg, const LegEnds<T>& end, const LegMotion<T>& motion) {
+  const Vec3<T> at_platform = motion.omega - end.omega_p;
   return leg.C_p * end.v.x * end.v.x + leg.C_u * dot(motion.omega_rel, motion.omega_rel) +
          leg.C_s * dot(at_platform, at_platform);
 }

@@ -73,11 +73,14 @@ template <class T, class D> Mat6<T> platform_inertia(const Design<D>& d, const M
   return J;
 }
 
-/// J_p_i of Eq. 34: the inertia of leg i seen at the platform's reference point.
+/// J_p_i of Eq. 34: the inertia of a leg, whose platform joint is at q_p, seen at the platform's reference point.
+template <class T, class D>
+void add_leg_inertia(Mat6<T>& J, const LegAxes<T>& leg, const LegInertia<D>& in, const Vec3<T>& q_p) {
+  add_inertia_at(J, q_p, rotate(transpose(leg.axes), leg_inertia(leg, in)));
+}
 template <class T, class D>
 void add_leg_inertia(Mat6<T>& J, const Machine<D>& machine, const Geometry<T>& g, int i) {
-  const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
-  add_inertia_at(J, g.q_p[i], rotate(transpose(leg.axes), leg_inertia(leg, machine.inertia[i])));
+  add_leg_inertia(J, LegAxes<T>(g.S[i], g.k[i], machine.joint), machine.inertia[i], g.q_p[i]);
 }
 
 /// J_p of Eq. 34: the inertia of platform and legs seen at the platform's reference point.
@@ -109,19 +112,31 @@ template <class T, class D> Mat6<T> base_coupling(const Machine<D>& machine, con
   return J;
 }
 
-/// The ends of leg i, resolved in its axes, with the accelerations of the motions given.
-template <class T, class D>
-LegEnds<T> leg_ends(const Machine<D>& machine, const Geometry<T>& g, const LegAxes<T>& leg, int i,
-                    const Motion<T>& platform, const Motion<T>& base) {
-  const auto& gravity = machine.design.gravity;
+/// The ends of a leg whose joints are at q_p and q_b, resolved in its axes, with the accelerations of the motions given.
+template <class T, class U, class G>
+LegEnds<T> leg_ends(const LegAxes<T>& leg, const Vec3<T>& q_p, const Vec3<T>& q_b, const Motion<U>& platform,
+                    const Motion<U>& base, const Vec3<G>& gravity) {
   LegEnds<T> end;
-  end.v = leg.axes * (platform.velocity_at(g.q_p[i]) - base.velocity_at(g.q_b[i]));
-  end.a_p = leg.axes * (platform.acceleration_at(g.q_p[i]) - gravity);
-  end.a_b = leg.axes * (base.acceleration_at(g.q_b[i]) - gravity);
+  end.v = leg.axes * (platform.velocity_at(q_p) - base.velocity_at(q_b));
+  end.a_p = leg.axes * (platform.acceleration_at(q_p) - gravity);
+  end.a_b = leg.axes * (base.acceleration_at(q_b) - gravity);
   end.omega_p = leg.axes * platform.w;
   end.omega_b = leg.axes * base.w;
   end.alpha_b = leg.axes * base.alpha;
   return end;
+}
+template <class T, class D>
+LegEnds<T> leg_ends(const Machine<D>& machine, const Geometry<T>& g, const LegAxes<T>& leg, int i,
+                    const Motion<T>& platform, const Motion<T>& base) {
+  return leg_ends(leg, g.q_p[i], g.q_b[i], platform, base, machine.design.gravity);
+}
+
+/// The platform's own part of the wrench below.
+template <class T, class D> Vec6<T> platform_wrench(const Design<D>& d, const Motion<T>& platform) {
+  const Vec3<T> R_p = platform.pose.R * d.R_0;
+  const Vec3<T> f = d.M * (platform.acceleration_at(R_p) - d.gravity);
+  const Sym3<T> I = rotate(platform.pose.R, d.I_p);
+  return Vec6<T>::of(f, cross(R_p, f) + I * platform.alpha + cross(platform.w, I * platform.w));
 }
 
 /// Inertia, weight and friction of platform and legs as a wrench at the reference point, for the motions given:
@@ -129,16 +144,12 @@ LegEnds<T> leg_ends(const Machine<D>& machine, const Geometry<T>& g, const LegAx
 template <class T, class D>
 Vec6<T> inverse_wrench(const Machine<D>& machine, const Geometry<T>& g, const Motion<T>& platform,
                        const Motion<T>& base) {
-  const Design<D>& d = machine.design;
-  const Vec3<T> R_p = platform.pose.R * d.R_0;
-  const Vec3<T> f = d.M * (platform.acceleration_at(R_p) - d.gravity);
-  const Sym3<T> I = rotate(platform.pose.R, d.I_p);
-  Vec6<T> wrench = Vec6<T>::of(f, cross(R_p, f) + I * platform.alpha + cross(platform.w, I * platform.w));
+  Vec6<T> wrench = platform_wrench(machine.design, platform);
   for (int i = 0; i < 6; ++i) {
     const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
     const LegEnds<T> end = leg_ends(machine, g, leg, i, platform, base);
     const SphericalLoad<T> load =
-        spherical_load(leg, machine.inertia[i], d.leg[i], end, LegMotion<T>(leg, end, machine.joint));
+        spherical_load(leg, machine.inertia[i], machine.design.leg[i], end, LegMotion<T>(leg, end, machine.joint));
     const Vec3<T> force = transposed(leg.axes, load.force), moment = transposed(leg.axes, load.moment);
     add(wrench, force, cross(g.q_p[i], force) - moment);
   }
@@ -153,17 +164,6 @@ template <class T> Vec6<T> external_wrench(const Mat3<T>& R, const Vec6<double>&
 template <class T> Motion<T> unaccelerated(Motion<T> motion) {
   motion.a = motion.alpha = Vec3<T>();
   return motion;
-}
-
-/// Eq. 35's accelerations of the platform: J_p^-1 (H F + wrench - eta + J_b [a_b; alpha_b]).
-template <class T, class D>
-Vec6<T> forward_dynamics(const Machine<D>& machine, const Motion<T>& platform, const Motion<T>& base,
-                         const Vec6<T>& leg_force, const Vec6<T>& wrench) {
-  const Geometry<T> g(machine.design, platform.pose, base.pose);
-  const Vec6<T> bias = inverse_wrench(machine, g, unaccelerated(platform), base);
-  Vec6<T> load = force_transformation(g) * leg_force;
-  for (int i = 0; i < 6; ++i) load[i] += wrench[i] - bias[i];
-  return Cholesky<T>(inertia(machine, g, platform.pose.R)).solve(load);
 }
 
 }  // namespace flexapod

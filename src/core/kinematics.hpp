@@ -20,6 +20,18 @@ struct LegRates {
   }
 };
 
+/// What makes a leg one: a length, and a direction across its universal axis (sine of the angle between them).
+struct LegFit {
+  double length[6], sine[6];
+
+  explicit LegFit(const Geometry<double>& g) {
+    for (int i = 0; i < 6; ++i) {
+      length[i] = norm(g.S[i]);
+      sine[i] = norm(cross(g.k[i], g.S[i])) / length[i];
+    }
+  }
+};
+
 /// Least distance between the segments p + s a (0 <= s <= 1) and q + t b (0 <= t <= 1), without branches.
 template <class T> T segment_distance(const Vec3<T>& p, const Vec3<T>& a, const Vec3<T>& q, const Vec3<T>& b) {
   const T zero(0.0), one(1.0);

@@ -2,11 +2,12 @@
 // arrays with n rows. Shapes and values are checked in Python; here only sizes are.
 #include "arrays.hpp"
 #include "bind_designs.hpp"
-#include "bind_simulation.hpp"
+#include "simulation_module.hpp"
 #include "energy.hpp"
 #include "kinematics.hpp"
 #include "modes.hpp"
 #include "reactions.hpp"
+#include "six_legs.hpp"
 #include "statics.hpp"
 #include "sweep_module.hpp"
 
@@ -36,6 +37,18 @@ nb::tuple leg_rates(const Input& design, const Input& platforms, const Input& ba
     write(l, rates.L), write(v, rates.L_dot), write(a, rates.L_ddot);
   }
   return nb::make_tuple(L.array(), L_dot.array(), L_ddot.array());
+}
+
+nb::tuple leg_fit(const Input& design, const Input& platforms, const Input& bases) {
+  const Machine<double> machine = machine_of(design, true);
+  const States s(platforms, bases);
+  Output length({s.n, 6}), sine({s.n, 6});
+  double *l = length.data(), *k = sine.data();
+  for (size_t i = 0; i < s.n; ++i) {
+    const LegFit fit(geometry(machine, s, i));
+    write(l, fit.length), write(k, fit.sine);
+  }
+  return nb::make_tuple(length.array(), sine.array());
 }
 
 nb::tuple joint_angles(const Input& design, const Input& platforms, const Input& bases, const Input& neutral) {
@@ -107,14 +120,14 @@ nb::tuple equations_of_motion(const Input& design, bool universal, const Input& 
 
 nb::object forward_dynamics_(const Input& design, bool universal, const Input& platforms, const Input& bases,
                              const Input& leg_forces, const Input& wrenches) {
-  const Machine<double> machine = machine_of(design, universal);
+  const SixLegs legs(machine_of(design, universal));
   const States s(platforms, bases);
   const double *F = rows(leg_forces, s.n, 6, "leg_force"), *load = rows(wrenches, s.n, 6, "wrench");
   Output acceleration({s.n, 6});
   double* out = acceleration.data();
   for (size_t i = 0; i < s.n; ++i) {
     const Vec6<double> wrench = external_wrench(s.platform[i].pose.R, vec6(load + 6 * i));
-    write(out, forward_dynamics(machine, s.platform[i], s.base[i], vec6(F + 6 * i), wrench));
+    write(out, forward_dynamics(legs, s.platform[i], s.base[i], vec6(F + 6 * i), wrench));
   }
   return nb::cast(acceleration.array());
 }
@@ -149,7 +162,7 @@ nb::tuple joint_reactions(const Input& design, bool universal, const Input& plat
   double *leg_out = legs.data(), *total_out = total.data();
   for (size_t i = 0; i < s.n; ++i) {
     const Reactions r = reactions(machine, s.platform[i], s.base[i], vec6(F + 6 * i), section);
-    for (const LegReactions& leg : r.leg)
+    for (const LegReactions<double>& leg : r.leg)
       for (const auto& v : {leg.spherical_force, leg.spherical_moment, leg.prismatic_force, leg.prismatic_moment,
                             leg.universal_force, leg.universal_moment})
         write(leg_out, v);
@@ -239,9 +252,9 @@ nb::tuple tangent_(const Input& design, bool universal, const Input& platform, c
 }
 
 /// The pose (12 numbers) where the platform settles, and how the search ended: "found", "singular", "not_found".
-nb::tuple settle_(const Input& design, const Input& start, const Input& base, const Input& wrench,
+nb::tuple settle_(const Input& design, bool universal, const Input& start, const Input& base, const Input& wrench,
                   const Input& unstretched) {
-  const Machine<double> machine = machine_of(design, true);  // friction and inertia play no part at rest
+  const Machine<double> machine = machine_of(design, universal);
   RestLoad load{vec6(rows(wrench, 1, 6, "wrench")), {}};
   std::copy_n(rows(unstretched, 1, 6, "unstretched"), 6, load.L_0);
   const States s(start, base);
@@ -262,6 +275,7 @@ NB_MODULE(_core, m) {
   m.doc() = "Flexapod's mechanics: compiled functions of a design and of motions.";
   m.attr("design_size") = design_size;
   m.def("leg_rates", &leg_rates);
+  m.def("leg_fit", &leg_fit);
   m.def("joint_angles", &joint_angles);
   m.def("leg_distance", &leg_distance);
   m.def("forward_kinematics", &forward_kinematics_);

@@ -17,10 +17,10 @@ template <class T> struct Motion {
   Vec3<T> a, alpha;  // accelerations, m/s2, rad/s2
 
   /// Acceleration of the body's point at q from its reference point (the terms of Eqs 8 and 9).
-  template <class U> Vec3<T> acceleration_at(const Vec3<U>& q) const {
+  template <class U> Vec3<product_t<T, U>> acceleration_at(const Vec3<U>& q) const {
     return a + cross(alpha, q) + cross(w, cross(w, q));
   }
-  template <class U> Vec3<T> velocity_at(const Vec3<U>& q) const { return v + cross(w, q); }
+  template <class U> Vec3<product_t<T, U>> velocity_at(const Vec3<U>& q) const { return v + cross(w, q); }
 };
 
 inline constexpr int motion_size = 24;

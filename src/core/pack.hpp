@@ -14,9 +14,13 @@
 #if defined(__GNUC__)
 #define FLEXAPOD_INLINE inline __attribute__((always_inline))
 #define FLEXAPOD_UNROLL _Pragma("GCC unroll 16")
+#define FLEXAPOD_FLAT __attribute__((flatten, noinline))  // with all that it calls inlined
+#define FLEXAPOD_COLD __attribute__((noinline, cold))
 #else
 #define FLEXAPOD_INLINE inline
 #define FLEXAPOD_UNROLL
+#define FLEXAPOD_FLAT
+#define FLEXAPOD_COLD
 #endif
 
 namespace flexapod {
@@ -84,6 +88,9 @@ template <class V, int N> struct Pack {
     std::memcpy(r.v, p, sizeof(r.v));
     return r;
   }
+  using Part = Pack<V, 1>;  // one of its vectors
+  static constexpr int parts = N;
+  FLEXAPOD_INLINE void set_part(int i, const Part& part) { v[i] = part.v[0]; }
   FLEXAPOD_INLINE void store(double* p) const { std::memcpy(p, v, sizeof(v)); }
 
   FLEXAPOD_INLINE Pack& operator+=(const Pack& b) { return *this = *this + b; }

@@ -6,10 +6,9 @@
 // acceleration less gravity, so that neither the base's velocity nor gravity need appear beside them.
 #pragma once
 
-#include "energy.hpp"
 #include "excitation.hpp"
 #include "integrate.hpp"
-#include "reactions.hpp"
+#include "six_legs.hpp"
 
 namespace flexapod {
 
@@ -32,17 +31,19 @@ class Rig {
   static constexpr int mechanical = 12;  // numbers of the state before the works
   enum Work { of_base = 12, of_wrench, of_command, of_friction };
 
-  Vec6<double> held{};  // leg forces beside the springs, N: what a controller holds between its samples
+  PerLeg held{};      // leg forces beside the springs, N: what a controller holds between its samples
   double inside = 0;  // an instant between the corners of the excitations that the present time lies between
 
   Rig(const RigInput& input, const Excitation& base, const Excitation& wrench, const Excitation& command)
-      : in_(input), machine_(without_gravity(input.design), input.joint), base_(base), wrench_(wrench),
+      : in_(input), machine_(without_gravity(input.design), input.joint), legs_(machine_), base_(base), wrench_(wrench),
         command_(command), rotates_(base.uses(3, 6)) {
     const Mat3<double> to_base = transpose(in_.base.R);
     rest_ = {to_base * (in_.platform.t - in_.base.t), to_base * in_.platform.R};
     for (const auto& leg : in_.design.leg) friction_ = friction_ || leg.C_p > 0 || leg.C_u > 0 || leg.C_s > 0;
+    for (int g = 0; g < leg_groups; ++g)
+      places_.group[g].q_b = legs_.group[g].b, places_.group[g].k = legs_.group[g].k;
     set_chart(Quaternion());
-    force_ = in_.leg_force;
+    force_ = PerLeg(in_.leg_force);
   }
 
   State start() {
@@ -85,9 +86,10 @@ class Rig {
     return true;
   }
 
-  /// The platform's motion in the inertial frame, with accelerations; that of the base.
-  void motions(double t, const State& y, Motion<double>& platform, Motion<double>& base) {
+  /// The platform's motion in the inertial frame, with accelerations; that of the base; leg forces.
+  void motions(double t, const State& y, Motion<double>& platform, Motion<double>& base, Vec6<double>& leg_force) {
     const Moment now = moment(t, y);
+    leg_force = now.leg_force.six();
     const Mat3<double>& R_b = now.base.motion.pose.R;
     base = now.base.motion;
     platform.pose = {base.pose.t + R_b * now.platform.pose.t, R_b * now.platform.pose.R};
@@ -114,12 +116,13 @@ class Rig {
   void measure(double t, const State& y, double (&out)[36]) {
     const Moment now = moment(t, y);
     const Mat3<double>& R_b = now.base.motion.pose.R;
+    const Vec6<double> force = now.leg_force.six();
     const Geometry<double> g = geometry(y), rest(machine_.design, rest_, Pose<double>());
     for (int i = 0; i < 6; ++i) {
       const double L = norm(g.S[i]);
       out[i] = dot(g.S[i] + rest.S[i], g.S[i] - rest.S[i]) / (L + norm(rest.S[i]));
       out[6 + i] = dot(g.S[i], now.v + cross(now.w, g.q_p[i])) / L;
-      out[12 + i] = now.leg_force[i] - in_.leg_force[i];
+      out[12 + i] = force[i] - in_.leg_force[i];
     }
     const Vec6<double> x = relative(y);
     const Vec3<double> a = R_b * now.platform.a + in_.design.gravity, alpha = R_b * now.platform.alpha;
@@ -142,7 +145,9 @@ class Rig {
     Motion<double> frame;     // the base's rotation and its acceleration less gravity
     Motion<double> platform;  // velocity less that of the base's reference point; accelerations less gravity
     Vec3<double> v, w;        // as seen from the base
-    Vec6<double> leg_force, wrench;
+    LegPlaces at;
+    PerLeg leg_force;
+    Vec6<double> wrench;      // platform axes
     Jet command[6];
   };
 
@@ -161,83 +166,92 @@ class Rig {
   Pose<double> pose(const State& y) const { return {rest_.t + get(y, 0), rotation(get(y, 3)) * R_chart_}; }
 
   Moment moment(double t, const State& y) {
-    Moment now{base_at(t), {}, {}, get(y, 6), get(y, 9), {}, in_.wrench, {}};
+    Moment now{base_at(t), {}, {}, get(y, 6), get(y, 9), places_, {}, in_.wrench, {}};
     const Motion<double>& b = now.base.motion;
     now.frame.a = transposed(b.pose.R, b.a - in_.design.gravity);
     now.frame.w = transposed(b.pose.R, b.w), now.frame.alpha = transposed(b.pose.R, b.alpha);
     now.platform.pose = pose(y);
     now.platform.v = now.v + cross(now.frame.w, now.platform.pose.t);
     now.platform.w = now.w + now.frame.w;
-    set_loads(t, y, now);
-    const Vec6<double> wrench = external_wrench(now.platform.pose.R, now.wrench);
-    const Vec6<double> acceleration = forward_dynamics(machine_, now.platform, now.frame, now.leg_force, wrench);
-    now.platform.a = acceleration.top(), now.platform.alpha = acceleration.bottom();
-    return now;
-  }
-
-  /// F = -K (L - L_0(t)) (corrections E6) from the change of length since the chart was set, without cancellation.
-  void set_loads(double t, const State& y, Moment& now) {
-    if (!command_.empty()) command_.at(t, inside, now.command);
+    set_legs(t, y, now);
     if (!wrench_.empty()) {
       Jet channel[6];
       wrench_.at(t, inside, channel);
       for (int i = 0; i < 6; ++i) now.wrench[i] += channel[i].x;
     }
-    const Vec3<double> d = get(y, 0), theta = get(y, 3);
-    for (int i = 0; i < 6; ++i) {
-      const Vec3<double> change = d - d_chart_ + turned_change(theta, q_chart_[i]);
-      const double product = dot(2.0 * S_chart_[i] + change, change);
-      const double stretch = product / (std::sqrt(L_chart_[i] * L_chart_[i] + product) + L_chart_[i]);
-      now.leg_force[i] = force_[i] + held[i] + machine_.design.leg[i].stiffness * (now.command[i].x - stretch);
+    const Vec6<double> wrench = external_wrench(now.platform.pose.R, now.wrench);
+    const Vec6<double> acceleration =
+        forward_dynamics(legs_, now.at, now.platform, now.frame, now.leg_force, wrench);
+    now.platform.a = acceleration.top(), now.platform.alpha = acceleration.bottom();
+    return now;
+  }
+
+  /// Where the legs are, from their change since the chart was set, and F = -K (L - L_0(t)) (corrections E6) from the
+  /// change of length, without cancellation.
+  void set_legs(double t, const State& y, Moment& now) {
+    PerLeg command{};
+    if (!command_.empty()) {
+      command_.at(t, inside, now.command);
+      Vec6<double> change;
+      for (int i = 0; i < 6; ++i) change[i] = now.command[i].x;
+      command = PerLeg(change);
+    }
+    const Vec3<double> d = get(y, 0) - d_chart_, theta = get(y, 3);
+    for (int g = 0; g < leg_groups; ++g) {
+      const Chart& chart = chart_legs_[g];
+      LegPlaces::Group& at = now.at.group[g];
+      const Vec3<Lanes> turned = turned_change(theta, chart.q), change = d + turned;
+      at.q_p = chart.q + turned;
+      at.S = chart.S + change;
+      const Lanes product = dot(2.0 * chart.S + change, change);
+      const Lanes stretch = product / (sqrt(chart.L * chart.L + product) + chart.L);
+      now.leg_force.group[g] =
+          force_.group[g] + held.group[g] + legs_.group[g].leg.stiffness * (command.group[g] - stretch);
     }
   }
 
   /// Charts the orientation about `turn` from rest, and measures legs from there.
   void set_chart(const Quaternion& turn) {
     chart_ = turn, R_chart_ = turn.matrix() * rest_.R;
-    for (int i = 0; i < 6; ++i) {
-      const double before = L_chart_[i];
-      q_chart_[i] = R_chart_ * machine_.design.p[i];
-      S_chart_[i] = rest_.t + d_chart_ + q_chart_[i] - machine_.design.b[i];
-      L_chart_[i] = norm(S_chart_[i]);
-      force_[i] -= machine_.design.leg[i].stiffness * (L_chart_[i] - before);
+    for (int g = 0; g < leg_groups; ++g) {
+      Chart& chart = chart_legs_[g];
+      const Lanes before = chart.L;
+      chart.q = R_chart_ * legs_.group[g].p;
+      chart.S = (rest_.t + d_chart_) + chart.q - legs_.group[g].b;
+      chart.L = sqrt(dot(chart.S, chart.S));
+      force_.group[g] -= legs_.group[g].leg.stiffness * (chart.L - before);
     }
   }
 
   void add_powers(const Moment& now, State& rate) const {
     const Motion<double>& p = now.platform;
-    const Mat3<double>& R_b = now.base.motion.pose.R;
-    const Vec3<double> v_b = transposed(R_b, now.base.motion.v), w_b = now.frame.w;
-    if (!base_.empty()) {
-      const Reactions r = reactions(machine_, p, now.frame, now.leg_force, 0.5);
-      rate[of_base] = -(dot(r.base_force, v_b) + dot(r.base_moment, w_b));
+    const Vec3<double> v_b = transposed(now.base.motion.pose.R, now.base.motion.v), w_b = now.frame.w;
+    if (friction_ || !base_.empty()) {
+      const BaseLoad load(legs_, now.at, p, now.frame, now.leg_force);
+      rate[of_base] = -(dot(load.force, v_b) + dot(load.moment, w_b));
+      rate[of_friction] = -load.dissipation;
     }
     const Vec6<double> wrench = external_wrench(p.pose.R, now.wrench);
     rate[of_wrench] = dot(wrench.top(), v_b + p.v) + dot(wrench.bottom(), p.w);
-    for (int i = 0; i < 6; ++i) rate[of_command] += now.leg_force[i] * now.command[i].v;
-    if (friction_) rate[of_friction] = -dissipation(now);
-  }
-  double dissipation(const Moment& now) const {
-    const Geometry<double> g(machine_.design, now.platform.pose, now.frame.pose);
-    double sum = 0;
-    for (int i = 0; i < 6; ++i) {
-      const LegAxes<double> leg(g.S[i], g.k[i], machine_.joint);
-      const LegEnds<double> end = leg_ends(machine_, g, leg, i, now.platform, now.frame);
-      sum += leg_dissipation(machine_.design.leg[i], end, LegMotion<double>(leg, end, machine_.joint));
-    }
-    return sum;
+    const Vec6<double> force = now.leg_force.six();
+    for (int i = 0; i < 6; ++i) rate[of_command] += force[i] * now.command[i].v;
   }
 
   RigInput in_;
   Machine<double> machine_;  // without gravity, which goes with the base's acceleration
+  SixLegs legs_;
   Excitation base_, wrench_, command_;
   bool rotates_, friction_ = false;
   Pose<double> rest_;  // of the platform, base axes
+  LegPlaces places_;    // what of them does not change
   Quaternion chart_;
   Mat3<double> R_chart_;
-  Vec3<double> d_chart_, q_chart_[6], S_chart_[6];  // legs where the chart was set
-  double L_chart_[6]{};
-  Vec6<double> force_;  // leg forces there with no command
+  Vec3<double> d_chart_;
+  struct Chart {
+    Vec3<Lanes> q, S;
+    Lanes L{0.0};
+  } chart_legs_[leg_groups];  // platform joints, legs and lengths where the chart was set
+  PerLeg force_{};            // and leg forces there with no command
 };
 
 }  // namespace flexapod

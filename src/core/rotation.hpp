@@ -6,9 +6,9 @@
 namespace flexapod {
 
 /// exp(e) - 1 applied to v, to relative precision.
-inline Vec3<double> turned_change(const Vec3<double>& e, const Vec3<double>& v) {
+template <class T> Vec3<T> turned_change(const Vec3<double>& e, const Vec3<T>& v) {
   const Turn turn(dot(e, e));
-  const Vec3<double> e_x_v = cross(e, v);
+  const Vec3<T> e_x_v = cross(e, v);
   return turn.sine * e_x_v + turn.versine * cross(e, e_x_v);
 }
 

@@ -16,11 +16,11 @@ struct Tolerances {
   bool stop_at_singular;
 };
 
-/// Where the samples of one simulation go: rows for the instants given. `platform` and `base` may be null.
+/// Where the samples of one simulation go: rows for the instants given. The last three may be null.
 struct Samples {
   const double* times;
   size_t count;
-  double *displacement, *relative, *platform, *base, *work;
+  double *displacement, *relative, *work, *platform, *base, *leg_force;
 };
 
 struct Counts {
@@ -92,12 +92,14 @@ class Simulation {
   /// The platform where the run ended, inertial axes.
   Motion<double> last() {
     Motion<double> platform, base;
-    rig_.motions(time_, last_, platform, base);
+    Vec6<double> leg_force;
+    rig_.motions(time_, last_, platform, base, leg_force);
     return platform;
   }
 
  private:
   using Method = RungeKutta8<16>;
+  static constexpr double collapsed = 1e-3;  // length of a leg over the platform's size at which its joints meet
 
   auto rates() {
     return [this](int stage, double t, const State& y, State& rate) {
@@ -175,31 +177,56 @@ class Simulation {
     return scale;
   }
 
-  /// Takes the samples of the step just accepted, unless something in it ends the run.
+  /// Takes the samples of the step just accepted, up to where something in it ends the run.
   template <class F> Outcome look(F&& f) {
     const double end = rk_.t + rk_.h;
     const auto inside = [&](double t) { return t == end ? rk_.y1 : rk_.inside(t, f); };
     const Geometry<double> g = rig_.geometry(rk_.y1);
     const double side = determinant(g);
     Outcome outcome = Outcome::complete;
-    for (int i = 0; i < 6; ++i)
-      if (dot(g.S[i], S_[i]) < 0) outcome = Outcome::leg_collapsed;
     double until = end;
+    for (int i = 0; i < 6; ++i) {
+      if (dot(g.S[i], S_[i]) > 0) continue;
+      const auto length = [&](double t) { return norm(rig_.geometry(inside(t)).S[i]); };
+      const double nearest = where_least(length, rk_.t, end);
+      if (length(nearest) < collapsed * size_) outcome = Outcome::leg_collapsed, until = std::min(until, nearest);
+    }
     if (outcome == Outcome::complete && tol_.stop_at_singular && side * side_ <= 0) {
       outcome = Outcome::singular;
-      double low = rk_.t, high = end;
-      for (int i = 0; i < 60 && high - low > 1e-15 * end; ++i) {
-        const double middle = 0.5 * (low + high);
-        (determinant(rig_.geometry(inside(middle))) * side_ > 0 ? low : high) = middle;
-      }
-      until = low;
+      until = last_of_side(inside);
     }
-    if (outcome == Outcome::leg_collapsed) until = rk_.t;
     sample_until(until, inside);
     side_ = side;
     std::copy(g.S, g.S + 6, S_);
     if (outcome != Outcome::complete) time_ = until, last_ = inside(until);
     return outcome;
+  }
+
+  /// The last instant of the step on the side of the singular poses where it began.
+  template <class G> double last_of_side(G&& inside) const {
+    double low = rk_.t, high = rk_.t + rk_.h;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (determinant(rig_.geometry(inside(middle))) * side_ > 0 ? low : high) = middle;
+    }
+    return low;
+  }
+  /// Where a function is least between two instants: a scan, then thirds.
+  template <class G> static double where_least(G&& value, double low, double high) {
+    constexpr int parts = 32;
+    const double width = (high - low) / parts;
+    int best = 0;
+    for (int i = 1; i <= parts; ++i)
+      if (value(low + i * width) < value(low + best * width)) best = i;
+    double a = low + std::max(best - 1, 0) * width, b = low + std::min(best + 1, parts) * width;
+    for (int i = 0; i < 80; ++i) {
+      const double third = (b - a) / 3.0;
+      if (value(a + third) < value(b - third))
+        b -= third;
+      else
+        a += third;
+    }
+    return 0.5 * (a + b);
   }
 
   double determinant(const Geometry<double>& g) const { return scaled_determinant(force_transformation(g), size_); }
@@ -221,7 +248,7 @@ class Simulation {
     const Geometry<double> g = rig_.geometry(rk_.y0);
     for (int i = 0; i < 6; ++i) {
       const double L = norm(g.S[i]);
-      if (L < 1e-2 * size_) return Outcome::leg_collapsed;
+      if (L < 10.0 * collapsed * size_) return Outcome::leg_collapsed;
       if (norm(cross(g.k[i], g.S[i])) < 1e-2 * L) return Outcome::joint_locked;
     }
     const bool finite = std::all_of(rate.begin(), rate.end(), [](double x) { return std::isfinite(x); });
@@ -239,7 +266,8 @@ class Simulation {
       if (!samples_.platform) continue;
       auto* platform = reinterpret_cast<Motion<double>*>(samples_.platform) + next_sample_;
       auto* base = reinterpret_cast<Motion<double>*>(samples_.base) + next_sample_;
-      rig_.motions(at, y, *platform, *base);
+      auto* leg_force = reinterpret_cast<Vec6<double>*>(samples_.leg_force) + next_sample_;
+      rig_.motions(at, y, *platform, *base, *leg_force);
     }
   }
 

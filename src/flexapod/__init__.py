@@ -76,7 +76,15 @@ _HOMES = {
     "isolators": ["controlled_transmissibility", "h_infinity", "lqg"],
     "sampled": ["Hardware", "simulate_control"],
     "schedule": ["gain_schedule"],
-    "excitation": ["Excitation", "half_sine_shock", "harmonic", "polynomial", "sine_sweep", "smooth_step"],
+    "excitation": [
+        "Excitation",
+        "half_sine_pulse",
+        "half_sine_shock",
+        "harmonic",
+        "polynomial",
+        "sine_sweep",
+        "smooth_step",
+    ],
     "recordings": ["read_time_series", "time_series"],
     "spectra": ["Spectrum", "flat_spectrum", "ground_noise", "random_motion", "sea_motion", "sea_spectrum", "vc_curve"],
     "trajectory": ["Run"],
@@ -105,6 +113,8 @@ _HOMES = {
     "optimal.optimise": ["OptimalDesign", "optimise"],
     "optimal.pareto": ["ParetoFront", "pareto_front"],
     "robust": ["Payload", "Robustness", "Uncertain", "robustness"],
+    "stepped": ["stepped_sine"],
+    "animate": ["animate_mode", "animate_simulation"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = sorted([*_HOME_OF, "__version__"])
@@ -126,6 +136,7 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.assessment import ClosedLoop as ClosedLoop
     from flexapod.damping_loops import open_zeros as open_zeros
     from flexapod.damping_loops import root_locus as root_locus
+    from flexapod.animate import *  # noqa: F403
     from flexapod.dynamics import *  # noqa: F403
     from flexapod.errors import *  # noqa: F403
     from flexapod.excitation import *  # noqa: F403
@@ -168,5 +179,6 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.sweeps.store import *  # noqa: F403
     from flexapod.sweeps.summary import *  # noqa: F403
     from flexapod.sweeps.worst import *  # noqa: F403
+    from flexapod.stepped import *  # noqa: F403
     from flexapod.trajectory import *  # noqa: F403
     from flexapod.waypoints import Path as Path

@@ -11,7 +11,7 @@ from flexapod import _core
 from flexapod.errors import SingularPoseError
 from flexapod.hexapod import Hexapod
 from flexapod.pose import Array, Motion, Pose
-from flexapod.states import NO_LEGS, ZERO, JointModel, States, is_universal, per_leg, states, wrench
+from flexapod.states import NO_LEGS, ZERO, JointModel, is_universal, per_leg, states, wrench
 
 
 class EquationsOfMotion(NamedTuple):
@@ -151,11 +151,8 @@ def energy(
     Elastic energy is that of leg springs with the unstretched lengths given, (..., 6) m; without them it is zero.
     """
     s = states(hexapod, platform, base)
-    lengths = _lengths(hexapod, s) if unstretched_length is None else unstretched_length
-    L_0 = per_leg(lengths, "unstretched_length", s.shape)
+    L_0 = per_leg(NO_LEGS if unstretched_length is None else unstretched_length, "unstretched_length", s.shape)
     rows = _core.energy(hexapod.packed, is_universal(joint), s.platform, s.base, L_0)
+    if unstretched_length is None:
+        rows[:, 2] = 0.0
     return Energy(*(column.reshape(s.shape)[()] for column in rows.T))
-
-
-def _lengths(hexapod: Hexapod, s: States) -> Array:
-    return _core.leg_rates(hexapod.packed, s.platform, s.base)[0].reshape(*s.shape, 6)

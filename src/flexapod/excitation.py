@@ -167,7 +167,7 @@ def sine_sweep(
 
 
 def half_sine_shock(channel: str, acceleration: float, duration: float, recovery: float | None = None) -> Excitation:
-    """A half-sine pulse of acceleration (peak m/s2 or rad/s2, `duration` s), from rest.
+    """A base's half-sine pulse of acceleration (peak m/s2 or rad/s2, `duration` s), from rest.
 
     The pulse leaves the velocity 2 acceleration duration / pi. With `recovery` a second half sine of that duration (s),
     opposite and as strong as needed, brings it to rest again; without, the motion goes on at this speed.
@@ -186,8 +186,18 @@ def half_sine_shock(channel: str, acceleration: float, duration: float, recovery
     return _one(channel, PIECES, _pieces(pieces, corners=True))
 
 
+def half_sine_pulse(channel: str, peak: float, duration: float) -> Excitation:
+    """A half-sine pulse of the value itself, as of a force: peak in the channel's unit, `duration` s, nothing after."""
+    _finite(np.array([peak]), "peak")
+    T = _positive(duration, "duration", "s")
+    return _one(channel, PIECES, _pieces([_piece(0.0, [0.0], peak, np.pi / T), _piece(T, [0.0])], corners=True))
+
+
 def polynomial(channel: str, coefficients: ArrayLike) -> Excitation:
-    """c0 + c1 t + c2 t^2 + ..., up to eight coefficients: `polynomial("yaw", [0, rate])` spins the base."""
+    """c0 + c1 t + c2 t^2 + ..., up to eight coefficients in m/s^i or rad/s^i.
+
+    `polynomial("yaw", [0, rate])` spins the base at a constant rate.
+    """
     c = np.atleast_1d(np.asarray(coefficients, dtype=float))
     _finite(c, "coefficients")
     if c.ndim != 1 or not 1 <= c.size <= 8:
@@ -210,12 +220,14 @@ def check_channels(excitation: Excitation, use: str, allowed: Sequence[str]) -> 
             raise ArgumentError(f"{use} drives {channel!r}; its channels are {', '.join(allowed)}.")
 
 
-def sampled_term(channel: str, knots: Array, coefficients: Array, end: float) -> Excitation:
-    """A recording as smoothly joined polynomials: coefficients (n, <= 8) of powers of the time since each knot (n,)."""
+def sampled_term(channel: str, knots: Array, coefficients: Array, spacing: float, end: float) -> Excitation:
+    """A recording as smoothly joined polynomials: coefficients (n, <= 8) of powers of the time since each knot (n,).
+
+    spacing: s between samples; end: s, the last one.
+    """
     pieces = np.zeros((knots.size, 11))
     pieces[:, 0] = knots
     pieces[:, 1 : 1 + coefficients.shape[1]] = coefficients
-    spacing = (end - knots[0]) / knots.size
     numbers = np.concatenate([[0.0], pieces.ravel()])
     return Excitation((Term(_channel(channel), PIECES, numbers, sampled=spacing, last=end),))
 

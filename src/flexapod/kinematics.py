@@ -44,7 +44,7 @@ def inverse_kinematics(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -
 
 
 def leg_rates(hexapod: Hexapod, platform: Pose | Motion, base: Pose | Motion | None = None) -> LegRates:
-    """Leg lengths, rates and accelerations for motions of platform and base (Eqs 6-8)."""
+    """Leg lengths, rates and accelerations, (..., 6) m, m/s, m/s2, for motions of platform and base (Eqs 6-8)."""
     s = states(hexapod, platform, base)
     return LegRates(*(x.reshape(*s.shape, 6) for x in _core.leg_rates(hexapod.packed, s.platform, s.base)))
 
@@ -60,7 +60,7 @@ def force_transformation(hexapod: Hexapod, pose: Pose, base: Pose | None = None)
 
 
 def condition_number(hexapod: Hexapod, pose: Pose, characteristic_length: float | None = None) -> Array | float:
-    """Ratio of the largest to the least singular value of H, (...); infinite at a singular pose.
+    """Ratio of the largest to the least singular value of H, (...); at a singular pose infinite, or about 1e16.
 
     H mixes units (rows of forces, rows of moments in m), so the number depends on the unit of length: in metres it is
     the paper's. With a `characteristic_length` (m) the moment rows are divided by it, which removes the unit.
@@ -92,17 +92,28 @@ def home_pose(hexapod: Hexapod) -> Pose | None:
 def forward_kinematics(hexapod: Hexapod, lengths: ArrayLike, start: Pose | None = None) -> Pose:
     """The pose, in the base frame, at which the legs have the given lengths, (..., 6) m.
 
-    From `start` the nearest assembly is found by Newton's method (damped far from it). Without a start the search
-    begins at the design's home pose, or above the base, and then from poses turned and tilted about it; among several
-    assemblies the first found in this order is returned. Raises KinematicsError, with the misfit, where none is found.
+    From `start`, one pose for all or one for each, the nearest assembly is found by Newton's method (damped far from
+    it). Without a start the search begins at the design's home pose, or above the base, and then from poses turned and
+    tilted about it; among several assemblies the first found in this order is returned. Raises KinematicsError, with
+    the misfit, where none is found.
     """
     wanted = vectors(lengths, "lengths", 6)
     if (wanted <= 0).any():
         raise KinematicsError(f"lengths has {wanted.min():.6g} m; every leg length must be > 0 m")
-    flat = wanted.reshape(-1, 6)
-    found = [_assemble(hexapod, row, start) for row in flat]
+    starts = [None] * (wanted.size // 6) if start is None else _one_for_each(start, wanted.shape[:-1])
+    found = [_assemble(hexapod, row, near) for row, near in zip(wanted.reshape(-1, 6), starts, strict=True)]
     position = np.array([p for p, _ in found]).reshape(*wanted.shape[:-1], 3)
     return Pose(position, np.array([R for _, R in found]).reshape(*wanted.shape[:-1], 3, 3))
+
+
+def _one_for_each(start: Pose, shape: tuple[int, ...]) -> list[Pose]:
+    if not isinstance(start, Pose):
+        raise PoseError(f"start is {type(start).__name__}; it must be a flexapod Pose")
+    try:
+        position, matrix = np.broadcast_to(start.position, (*shape, 3)), np.broadcast_to(start.matrix, (*shape, 3, 3))
+    except ValueError:
+        raise PoseError(f"start has batch axes {start.shape}, which do not fit those of the lengths, {shape}") from None
+    return [Pose(p, R) for p, R in zip(position.reshape(-1, 3), matrix.reshape(-1, 3, 3), strict=True)]
 
 
 def _assemble(hexapod: Hexapod, lengths: Array, start: Pose | None) -> tuple[Array, Array]:
@@ -158,7 +169,10 @@ def neutral_directions(hexapod: Hexapod) -> Array:
     home = home_pose(hexapod)
     if home is None:
         return np.broadcast_to([0.0, 0.0, 1.0], (2, 6, 3)).copy()
-    s = force_transformation(hexapod, home)[:3].T
+    try:
+        s = force_transformation(hexapod, home)[:3].T
+    except PoseError as error:
+        raise PoseError(f"the design's [home], which joint angles are measured from: {error}") from error
     return np.stack([s, s @ home.matrix])
 
 
@@ -170,6 +184,8 @@ def leg_distance(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> Arra
 
 def check_limits(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> LimitsCheck:
     """Whether leg lengths, joint angles and leg distance are within the design's limits; absent limits always hold."""
+    if not isinstance(pose, Pose):
+        raise PoseError(f"pose is {type(pose).__name__}; it must be a flexapod Pose")
     excess = limit_excess(hexapod, pose, base)
     ok = np.ones(pose.shape, dtype=bool)
     words: list[str] = []
@@ -192,8 +208,6 @@ class Quantity(NamedTuple):
 def limit_excess(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> list[Quantity]:
     """Every quantity that the design limits, with its bounds."""
     limits = hexapod.limits
-    if limits is None:
-        return []
     result = []
     if limits.leg_length is not None:
         bounds = np.asarray(limits.leg_length)

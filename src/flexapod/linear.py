@@ -18,6 +18,8 @@ from flexapod.statics import Equilibrium, hold
 if TYPE_CHECKING:
     import control
 
+__all__ = ["DampedModes", "Linearisation", "StateSpace", "linearise"]
+
 STATES = ("position", "velocity")
 INPUTS = ("base_acceleration", "leg_force", "wrench", "leg_command")
 OUTPUTS = ("position", "leg_length", "leg_force", "acceleration")
@@ -83,7 +85,7 @@ class Linearisation:
     gravity: Array
 
     def modes(self) -> DampedModes:
-        """Complex modes with the base fixed. A pair of real poles (no vibration) is given by the one nearer to zero."""
+        """Complex modes with the base fixed. Of a pair of real poles (no vibration), the slower or growing one."""
         zero, one = np.zeros((6, 6)), np.eye(6)
         A = np.block([[zero, one], [-np.linalg.solve(self.M, self.K), -np.linalg.solve(self.M, self.C)]])
         scale = np.sqrt(np.abs(np.linalg.eigvals(A[6:, :6])).max())  # balances displacements against rates
@@ -104,8 +106,9 @@ class Linearisation:
 
         Inputs (24): base acceleration in the inertial frame (m/s2, rad/s2), leg forces (N), wrench (N, N m), leg length
         commands (m). Outputs (24): relative displacement (m, rad), change of leg lengths (m) and of the force in the
-        legs' springs and actuators (N), absolute acceleration (m/s2, rad/s2). Exact but for one effect: a tilted base
-        also tilts gravity, which twelve states cannot hold; the frequency response keeps it.
+        legs' springs and actuators (N), absolute acceleration (m/s2, rad/s2). Exact but for two effects that twelve
+        states cannot hold and `transmissibility` keeps: a tilted base tilts gravity, and in the model "spin_free" a
+        turning base rubs on legs that do not spin with it.
         """
         M_inv = np.linalg.inv(self.M)
         zero, one = np.zeros((6, 6)), np.eye(6)
@@ -138,9 +141,12 @@ def _labels(groups: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _one_of_each_pair(poles: Array) -> list[int]:
-    """Indices of six poles out of twelve: the upper one of each complex pair, the slower of real ones; by modulus."""
+    """Indices of six poles out of twelve: the upper one of each complex pair, of real ones the slower or the growing.
+
+    Ordered by modulus.
+    """
     upper = [i for i, p in enumerate(poles) if p.imag > 0]
-    real = sorted((i for i, p in enumerate(poles) if p.imag == 0), key=lambda i: abs(poles[i]))
+    real = sorted((i for i, p in enumerate(poles) if p.imag == 0), key=lambda i: -poles[i].real)
     return sorted(upper + real[: 6 - len(upper)], key=lambda i: abs(poles[i]))
 
 
@@ -160,7 +166,7 @@ def linearise(
     """
     if pose.shape:
         raise PoseError(f"linearise takes one pose; this one has batch axes {pose.shape}. Index it first.")
-    rest = hold(hexapod, pose, base=base, force=force, moment=moment)
+    rest = hold(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
     s = states(hexapod, pose, base)
     M, C, K, M_b, C_b, K_b, H = _core.tangent(
         hexapod.packed, is_universal(joint), s.platform, s.base, wrench(force, moment, ()), rest.unstretched_length

@@ -140,8 +140,15 @@ def _describe(twist: Array, J: Array, mass_center: Array) -> ModeDescription:
         return ModeDescription(words, DIRECTIONS[first], share, np.full(3, np.nan), np.full(3, np.nan), np.inf)
     center = mass_center + np.cross(w, v) / spin**2
     axis, pitch = w / spin, float(w @ v / spin**2)
-    words += f", turning about ({', '.join(f'{c + 0.0:.3g}' for c in np.round(center, 12))}) m"
+    if share[3:].sum() > 0.01:  # a mode that hardly turns has an axis, but nobody would see it turn about it
+        words += f", turning about ({_rounded(center)}) m"
     return ModeDescription(words, DIRECTIONS[first], share, center, axis, pitch)
+
+
+def _rounded(point: Array) -> str:
+    """Coordinates to three digits of the largest one."""
+    decimals = 2 - int(np.floor(np.log10(max(np.abs(point).max(), 1e-9))))
+    return ", ".join(f"{c + 0.0:.3g}" for c in np.round(point, decimals))
 
 
 def near_repeated(omega: Array, gap: float = 0.01) -> list[tuple[int, int]]:
@@ -152,7 +159,7 @@ def near_repeated(omega: Array, gap: float = 0.01) -> list[tuple[int, int]]:
 def frequency_sensitivity(
     hexapod: Hexapod, pose: Pose, joint: JointModel = "universal", base: Pose | None = None
 ) -> Sensitivity:
-    """Exact derivatives of the six frequencies by the design and by the pose, for one pose.
+    """Exact derivatives of the six frequencies (rad/s) by the design and by the pose, for one pose.
 
     From v^T (dK - omega^2 dJ) v. Universal axes are held. Modes that are exactly repeated have only directional
     derivatives, which single entries do not give (see `near_repeated`); a zero frequency gives NaN.

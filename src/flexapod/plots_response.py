@@ -6,21 +6,20 @@ for in rad/s; the rest is in SI units.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
+from flexapod.plots import FAINT, INK
 from flexapod.pose import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-INK = "#20262d"
-FAINT = "#8a929b"
 COLOURS = ("#0072b2", "#d55e00", "#009e73")  # Okabe and Ito; line styles tell them apart as well
 STYLES = ("-", (0, (6, 2)), (0, (2, 1.5)))
 _ROUNDING = 1e-9  # of the largest curve beside it: what is smaller is symmetry broken by rounding, and left out
@@ -41,7 +40,7 @@ _VARIABLES = {
 
 
 def frequency_response(
-    dataset: xr.Dataset, variable: str = "absolute", given: str = "z", natural: Sequence[float] = ()
+    dataset: xr.Dataset, variable: str = "absolute", given: str = "z", natural: Iterable[float] = ()
 ) -> Figure:
     """Amplitude and phase of the six outputs for one input of `fx.transmissibility`'s result.
 
@@ -49,7 +48,7 @@ def frequency_response(
     frequencies in rad/s to mark.
     """
     dimension, words = _VARIABLES[variable]
-    response = dataset[variable].sel({dimension: given})
+    natural, response = list(natural), dataset[variable].sel({dimension: given})
     hertz = dataset.omega.values / (2 * np.pi)
     unit = "m" if dimension == "leg" else str(dataset[f"{dimension}_unit"].sel({dimension: given}).values)
     figure = _figure(10, 6.2)
@@ -110,20 +109,33 @@ def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figur
     return figure
 
 
-def stepped_ratio(dataset: xr.Dataset, natural: Sequence[float] = (), linear: xr.DataArray | None = None) -> Figure:
+def stepped_ratio(
+    dataset: xr.Dataset,
+    natural: Iterable[float] = (),
+    linear: xr.DataArray | None = None,
+    scale: Literal["linear", "log"] = "linear",
+) -> Figure:
     """Fig. 9: ratio of response amplitude to base amplitude against frequency (rad/s), six outputs.
 
     Dots: the non-linear machine (`fx.stepped_sine`); line: the tangent, from `linear` (omega, output; complex) where a
-    finer one is at hand. natural: frequencies in rad/s to mark.
+    finer one is at hand. natural: frequencies in rad/s to mark. scale: of the frequencies.
     """
     line = dataset["linear"] if linear is None else linear
+    natural, least = list(natural), _ROUNDING * float(np.abs(line).max())
     figure = _figure(10.5, 6.2)
     for i, (name, ax) in enumerate(zip(OUTPUT_NAMES, figure.subplots(2, 3, sharex=True).ravel(), strict=True)):
         smooth = np.abs(line.sel(output=name).values)
         dots = dataset.ratio.sel(output=name).values
+        if smooth.max() <= least:
+            smooth, dots = np.full_like(smooth, np.nan), np.full_like(dots, np.nan)
+            ax.text(0.5, 0.5, "none", transform=ax.transAxes, ha="center", color=FAINT)
+            ax.yaxis.set_visible(False)
+        ax.set_xscale(scale)
         ax.semilogy(line.omega.values, _positive(smooth), color=FAINT, lw=1.2, label="tangent")
         ax.semilogy(dataset.omega.values, _positive(dots), "o", color=COLOURS[0], ms=2.6, mew=0, label="non-linear")
         _span(ax)
+        if scale == "log":
+            _plain_decades(ax)
         _mark(ax, natural, hertz=False)
         _dress(ax)
         _name(ax, i, name)
@@ -131,23 +143,19 @@ def stepped_ratio(dataset: xr.Dataset, natural: Sequence[float] = (), linear: xr
         ax.set_ylabel(f"ratio, {_ratio_unit(unit, dataset.attrs['amplitude_unit'])}")
         if i > 2:
             ax.set_xlabel("base frequency, rad/s")
-        if i == 0:
-            ax.legend(loc="upper left", fontsize=8, framealpha=0.85, edgecolor="none")
+    handles = ax.get_legend_handles_labels()
+    figure.legend(*handles, loc="outside lower right", ncols=2, frameon=False, labelcolor=INK)
     return figure
 
 
-def displacements(
-    times: Array, displacement: Array, bound: Array | None = None, guide: Array | None = None, bound_name: str = ""
-) -> Figure:
-    """Figs 7 and 8: displacement from equilibrium (m, 6) against time (m,) s, six outputs.
+def displacements(times: Array, displacement: Array, bound: Array | None = None, bound_name: str = "bound") -> Figure:
+    """Figs 7 and 8: displacement from equilibrium (m, 6), m and rad, against time (m,) s, six outputs.
 
-    bound: (m, 6), drawn as an envelope on both sides. guide: (m, 6), another solution, drawn dashed on top.
+    bound: (m, 6), drawn on both sides of zero.
     """
     figure = _figure(10.5, 6.2)
     for i, (name, ax) in enumerate(zip(OUTPUT_NAMES, figure.subplots(2, 3, sharex=True).ravel(), strict=True)):
-        ax.plot(times, displacement[:, i], color=COLOURS[0], lw=0.7)
-        if guide is not None:
-            ax.plot(times, guide[:, i], color=COLOURS[1], lw=0.7, ls=(0, (3, 3)))
+        ax.plot(times, displacement[:, i], color=COLOURS[0], lw=0.5)
         if bound is not None:
             ax.plot(times, bound[:, i], color=COLOURS[1], lw=1.1, label=bound_name)
             ax.plot(times, -bound[:, i], color=COLOURS[1], lw=1.1)
@@ -158,8 +166,8 @@ def displacements(
         ax.margins(x=0)
         if i > 2:
             ax.set_xlabel("time, s")
-        if i == 0 and bound is not None:
-            ax.legend(loc="upper left", fontsize=8, framealpha=0.85, edgecolor="none")
+    if bound is not None:
+        figure.legend(*ax.get_legend_handles_labels(), loc="outside lower right", frameon=False, labelcolor=INK)
     return figure
 
 
@@ -180,7 +188,7 @@ def _dress(ax: Axes) -> None:
         axis.label.set_color(INK)
 
 
-def _mark(ax: Axes, natural: Sequence[float], hertz: bool = True) -> None:
+def _mark(ax: Axes, natural: Iterable[float], hertz: bool = True) -> None:
     low, high = ax.get_xlim()
     for omega in natural:
         place = omega / (2 * np.pi) if hertz else omega

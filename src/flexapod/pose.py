@@ -16,9 +16,9 @@ Array = NDArray[np.float64]
 
 
 def vectors(value: ArrayLike, name: str, width: int = 3) -> Array:
-    """`value` as finite float64 of shape (..., width); raises PoseError otherwise."""
+    """A copy of `value` as finite float64 of shape (..., width); raises PoseError otherwise."""
     try:
-        array = np.asarray(value, dtype=np.float64)
+        array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise PoseError(f"{name} is {value!r}; {width} numbers are needed") from error
     if array.ndim == 0 or array.shape[-1] != width:
@@ -30,11 +30,14 @@ def vectors(value: ArrayLike, name: str, width: int = 3) -> Array:
 
 def _rotation_matrices(rotation: Any) -> Array:
     matrix = rotation.as_matrix() if hasattr(rotation, "as_matrix") else rotation
-    matrix = np.asarray(matrix, dtype=np.float64)
+    try:
+        matrix = np.array(matrix, dtype=np.float64)  # a copy: a pose does not change with its maker's arrays
+    except (TypeError, ValueError) as error:
+        raise PoseError(f"rotation is {rotation!r}; give a scipy Rotation or matrices of shape (..., 3, 3)") from error
     if matrix.ndim < 2 or matrix.shape[-2:] != (3, 3):
         raise PoseError(f"rotation has shape {matrix.shape}; give a scipy Rotation or matrices of shape (..., 3, 3)")
-    error = np.abs(matrix @ np.swapaxes(matrix, -1, -2) - np.eye(3)).max(initial=0.0)
-    if not error < 1e-9 or np.any(np.linalg.det(matrix) < 0):
+    skew = np.abs(matrix @ np.swapaxes(matrix, -1, -2) - np.eye(3)).max(initial=0.0)
+    if not skew < 1e-9 or np.any(np.linalg.det(matrix) < 0):
         raise PoseError("rotation is not a rotation matrix: R R^T must be the identity to 1e-9 and det R be +1")
     return matrix
 
@@ -68,7 +71,10 @@ class Pose:
         cls, x: ArrayLike, y: ArrayLike, z: ArrayLike, roll: ArrayLike = 0, pitch: ArrayLike = 0, yaw: ArrayLike = 0
     ) -> Pose:
         """Pose from metres and radians: turned about the fixed axes x (roll), then y (pitch), then z (yaw)."""
-        numbers = np.broadcast_arrays(*(np.asarray(v, dtype=np.float64) for v in (x, y, z, roll, pitch, yaw)))
+        try:
+            numbers = np.broadcast_arrays(*(np.asarray(v, dtype=np.float64) for v in (x, y, z, roll, pitch, yaw)))
+        except (TypeError, ValueError) as error:
+            raise PoseError(f"x, y, z, roll, pitch and yaw must be numbers, or arrays that fit: {error}") from error
         six = vectors(np.stack(numbers, axis=-1), "pose", 6)
         return cls(six[..., :3], rpy_matrix(six[..., 3:]))
 
@@ -88,7 +94,7 @@ class Pose:
         yaw = np.where(level, np.arctan2(R[..., 1, 0], R[..., 0, 0]), 0.0)
         steep = np.arctan2(-R[..., 1, 2], R[..., 1, 1])
         roll = np.where(level, np.arctan2(R[..., 2, 1], R[..., 2, 2]), steep)
-        return np.stack([roll, pitch, yaw], axis=-1)
+        return np.stack([roll, pitch, yaw], axis=-1) + 0.0  # no -0.0
 
     @property
     def shape(self) -> tuple[int, ...]:

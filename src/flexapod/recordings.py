@@ -41,13 +41,14 @@ def time_series(
         raise ArgumentError(f"recorded is {recorded!r}; it must be one of {', '.join(INTEGRATIONS)}.")
     t, x = _checked(times, values, names)
     t = t - t[0]
+    spacing = float(np.median(np.diff(t)))
     total = Excitation()
     for name, column in zip(names, x.T, strict=True):
         spline = PPoly.from_spline(make_interp_spline(t, column, k=5 if recorded == "value" else 3))
         for _ in range(INTEGRATIONS[recorded]):
             spline = spline.antiderivative()
         kept = np.diff(spline.x) > 0  # knots are repeated at the ends
-        total = total + sampled_term(name, spline.x[:-1][kept], spline.c[::-1, kept].T, float(t[-1]))
+        total = total + sampled_term(name, spline.x[:-1][kept], spline.c[::-1, kept].T, spacing, float(t[-1]))
     return total
 
 

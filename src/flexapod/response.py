@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Literal, NamedTuple, Unpack, get_args
+from collections.abc import Callable, Mapping
+from typing import NamedTuple, Unpack, get_args
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
 from flexapod.errors import ArgumentError, PoseError
-from flexapod.harmonic import Complex, SteadyResponse, complex_poles, frequencies, loss_factors, steady_response
 from flexapod.hexapod import Hexapod
 from flexapod.linear import AXES, LEGS, Linearisation, RestOptions, linearise
 from flexapod.pose import Array, Pose, vectors
+from flexapod.spectra import Quantity, Spectrum
 from flexapod.states import ZERO
+from flexapod.steady import Complex, SteadyResponse, complex_poles, frequencies, loss_factors, steady_response
+
+__all__ = ["random_response", "transmissibility"]
 
 MOTION_UNITS = ("m", "m", "m", "rad", "rad", "rad")
 WRENCH_UNITS = ("N", "N", "N", "N m", "N m", "N m")
 
-Quantity = Literal["displacement", "velocity", "acceleration"]
-Spectrum = ArrayLike | Callable[[Array], ArrayLike]
+Density = ArrayLike | Callable[[Array], ArrayLike] | Spectrum | Mapping[str, Spectrum]
 
 
 def transmissibility(
@@ -56,31 +58,38 @@ def transmissibility(
     to_point = shift(pose, point)
     steady = steady_response(linear, w, eta)
     relative = to_point @ steady.relative
-    variables = {
-        "absolute": (("omega", "output", "base"), relative + to_point @ linear.carry),
-        "relative": (("omega", "output", "base"), relative),
-        "compliance": (("omega", "output", "wrench"), to_point @ steady.wrench @ to_point.T),
-        "command": (("omega", "output", "leg"), to_point @ steady.command),
-        "leg_force": (("omega", "leg", "base"), _leg_force(linear, steady, eta)),
+    arrays = {
+        "absolute": relative + to_point @ linear.carry,
+        "relative": relative,
+        "compliance": to_point @ steady.wrench @ to_point.T,
+        "command": to_point @ steady.command,
+        "leg_force": _leg_force(linear, steady, eta),
     }
-    coordinates = {
-        "omega": ("omega", w, {"units": "rad/s", "long_name": "frequency"}),
-        **{axis: (axis, list(AXES)) for axis in ("output", "base", "wrench")},
-        "leg": ("leg", list(LEGS)),
-        "output_unit": ("output", list(MOTION_UNITS)),
-        "base_unit": ("base", list(MOTION_UNITS)),
-        "wrench_unit": ("wrench", list(WRENCH_UNITS)),
-    }
-    dataset = xr.Dataset(variables, coordinates, _attributes(hexapod, pose, point, eta))
-    for name, units, long_name in (
-        ("absolute", "output_unit/base_unit", "absolute transmissibility"),
-        ("relative", "output_unit/base_unit", "motion relative to the base per base motion"),
-        ("compliance", "output_unit/wrench_unit", "compliance"),
-        ("command", "output_unit/m", "motion per leg command"),
-        ("leg_force", "N/base_unit", "leg force per base motion"),
-    ):
-        dataset[name].attrs = {"units": units, "long_name": long_name}
-    return dataset
+    variables = {name: (RESPONSES[name][0], array, RESPONSES[name][1]) for name, array in arrays.items()}
+    coordinates = {"omega": ("omega", w, {"units": "rad/s", "long_name": "frequency"}), **COORDINATES}
+    return xr.Dataset(variables, coordinates, _attributes(hexapod, pose, point, eta))
+
+
+COORDINATES = {
+    **{axis: (axis, list(AXES)) for axis in ("output", "base", "wrench")},
+    "leg": ("leg", list(LEGS)),
+    "output_unit": ("output", list(MOTION_UNITS)),
+    "base_unit": ("base", list(MOTION_UNITS)),
+    "wrench_unit": ("wrench", list(WRENCH_UNITS)),
+}
+RESPONSES: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {
+    "absolute": (
+        ("omega", "output", "base"),
+        {"units": "output_unit/base_unit", "long_name": "absolute transmissibility"},
+    ),
+    "relative": (
+        ("omega", "output", "base"),
+        {"units": "output_unit/base_unit", "long_name": "motion relative to the base per base motion"},
+    ),
+    "compliance": (("omega", "output", "wrench"), {"units": "output_unit/wrench_unit", "long_name": "compliance"}),
+    "command": (("omega", "output", "leg"), {"units": "output_unit/m", "long_name": "motion per leg command"}),
+    "leg_force": (("omega", "leg", "base"), {"units": "N/base_unit", "long_name": "leg force per base motion"}),
+}
 
 
 def shift(pose: Pose, point: ArrayLike) -> Array:
@@ -113,8 +122,8 @@ def _attributes(hexapod: Hexapod, pose: Pose, point: ArrayLike, eta: Array) -> d
 def random_response(
     hexapod: Hexapod,
     pose: Pose,
-    omega: ArrayLike,
-    psd: Spectrum,
+    psd: Density,
+    omega: ArrayLike | None = None,
     *,
     of: Quantity = "acceleration",
     axis: str | None = None,
@@ -124,13 +133,14 @@ def random_response(
 ) -> xr.Dataset:
     """Spectra and RMS of the platform and the legs on a base that moves at random, by the exact tangent at rest.
 
-    psd: one-sided power spectral density per rad/s of the base's `of` ("acceleration", "velocity", "displacement"), so
-    that its mean square is the integral over omega > 0; a density per Hz is 2 pi times that per rad/s. Given at omega
-    (n,) rad/s, ascending, which also bounds the band, or as a function of omega:
+    psd: one-sided power spectral density per rad/s of the base's motion, so that its mean square is the integral over
+    omega > 0; a density per Hz is 2 pi times that per rad/s. One of
 
-    - (n,): of one `axis` ("x" to "yaw"), e.g. (m/s2)2/(rad/s)
-    - (n, 6): of six independent axes
-    - (n, 6, 6): the Hermitian cross-spectral matrix S_jk of E[X_j conj(X_k)]
+    - a `Spectrum` (`fx.vc_curve`, `fx.ground_noise`, ...) of one `axis` ("x" to "yaw"), or several by axis, which move
+      independently: {"x": ..., "z": ...}. Their range is the band, omega (if given) cuts it.
+    - numbers at omega (n,) rad/s, ascending, which bounds the band, or a function of omega that gives such numbers, for
+      the quantity `of` ("acceleration", "velocity", "displacement"): (n,) for one `axis`, e.g. (m/s2)2/(rad/s); (n, 6)
+      for six independent axes; (n, 6, 6) for the Hermitian cross-spectral matrix S_jk of E[X_j conj(X_k)].
 
     Between the frequencies a table is a power law (straight in log-log axes; linear where it touches zero), a matrix
     linear. Resonances are resolved whatever their damping: panels shrink geometrically towards every pole, each with
@@ -143,25 +153,31 @@ def random_response(
     Raises ArgumentError for a spectrum that none can be, and where a mode in the band has no damping or grows: its
     response never becomes stationary.
     """
-    if of not in get_args(Quantity):
-        raise ArgumentError(f"of is {of!r}; the psd is that of the base's {', '.join(get_args(Quantity))}")
     eta = loss_factors(loss_factor)
     linear = linearise(hexapod, pose, **rest)
+    if isinstance(psd, Spectrum | Mapping):
+        psd, omega, of, axis = _combined(psd, omega, axis)
+    if of not in get_args(Quantity):
+        raise ArgumentError(f"of is {of!r}; the psd is that of the base's {', '.join(get_args(Quantity))}")
     grid = _band(omega)
     spectrum = _spectrum(psd, grid, axis)
     poles = complex_poles(linear, eta)
     _check_damped(poles, grid)
     panels = _Panels(_graded(grid, poles))
     filters = _Filters(linear, shift(pose, point), eta, of)
+    densities = filters.spectra(panels.omega, spectrum(panels.omega))
+    return _random_dataset(panels, densities).assign_attrs(_attributes(hexapod, pose, point, eta))
+
+
+def _random_dataset(panels: _Panels, densities: dict[str, Array]) -> xr.Dataset:
     coordinates = {
         "omega": ("omega", panels.omega, {"units": "rad/s", "long_name": "frequency"}),
         "output": list(AXES),
         "output_unit": ("output", list(MOTION_UNITS)),
         "leg": list(LEGS),
     }
-    dataset = xr.Dataset(coords=coordinates, attrs=_attributes(hexapod, pose, point, eta))
+    dataset = xr.Dataset(coords=coordinates)
     dataset.attrs["convention"] = "one-sided spectral density per rad/s: mean square = integral over omega > 0"
-    densities = filters.spectra(panels.omega, spectrum(panels.omega))
     for name, (along, unit) in QUANTITIES.items():
         cumulative = np.sqrt(panels.cumulated(densities[name]))
         dataset[f"psd_{name}"] = (("omega", along), densities[name], {"units": f"({unit})2/(rad/s)"})
@@ -212,7 +228,40 @@ def _power(H: Complex, base: Complex) -> Array:
     return np.maximum(np.einsum("nij,nij->ni", H @ base, H.conj()).real, 0.0)
 
 
-def _band(omega: ArrayLike) -> Array:
+def _combined(
+    psd: Spectrum | Mapping[str, Spectrum], omega: ArrayLike | None, axis: str | None
+) -> tuple[Callable[[Array], Array], Array, Quantity, None]:
+    """Spectra by axis as one function (n, 6), with their common band in eighths of octaves (for their kinks)."""
+    if isinstance(psd, Spectrum):
+        _unit_axis(axis)
+        psd = {str(axis): psd}
+    elif axis is not None or not psd:
+        raise ArgumentError(f"axis is {axis!r} and psd names {', '.join(psd) or 'none'}; give spectra by axis, or one")
+    for name, item in psd.items():
+        if not isinstance(item, Spectrum):
+            raise ArgumentError(f"psd[{name!r}] is {item!r}; it must be a flexapod Spectrum")
+    axes, spectra = [_unit_axis(name) for name in psd], list(psd.values())
+    kinds = {item.quantity for item in spectra}
+    if len(kinds) > 1:
+        raise ArgumentError(f"psd mixes spectra of {' and '.join(sorted(kinds))}; they must be of one quantity")
+    ends = [end for item in spectra for end in (item.omega_min, item.omega_max)]
+    low, high = min(ends), max(ends)
+    given = np.array([low, high]) if omega is None else _band(omega)
+    low, high = max(low, given[0]), min(high, given[-1])
+    if low >= high:
+        raise ArgumentError(f"omega lies outside the spectra, which are from {min(ends):.6g} to {max(ends):.6g} rad/s")
+    inner = np.concatenate([given, ends, np.geomspace(low, high, max(2, int(8 * np.log2(high / low))))])
+    grid = np.unique(inner[(inner >= low) & (inner <= high)])
+
+    def density(w: Array) -> Array:
+        return np.sum([item.density(w)[:, None] * unit for item, unit in zip(spectra, axes, strict=True)], axis=0)
+
+    return density, grid, spectra[0].quantity, None
+
+
+def _band(omega: ArrayLike | None) -> Array:
+    if omega is None:
+        raise ArgumentError("omega is missing; numbers or a function for the psd need the frequencies of the band")
     grid = frequencies(omega)
     if grid.size < 2 or grid[0] == 0 or (np.diff(grid) <= 0).any():
         raise ArgumentError("omega must hold at least two frequencies, above zero and ascending: they bound the band")
@@ -266,11 +315,11 @@ class _Panels:
         return np.maximum.accumulate(np.concatenate([bounded.reshape(-1, 6), whole[-1:]]))
 
 
-def _spectrum(psd: Spectrum, grid: Array, axis: str | None) -> Callable[[Array], Complex]:
+def _spectrum(psd: Density, grid: Array, axis: str | None) -> Callable[[Array], Complex]:
     """The base's spectrum as a checked function of frequency that gives (n, 6) or (n, 6, 6)."""
     if callable(psd):
         return lambda omega: _checked(psd(omega), omega, axis)
-    table = _checked(psd, grid, axis)
+    table = _checked(np.asarray(psd), grid, axis)
     if table.ndim == 3:
         return lambda omega: _linear(grid, table, omega)
     return lambda omega: _power_law(grid, table, omega)

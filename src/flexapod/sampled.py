@@ -168,10 +168,11 @@ class _Bench:
             base=self.rest.get("base"),
             start="carried",
         )
-        ready = prepare(run, self.samples * self.dt)
+        joint = self.rest.get("joint", "universal")
+        ready = prepare(run, self.samples * self.dt, joint)
         *rows, outcome = _core.control_loop(
             self.hexapod.packed,
-            is_universal(self.rest.get("joint", "universal")),
+            is_universal(joint),
             ready.setup,
             ready.excitations[0],
             [*_wide(law), limit],

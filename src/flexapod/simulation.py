@@ -131,7 +131,7 @@ def simulate_many(runs: Sequence[Run], duration: float | None = None, **settings
     found = integrate(runs, times, joint=joint, method=method, works=energies, progress=options.get("progress"))
     wanted = _Wanted(joint, energies, options.get("reactions", False))
     each = [_dataset(run, found, i, times, wanted) for i, run in enumerate(runs)]
-    dataset = xr.concat([part.reindex(time=times) for part in each], dim="run", combine_attrs="drop")
+    dataset = xr.concat([part.reindex(time=times) for part in each], dim="run", combine_attrs="drop_conflicts")
     names = sorted({run.hexapod.name for run in runs})
     dataset.attrs = {
         "design": ", ".join(names),
@@ -203,7 +203,7 @@ def _dataset(run: Run, found: Trajectories, i: int, times: Array, wanted: _Wante
     command = Excitation() if run.leg_command is None else run.leg_command
     unstretched = found.unstretched_length[i] + command.evaluate(times)[0]
     length = leg_rates(run.hexapod, platform, base).length
-    force = run.hexapod.legs.stiffness * (unstretched - length)
+    force = found.leg_force[i, :reached]
     three, turned = ("time", "axis"), ("time", "axis", "body_axis")
     variables: dict[str, tuple[tuple[str, ...], Any, dict[str, str]]] = {
         "displacement": (("time", "output"), found.displacement[i, :reached], {"units": "m, rad"}),

@@ -76,7 +76,7 @@ def flat_spectrum(rms: float, omega_min: float, omega_max: float, quantity: Quan
 
 
 def vc_curve(name: str) -> Spectrum:
-    """A floor that just meets a vibration criterion, VC-A to VC-G: RMS velocity in every one-third octave band.
+    """A floor that just meets a vibration criterion, VC-A to VC-G: RMS velocity (m/s) in every one-third octave band.
 
     VC-A and VC-B: constant acceleration from 4 Hz, constant velocity from 8 to 80 Hz; the others: constant velocity
     from 1 to 80 Hz (C. G. Gordon, Generic criteria for vibration-sensitive equipment, Proc. SPIE 1619, 1991; IEST-RP
@@ -137,7 +137,8 @@ def sea_spectrum(height: float, period: float, gamma: float = 1.0) -> Spectrum:
 def random_motion(channel: str, spectrum: Spectrum, *, seed: int, lines: int = 400) -> Excitation:
     """A sum of `lines` sinusoids with random phases that has a spectrum (of displacement, velocity or acceleration).
 
-    One frequency is drawn in each of `lines` bands of equal width, so that the motion does not repeat.
+    The channel moves in m or rad. One frequency is drawn in each of `lines` bands of equal width, so that the motion
+    does not repeat.
     """
     omega, amplitude, phase = _lines(spectrum, seed, lines)
     return harmonic(channel, amplitude, omega, phase)

@@ -7,11 +7,13 @@ from typing import Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.errors import PoseError
+from flexapod import _core
+from flexapod.errors import DesignError, PoseError
 from flexapod.hexapod import Hexapod
 from flexapod.pose import Array, Motion, Pose, vectors
 
 JointModel = Literal["universal", "spin_free"]
+LEAST_SINE = 1e-7  # of the angle between a leg and its universal joint's axis
 ZERO = (0.0, 0.0, 0.0)
 NO_LEGS = (0.0,) * 6
 
@@ -25,7 +27,9 @@ class States(NamedTuple):
 
 
 def states(hexapod: Hexapod, platform: Pose | Motion, base: Pose | Motion | None = None) -> States:
-    """Rows for the core. A single pose that no leg can take raises PoseError; in a batch it gives NaN."""
+    """Rows for the core. A single pose that no leg can take raises PoseError; in a batch its row is NaN."""
+    if not isinstance(hexapod, Hexapod):
+        raise DesignError(f"hexapod is {hexapod!r}; it must be a flexapod Hexapod, as flexapod.load returns it")
     motions = [_motion(platform, "platform"), _motion(Motion.fixed() if base is None else base, "base")]
     try:
         shape = np.broadcast_shapes(*(motion.shape for motion in motions))
@@ -34,8 +38,12 @@ def states(hexapod: Hexapod, platform: Pose | Motion, base: Pose | Motion | None
             f"platform has batch axes {motions[0].shape}, base {motions[1].shape}; they must be equal or 1"
         ) from None
     rows = [np.ascontiguousarray(np.broadcast_to(m.packed, (*shape, 24)).reshape(-1, 24)) for m in motions]
-    if not shape:
-        check_legs(hexapod, rows[0][0], rows[1][0])
+    length, sine = _core.leg_fit(hexapod.packed, *rows)
+    good = np.all((length >= _shortest(hexapod)) & (sine >= LEAST_SINE), axis=1, keepdims=True)
+    if not good.all():
+        if not shape:
+            _refuse(hexapod, length[0], sine[0])
+        rows[0] = np.where(good, rows[0], np.nan)
     return States(rows[0], rows[1], shape)
 
 
@@ -47,23 +55,22 @@ def _motion(value: Pose | Motion, name: str) -> Motion:
     raise PoseError(f"{name} is {type(value).__name__}; it must be a flexapod Pose or Motion")
 
 
-def check_legs(hexapod: Hexapod, platform: Array, base: Array) -> None:
-    """Raises PoseError where a leg has no length or lies along its universal joint's axis."""
-    R, R_b = platform[3:12].reshape(3, 3), base[3:12].reshape(3, 3)
-    b = hexapod.base_joints @ R_b.T
-    S = platform[:3] - base[:3] + hexapod.platform_joints @ R.T - b
-    length = np.linalg.norm(S, axis=1)
-    size = np.ptp(hexapod.base_joints, axis=0).max()
-    for i in np.flatnonzero(length < 1e-9 * size):
+def _shortest(hexapod: Hexapod) -> float:
+    """Below this length, m, a leg's direction is rounding."""
+    return float(1e-9 * np.ptp(hexapod.base_joints, axis=0).max())
+
+
+def _refuse(hexapod: Hexapod, length: Array, sine: Array) -> None:
+    """Raises PoseError for the first leg that has no length, or lies along its universal joint's axis."""
+    i = int(np.argmin((length >= _shortest(hexapod)) & (sine >= LEAST_SINE)))
+    if length[i] < _shortest(hexapod):
         raise PoseError(
             f"leg {i + 1} has length {length[i]:.3g} m at this pose; its joints must not meet. Move the platform."
         )
-    slant = np.linalg.norm(np.cross(hexapod.universal_axes @ R_b.T, S), axis=1) / length
-    for i in np.flatnonzero(slant < 1e-7):
-        raise PoseError(
-            f"base.universal_axes[{i}] is parallel to leg {i + 1} at this pose; a universal joint cannot turn there. "
-            "Choose an axis across the leg, or another pose."
-        )
+    raise PoseError(
+        f"base.universal_axes[{i}] is parallel to leg {i + 1} at this pose; a universal joint cannot turn there. "
+        "Choose an axis across the leg, or another pose."
+    )
 
 
 def check_pose_of_one(pose: Pose, name: str) -> None:

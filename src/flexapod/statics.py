@@ -12,7 +12,7 @@ from flexapod.errors import KinematicsError, SingularPoseError
 from flexapod.hexapod import Hexapod
 from flexapod.kinematics import forward_kinematics, inverse_kinematics
 from flexapod.pose import Array, Pose, orthonormal, vectors
-from flexapod.states import ZERO, states, wrench
+from flexapod.states import ZERO, JointModel, is_universal, states, wrench
 
 
 class Equilibrium(NamedTuple):
@@ -25,13 +25,20 @@ class Equilibrium(NamedTuple):
 
 
 def hold(
-    hexapod: Hexapod, pose: Pose, *, base: Pose | None = None, force: ArrayLike = ZERO, moment: ArrayLike = ZERO
+    hexapod: Hexapod,
+    pose: Pose,
+    *,
+    base: Pose | None = None,
+    force: ArrayLike = ZERO,
+    moment: ArrayLike = ZERO,
+    joint: JointModel = "universal",
 ) -> Equilibrium:
     """Leg forces and unstretched lengths that hold a pose at rest under gravity and a wrench (platform frame).
 
-    From F = -K (L - L0) (corrections E6). Raises SingularPoseError where no leg forces can.
+    From F = -K (L - L0) (corrections E6). joint: legs whose mass is off their axis weigh a little differently in the
+    paper's model "spin_free". Raises SingularPoseError where no leg forces hold the pose.
     """
-    leg_force = inverse_dynamics(hexapod, pose, base, force, moment)
+    leg_force = inverse_dynamics(hexapod, pose, base, force, moment, joint)
     length = inverse_kinematics(hexapod, pose, base)
     return Equilibrium(pose, leg_force, length, length + leg_force / hexapod.legs.stiffness)
 
@@ -44,19 +51,27 @@ def static_equilibrium(
     base: Pose | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
+    joint: JointModel = "universal",
 ) -> Equilibrium:
-    """Where the platform settles under gravity and a wrench (platform frame) for unstretched leg lengths (6,) m.
+    """Where the platform is at rest under gravity and a wrench (platform frame) for unstretched leg lengths (6,) m.
 
-    Newton's method with the exact tangent, from `start` or from the pose at which the legs have these lengths.
+    Newton's method with the exact tangent, from `start` or from the pose at which the legs have these lengths. The
+    equilibrium found may be unstable: poles of `linearise` with a positive real part tell.
     Raises KinematicsError where no equilibrium is found, SingularPoseError where the tangent becomes singular.
     """
     L_0 = vectors(unstretched_length, "unstretched_length", 6)
+    if L_0.shape != (6,):
+        raise KinematicsError(f"unstretched_length has shape {L_0.shape}; static_equilibrium takes one set of six")
+    if (L_0 <= 0).any():
+        raise KinematicsError(f"unstretched_length has {L_0.min():.6g} m; every leg length must be > 0 m")
     if start is None:
         start = forward_kinematics(hexapod, L_0)
         if base is not None:
             start = Pose(base.position + base.matrix @ start.position, base.matrix @ start.matrix)
     s = states(hexapod, start, base)
-    found, outcome = _core.settle(hexapod.packed, s.platform, s.base, wrench(force, moment, ()), L_0)
+    found, outcome = _core.settle(
+        hexapod.packed, is_universal(joint), s.platform, s.base, wrench(force, moment, ()), L_0
+    )
     pose = Pose(found[:3], orthonormal(found[3:].reshape(3, 3)))
     if outcome == "singular":
         raise SingularPoseError(

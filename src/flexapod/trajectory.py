@@ -57,6 +57,14 @@ class Run:
     base: Pose | None = None
     unstretched_length: ArrayLike | None = None
 
+    def __post_init__(self) -> None:
+        for name in ("pose", "base"):
+            value = getattr(self, name)
+            if not (isinstance(value, Pose) or (name == "base" and value is None)):
+                raise PoseError(f"{name} is {value!r}; a simulation takes a Pose")
+            if value is not None and value.shape:
+                raise PoseError(f"{name} has batch axes {value.shape}; a simulation takes one pose. Index it first.")
+
     def histories(self) -> dict[str, Excitation]:
         """What drives the machine in time, by name."""
         uses = {
@@ -73,18 +81,19 @@ class Trajectories(NamedTuple):
 
     displacement: (n, m, 6) of the platform from its equilibrium pose, inertial axes, translation (m) and rotation
     vector (rad), with full relative precision however small. relative: the same seen from the base, in its axes: zero
-    where the platform rides with the base rigidly. platform, base: (n, m, 24) motions as `Motion.packed`
-    (m = 0 unless asked for). work: (n, m, 4) done by base, external wrench, leg commands and friction since t = 0, J
-    (zero unless asked for). status: (n,) of OUTCOMES. end_time: (n,) s. last: (n, 24), the platform's motion then.
-    steps: (n, 3) accepted, rejected, evaluations of the equations of motion. unstretched_length: (n, 6) m, without
-    commands.
+    where the platform rides with the base rigidly. work: (n, m, 4) done by base, external wrench, leg commands and
+    friction since t = 0, J (zero unless asked for). platform, base: (n, m, 24) motions as `Motion.packed`, and
+    leg_force: (n, m, 6) N (m = 0 unless asked for). status: (n,) of OUTCOMES. end_time: (n,) s. last: (n, 24), the
+    platform's motion then. steps: (n, 3) accepted, rejected, evaluations of the equations of motion.
+    unstretched_length: (n, 6) m, without commands.
     """
 
     displacement: Array
     relative: Array
+    work: Array
     platform: Array
     base: Array
-    work: Array
+    leg_force: Array
     status: np.ndarray
     end_time: Array
     last: Array
@@ -136,7 +145,7 @@ def integrate(
     if not runs:
         raise ArgumentError("there is nothing to simulate: `runs` is empty.")
     t = _times(times, len(runs))
-    prepared = [prepare(run, until) for run, until in zip(runs, t[:, -1], strict=True)]
+    prepared = [prepare(run, until, joint) for run, until in zip(runs, t[:, -1], strict=True)]
     options = [
         method.rtol,
         method.atol or 0.0,
@@ -156,27 +165,38 @@ def integrate(
         np.array(options, dtype=float),
         progress,
     )
-    displacement, relative, platform, base, work, outcome, end_time, last, counts = found
+    displacement, relative, work, platform, base, leg_force, outcome, end_time, last, counts = found
     status = np.array(OUTCOMES)[outcome.astype(int)]
     lengths = np.stack([p.unstretched_length for p in prepared])
     return Trajectories(
-        displacement, relative, platform, base, work, status, end_time, last, counts.astype(int), lengths
+        displacement, relative, work, platform, base, leg_force, status, end_time, last, counts.astype(int), lengths
     )
 
 
+def equations(run: Run, *, joint: JointModel = "universal") -> _core.Equations:
+    """Eq. 35 of a run for other integrators and controllers: `start()` gives y, `rates(t, y)` its derivative.
+
+    y: (12,) the platform as seen from the base, in its axes: translation from rest (m), rotation vector from rest (rad,
+    below a full turn), velocity, angular velocity.
+    """
+    p = prepare(run, 0.0, joint)
+    return _core.Equations(run.hexapod.packed, is_universal(joint), p.setup, p.excitations)
+
+
 class Prepared(NamedTuple):
+    """One run as the core takes it."""
+
     setup: Array
     excitations: list[Array]
     unstretched_length: Array
 
 
-def prepare(run: Run, until: float) -> Prepared:
-    if run.pose.shape or (run.base is not None and run.base.shape):
-        raise PoseError("a simulation takes one pose and one base; one has batch axes. Index it first.")
+def prepare(run: Run, until: float, joint: JointModel) -> Prepared:
+    """One run to the time `until`, s, as the core takes it."""
     force, force_history = _split(run.force, "force")
     moment, moment_history = _split(run.moment, "moment")
     if run.unstretched_length is None:
-        rest = hold(run.hexapod, run.pose, base=run.base, force=force, moment=moment)
+        rest = hold(run.hexapod, run.pose, base=run.base, force=force, moment=moment, joint=joint)
         leg_force, lengths = rest.leg_force, rest.unstretched_length
     else:
         lengths = vectors(run.unstretched_length, "unstretched_length", 6)

@@ -10,7 +10,22 @@ import click
 
 from flexapod.errors import FlexapodError
 
-COMMANDS = ("check", "control", "designs", "modes", "new", "optimise", "paper", "path", "report", "robust", "sweep")
+COMMANDS = (
+    "animate",
+    "check",
+    "control",
+    "designs",
+    "modes",
+    "new",
+    "optimise",
+    "paper",
+    "path",
+    "report",
+    "response",
+    "robust",
+    "simulate",
+    "sweep",
+)
 
 
 class _Lazy(click.Group):

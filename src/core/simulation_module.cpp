@@ -1,5 +1,5 @@
 // Simulations as Python sees them: many at once on all threads, stopped by an interrupt.
-#include "bind_simulation.hpp"
+#include "simulation_module.hpp"
 
 #include <nanobind/stl/vector.h>
 
@@ -111,8 +111,8 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
   std::vector<Excitation> driven;
   for (const Input& e : excitations) driven.emplace_back(e.data(), e.size());
   Output displacement = nan_filled({n, m, 6}), relative = nan_filled({n, m, 6}), work = nan_filled({n, m, 4}), platform = nan_filled({n, kept, 24}),
-         base = nan_filled({n, kept, 24}), outcome({n}), time({n}), last({n, 24}), counts({n, 3});
-  double *x = displacement.data(), *u = relative.data(), *p = platform.data(), *b = base.data(), *W = work.data(), *how = outcome.data();
+         base = nan_filled({n, kept, 24}), leg_force = nan_filled({n, kept, 6}), outcome({n}), time({n}), last({n, 24}), counts({n, 3});
+  double *x = displacement.data(), *u = relative.data(), *p = platform.data(), *b = base.data(), *W = work.data(), *F = leg_force.data(), *how = outcome.data();
   double *ended = time.data(), *c = counts.data();
   auto* final_motion = reinterpret_cast<Motion<double>*>(last.data());
   std::vector<std::atomic<double>> done(n);
@@ -120,8 +120,9 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
   crew.run(n, static_cast<size_t>(o[7]), progress, done, [&](size_t i) {
     Simulation simulation(rig_input(design + i * design_size, universal, setup[i], works), driven[3 * i],
                           driven[3 * i + 1], driven[3 * i + 2], tolerances);
-    const Samples samples{times.data() + i * m, m, x + i * m * 6, u + i * m * 6, kept ? p + i * m * 24 : nullptr,
-                          kept ? b + i * m * 24 : nullptr, W + i * m * 4};
+    const auto part = [&](double* rows, size_t width) { return kept ? rows + i * m * width : nullptr; };
+    const Samples samples{times.data() + i * m, m, x + i * m * 6, u + i * m * 6, W + i * m * 4,
+                          part(p, 24),          part(b, 24),     part(F, 6)};
     how[i] = static_cast<double>(simulation.run(samples, crew.stop, done[i]));
     done[i] = 1.0;
     ended[i] = simulation.time();
@@ -129,7 +130,8 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
     const Counts& count = simulation.counts();
     c[3 * i] = count.accepted, c[3 * i + 1] = count.rejected, c[3 * i + 2] = count.evaluations;
   });
-  return nb::make_tuple(displacement.array(), relative.array(), platform.array(), base.array(), work.array(), outcome.array(),
+  return nb::make_tuple(displacement.array(), relative.array(), work.array(), platform.array(), base.array(),
+                        leg_force.array(), outcome.array(),
                         time.array(), last.array(), counts.array());
 }
 
@@ -165,6 +167,39 @@ nb::tuple control_loop(const Input& design, bool universal, const Input& setup, 
   });
   return nb::make_tuple(measured.array(), displacement.array(), force.array(), cut.array(), outcome.array());
 }
+/// The equations of one simulation for other integrators: y' = rates(t, y) from y = start().
+class Equations {
+ public:
+  Equations(const Input& design, bool universal, const Input& setup, const std::vector<Input>& excitations) {
+    const auto* s = reinterpret_cast<const Setup*>(rows(setup, 1, setup_size, "setup"));
+    const RigInput input = rig_input(rows(design, 1, design_size, "design"), universal, *s, false);
+    for (const Input& e : excitations) numbers_.emplace_back(e.data(), e.data() + e.size());
+    const auto part = [&](size_t i) { return Excitation(numbers_.at(i).data(), numbers_.at(i).size()); };
+    rig_ = std::make_unique<Rig>(input, part(0), part(1), part(2));
+  }
+  nb::object start() {
+    const Rig::State y = rig_->start();
+    return array(y);
+  }
+  nb::object rates(double t, const Input& given) {
+    const double* numbers = rows(given, 1, Rig::mechanical, "y");
+    Rig::State y{}, rate;
+    std::copy_n(numbers, Rig::mechanical, y.begin());
+    rig_->inside = t;
+    rig_->rates(t, y, rate, false);
+    return array(rate);
+  }
+
+ private:
+  static nb::object array(const Rig::State& y) {
+    Output out({Rig::mechanical});
+    std::copy_n(y.begin(), Rig::mechanical, out.data());
+    return nb::cast(out.array());
+  }
+
+  std::vector<std::vector<double>> numbers_;  // what the excitations point to
+  std::unique_ptr<Rig> rig_;
+};
 
 /// Six channels with their first and second derivatives, (n, 3, 6).
 nb::object excitation(const Input& terms, const Input& times) {
@@ -203,6 +238,10 @@ void bind_simulation(nb::module_& m) {
   m.def("simulate", &simulate, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none());
   m.def("control_loop", &control_loop, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(),
         nb::arg().none());
+  nb::class_<Equations>(m, "Equations")
+      .def(nb::init<const Input&, bool, const Input&, const std::vector<Input>&>())
+      .def("start", &Equations::start)
+      .def("rates", &Equations::rates);
   m.def("excitation", &excitation);
   m.def("base_motion", &base_motion);
 }

@@ -85,10 +85,13 @@ class _Modes:
         spring = linear.H * linear.leg_stiffness  # wrench of unit stretches
         self.loss = left @ (spring * eta) @ linear.H.T @ self.shape
         self.friction = left @ linear.C @ self.shape
-        # Rigid motion with the base meets no spring and no friction, and a turned base turns gravity: K carry + K_b is
-        # known without the cancellation, which would drown slow motion.
+        # Rigid motion with the base meets no spring, and a turned base turns gravity: K carry + K_b is known without
+        # the cancellation, which would drown slow motion. It meets no friction either, but in the model "spin_free".
         lifted = (linear.M + linear.M_b)[:, :3]
         self.tilt = left @ np.hstack([np.zeros((6, 3)), np.cross(linear.gravity, lifted)])
+        rubbed = linear.C @ linear.carry + linear.C_b
+        rounding = 1e-14 * np.abs(linear.C).max() * np.abs(linear.carry).max()
+        self.rubbed = left @ np.where(np.abs(rubbed) > rounding, rubbed, 0.0)
         self.inertia = left @ (linear.M @ linear.carry + linear.M_b)
         self.given = np.hstack([left, left @ (spring * (1 + 1j * eta))])
 
@@ -100,7 +103,7 @@ class _Modes:
         Z = self.skew + 1j * self.loss + 1j * w * self.friction
         Z[:, range(6), range(6)] += detuning
         given = np.broadcast_to(self.given, (omega.size, 6, 12))
-        right = np.concatenate([w**2 * self.inertia - self.tilt, given], axis=2)
+        right = np.concatenate([w**2 * self.inertia - 1j * w * self.rubbed - self.tilt, given], axis=2)
         return self.shape @ _solve(Z, right)
 
 

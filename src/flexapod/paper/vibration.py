@@ -1,0 +1,188 @@
+"""Figures 7-9: the complete machine on a shaking base, in time and by frequency, beside its tangent.
+
+The paper prints manipulator II's pose, the base's amplitude and two frequencies, of which its data do not give the
+first (corrections E8 and D): the machine's own third natural frequency takes its place. It prints no span of time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from flexapod import plots_response
+from flexapod.excitation import harmonic
+from flexapod.hexapod import load
+from flexapod.linear import AXES, Linearisation, linearise
+from flexapod.modal import natural_modes
+from flexapod.paper import PaperFigure, Settings
+from flexapod.pose import Array, Pose
+from flexapod.response import transmissibility
+from flexapod.states import JointModel
+from flexapod.steady import complex_poles, steady_response
+from flexapod.stepped import stepped_sine
+from flexapod.trajectory import Method, Run, integrate
+
+DESIGN, POSE = "mukherjee-ii", (0.0, 0.0, 0.085)
+AMPLITUDE = 1e-6  # m, along z
+PRINTED, AWAY = 749.715, 550.136  # rad/s
+DURATION = 1.0  # s
+YAW = AXES.index("yaw")
+
+
+def draw(number: int, settings: Settings) -> PaperFigure:
+    """One of Figures 7-9, with what the paper shows, what is the same and what differs."""
+    return {7: _at_resonance, 8: _away, 9: _ratio}[number](settings)
+
+
+def _at_resonance(settings: Settings) -> PaperFigure:
+    omega = float(natural_modes(load(DESIGN), Pose(POSE), settings.joint).omega[2])
+    shaken = _shake(omega, settings.joint)
+    early, late = _largest(shaken, 0.0, 0.1), _largest(shaken, 0.9, 1.0)
+    numbers = {
+        "omega_rad_s": omega,
+        "omega_printed_rad_s": PRINTED,
+        "growth_of_yaw": late[YAW] / early[YAW],
+        "apart_from_tangent": shaken.apart,
+    }
+    caption = (
+        f"Fig. 7: base moved along z, 1 um at {omega:.3f} rad/s, the third mode, second distinct resonance. Paper: at "
+        f"its second natural frequency ({PRINTED:g} 'Hz', meant in rad/s) the oscillation grows. Same here: rotation "
+        f"about z, the third mode's motion, is {late[YAW] / early[YAW]:.1f} times larger in the last tenth of "
+        f"{DURATION:g} s than in the first, in step with the tangent's bound. Different: the frequency, "
+        f"{omega / PRINTED - 1:+.1%} for the data as printed."
+    )
+    title = f"Fig. 7: base z, 1 µm at the third mode, {omega:.3f} rad/s (paper: {PRINTED:g})"
+    return _in_time(7, shaken, title, caption, numbers)
+
+
+def _away(settings: Settings) -> PaperFigure:
+    shaken = _shake(AWAY, settings.joint)
+    ratio = _largest(shaken, 0.5, 1.0) / _largest(shaken, 0.0, 0.5)
+    numbers = {"omega_rad_s": AWAY, "second_half_over_first": ratio, "apart_from_tangent": shaken.apart}
+    caption = (
+        f"Fig. 8: base moved along z, 1 um at {AWAY:g} rad/s. Paper: away from the natural frequencies the response is "
+        "of another nature. Same here: it is bounded, forced and free vibration beat, and the largest displacement of "
+        f"the second half is {ratio.max():.2f} times that of the first half at most. Different: nothing that can be "
+        "told, as the paper's span of time is not printed."
+    )
+    return _in_time(8, shaken, f"Fig. 8: base z, 1 µm at {AWAY:g} rad/s, away from every mode", caption, numbers)
+
+
+def _ratio(settings: Settings) -> PaperFigure:
+    hexapod, pose, joint = load(DESIGN), Pose(POSE), settings.joint
+    resonances = complex_poles(linearise(hexapod, pose, joint=joint)).imag[:3]
+    near = resonances[:, None] * (1 + np.array([-4, -2, -1, -0.5, -0.2, 0.2, 0.5, 1, 2, 4]) * 1e-3)
+    omega = np.sort(np.concatenate([np.linspace(50.0, 800.0, 170), near.ravel()]))
+    stepped = stepped_sine(hexapod, pose, omega, AMPLITUDE, "z", joint=joint)
+    fine = np.union1d(omega, np.concatenate([np.linspace(50, 800, 4000), resonances]))
+    line = transmissibility(hexapod, pose, fine, joint=joint).absolute.sel(base="z")
+    figure = plots_response.stepped_ratio(stepped, resonances, line)
+    figure.suptitle(
+        "Fig. 9: ratio of response to base amplitude, base z, 1 µm; dotted: the tangent's modes", fontsize=12
+    )
+    apart = float(np.nanmedian(np.abs(stepped.response - stepped.linear) / np.abs(stepped.linear)))
+    peaks = _peaks(omega, stepped.ratio.values)
+    elsewhere = [w for w in peaks if np.abs(w / resonances - 1).min() > 1e-3]
+    numbers = {
+        "frequencies": omega.size,
+        "found": int((stepped.status == "found").sum()),
+        "resonances_rad_s": resonances,
+        "peaks_rad_s": peaks,
+        "peaks_elsewhere": len(elsewhere),
+        "median_apart_from_tangent": apart,
+    }
+    caption = (
+        f"Fig. 9: ratio of response to base amplitude at {omega.size} frequencies, base moved along z, 1 um. Paper: up "
+        "to a little above the second natural frequency, it peaks at the linear model's. Same here: it peaks at "
+        f"{_words(peaks)} rad/s, {len(elsewhere) or 'none'} of them more than 0.1 % away from the tangent's "
+        f"{_words(resonances)} rad/s, of which the first two count as one resonance; the non-linear ratios lie on the "
+        f"tangent's curve, {apart:.1g} apart in the median. Different: the second frequency, "
+        f"{resonances[2] / PRINTED - 1:+.1%}."
+    )
+    table = stepped.ratio.to_pandas()
+    table.insert(0, "status", stepped.status.values)
+    return PaperFigure(9, figure, caption, numbers, table.rename_axis("omega_rad_s"))
+
+
+def _words(frequencies: Iterable[float]) -> str:
+    return ", ".join(f"{omega:.2f}" for omega in frequencies)
+
+
+def _peaks(omega: Array, ratio: Array) -> list[float]:
+    """Frequencies at which the ratio (n, 6) of any output stands out of its neighbours by more than a tenth."""
+    inner = ratio[1:-1]
+    peak = (inner > 1.1 * ratio[:-2]) & (inner > 1.1 * ratio[2:])
+    return [float(w) for w in omega[1:-1][peak.any(axis=1)]]
+
+
+class _Shaken(NamedTuple):
+    times: Array
+    displacement: Array  # (m, 6)
+    bound: Array  # (m, 6)
+    apart: float  # from the tangent's solution, relative to the largest displacement, worst output
+
+
+def _shake(omega: float, joint: JointModel) -> _Shaken:
+    hexapod, pose = load(DESIGN), Pose(POSE)
+    times = np.linspace(0.0, DURATION, 12001)
+    run = Run(hexapod, pose, base_motion=harmonic("z", AMPLITUDE, omega))
+    path = integrate([run], times, joint=joint, method=Method(rtol=1e-10), motions=False)
+    found = path.displacement[0]
+    tangent = _FromRest(linearise(hexapod, pose, joint=joint), omega)
+    apart = np.abs(found - tangent.displacement(times)).max(axis=0) / np.abs(found).max(axis=0)
+    return _Shaken(times, found, tangent.bound(times), float(apart.max()))
+
+
+class _FromRest:
+    """The tangent's motion from rest while the base moves by AMPLITUDE sin(omega t) along z, in its twelve modes.
+
+    Relative to the base, a mode's amplitude is f (e^{i omega t} - e^{pt}) + g (e^{-i omega t} - e^{pt}) + y_0 e^{pt}:
+    forced vibration, the free vibration that it sets off, and that of a platform left behind by the starting base.
+    """
+
+    def __init__(self, linear: Linearisation, omega: float) -> None:
+        self.omega, self.carry = omega, AMPLITUDE * linear.carry[:, 2]
+        M_inv = np.linalg.inv(linear.M)
+        A = np.block([[np.zeros((6, 6)), np.eye(6)], [-M_inv @ linear.K, -M_inv @ linear.C]])
+        self.pole, vectors = np.linalg.eig(A)
+        self.shape = vectors[:6]
+        steady = AMPLITUDE * steady_response(linear, np.array([omega])).relative[0, :, 2]
+        state = np.concatenate([steady, 1j * omega * steady])  # motion Im(state e^{i omega t})
+        left_behind = np.concatenate([np.zeros(6), -omega * self.carry])
+        self.f, self.g, self.y_0 = np.linalg.solve(
+            vectors, np.stack([state / 2j, -state.conj() / 2j, left_behind], 1)
+        ).T
+
+    def displacement(self, times: Array) -> Array:
+        """(m, 6) m, rad: absolute motion."""
+        turning, free = np.exp(1j * self.omega * times)[:, None], np.exp(np.outer(times, self.pole))
+        modes = self.f * (turning - free) + self.g * (turning.conj() - free) + self.y_0 * free
+        return (modes @ self.shape.T).real + np.sin(self.omega * times)[:, None] * self.carry
+
+    def bound(self, times: Array) -> Array:
+        """(m, 6): what the motion cannot exceed: the sum of all parts' sizes, of which the nearest mode's may beat."""
+        decay = np.exp(np.outer(times, self.pole.real))
+        slow = np.exp(1j * np.outer(times, self.omega - np.abs(self.pole.imag)))
+        nearest = np.abs(np.abs(self.pole.imag) - self.omega)
+        beat = np.where(nearest <= 1.000001 * nearest.min(), np.abs(slow - decay), 1 + decay)
+        ahead = self.pole.imag > 0
+        met, opposed = np.where(ahead, (np.abs(self.f), np.abs(self.g)), (np.abs(self.g), np.abs(self.f)))
+        size = met * beat + opposed * (1 + decay) + np.abs(self.y_0) * decay
+        return size @ np.abs(self.shape).T + np.abs(self.carry)
+
+
+def _largest(shaken: _Shaken, first: float, last: float) -> Array:
+    """(6,): largest displacement between two fractions of the time."""
+    n = len(shaken.times)
+    return np.abs(shaken.displacement[int(first * n) : int(last * n)]).max(axis=0)
+
+
+def _in_time(number: int, shaken: _Shaken, title: str, caption: str, numbers: dict[str, Any]) -> PaperFigure:
+    figure = plots_response.displacements(shaken.times, shaken.displacement, shaken.bound, "bound by the tangent")
+    figure.suptitle(title, fontsize=12)
+    columns = [f"{axis}_{'rad' if i > 2 else 'm'}" for i, axis in enumerate(AXES)]
+    table = pd.DataFrame(shaken.displacement, index=pd.Index(shaken.times, name="time_s"), columns=columns)
+    return PaperFigure(number, figure, caption, numbers, table)
