@@ -150,6 +150,8 @@ def test_constraint_slopes_against_differences_and_values_against_the_sweep(kind
         np.testing.assert_allclose(found.value, length[1] - length[0], rtol=1e-11)
         return
     expected = kind.columns(swept, own).ravel()
+    if isinstance(kind, kinds.LegDistance):
+        found = found._replace(value=found.value.reshape(5, 15).min(axis=1))
     # Angles near zero come from a cosine; smooth extremes lie up to log(6)/1000 above on each side.
     np.testing.assert_allclose(found.value, expected, rtol=4e-3 if kind.log else 1e-8)
 

@@ -46,7 +46,7 @@ struct Field {
 };
 
 /// Values and derivatives along m directions at n poses, of what `what` asks for (bits: 1 frequencies, 2 H, 4 legs).
-///     "omega" (n, 6) and "rayleigh" (n, 6, 6, m); "H" (n, 36); "leg_length" (n, 6), "leg_distance" (n, 1) and
+///     "omega" (n, 6) and "rayleigh" (n, 6, 6, m); "H" (n, 36); "leg_length" (n, 6), "leg_distance" (n, 15 pairs) and
 ///     "joint_cosine" (n, 12: universal, spherical), each as (value, derivative along the directions).
 /// directions: (m, 211). displacements: (n, m, 6), of the poses along each direction. home: one motion, or empty, and
 /// its displacements (m, 6).
@@ -63,7 +63,7 @@ nb::dict design_gradients(const Input& design, bool universal, const Input& plat
   const bool frequencies = what & 1, forces = what & 2, legs = what & 4;
 
   Output omega({n, 6}), rayleigh({n, 6, 6, m});
-  Field H(n, 36, m), length(n, 6, m), distance(n, 1, m), cosine(n, 12, m);
+  Field H(n, 36, m), length(n, 6, m), distance(n, 15, m), cosine(n, 12, m);
   std::vector<Modes> modes(frequencies ? n : 0);
   double* w = omega.data();
   for (size_t i = 0; i < modes.size(); ++i) {
@@ -94,7 +94,10 @@ nb::dict design_gradients(const Input& design, bool universal, const Input& plat
       }
       if (legs) {
         for (size_t a = 0; a < 6; ++a) length.put(i, a, norm(g.S[a]), first, count);
-        distance.put(i, 0, least_leg_distance(g), first, count);
+        size_t pair = 0;
+        for (size_t a = 0; a < 5; ++a)
+          for (size_t b = a + 1; b < 6; ++b)
+            distance.put(i, pair++, segment_distance(g.q_b[a], g.S[a], g.q_b[b], g.S[b]), first, count);
         Seed angles[2][6];
         joint_cosines(seeded, pose, home_pose == nullptr ? nullptr : &home_moved, angles);
         for (size_t a = 0; a < 12; ++a) cosine.put(i, a, angles[a / 6][a % 6], first, count);

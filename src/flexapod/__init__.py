@@ -98,7 +98,7 @@ _HOMES = {
     "sweeps.cluster": ["cluster"],
     "optimal.variables": ["JointCircle", "Variable"],
     "optimal.places": ["Workspace"],
-    "optimal.objectives": ["LeastIndex", "MeanIndex"],
+    "optimal.objectives": ["Dexterity", "LeastIndex", "MeanIndex"],
     "optimal.constraints": [
         "ConditionNumber",
         "Deflection",

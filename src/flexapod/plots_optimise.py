@@ -37,7 +37,8 @@ def search(found: OptimalDesign) -> Figure:
     ax.axhline(found.start_index, color=ORANGE, lw=1.4, ls=(0, (5, 2)), label=f"design begun with: {found.start_index:.5g}")
     if not trial.size:
         ax.set_xticks([])
-    ax.set(xlabel="trial", ylabel=f"least {INDEX}" if found.verification.pose is not None else INDEX)
+    told = found.history["index"].attrs
+    ax.set(xlabel="trial", ylabel=told["label"] + (f", {told['units']}" if told["units"] else ""))
     ax.set_ylim(bottom=0, top=1.08 * max(found.index, found.start_index))
     figure.legend(loc="outside lower center", ncols=3, fontsize=9, frameon=False)
     figure.suptitle(f"{found.start.name}: search", color=INK, fontsize=11)

@@ -85,7 +85,7 @@ def assess_anew(problem: Problem, x: Array, points: int, seed: int) -> Assessmen
 
 def least_index(problem: Problem, hexapod: Hexapod, index: float, points: int, seed: int) -> float:
     """The index, lowered to what a descent from the worst poses of a sweep finds."""
-    box = problem.objective.over.box(numbers(hexapod)[HOME])
+    box = problem.box(hexapod)
     if box is None:
         return index
     worst = worst_pose(hexapod, box, problem.joint, points=points, starts=6, seed=seed, threads=problem.threads)
@@ -103,15 +103,15 @@ def _hold(problem: Problem, x: Array, held: list[_Held], points: int, seed: int)
         rows, found = problem.sweep(hexapod, group, points, seed)
         origin = own[HOME] if over.from_home else np.zeros(6)
         if group == 0:
-            chosen = rows[problem.objective.held(np.nan_to_num(found["omega_1"]))]
-            box = over.box(own[HOME])
+            chosen = rows[problem.objective.held(np.nan_to_num(found[problem.objective.quantity]))]
+            box = problem.box(hexapod)
             if box is not None:
                 try:
                     worst = worst_pose(hexapod, box, problem.joint, points=points, starts=6, seed=seed, threads=1)
                     chosen = np.concatenate([[pose for _, pose in worst.minima], chosen])
                 except PoseError:
                     pass  # the sweep's own worst poses are held
-            if box is not None or not held:
+            if over.box(own[HOME]) is not None or not held:
                 _add(held, None, over.from_home, chosen - origin)
         for requirement in requirements:
             worst_rows = requirement.kind.held(found, own, requirement.side)

@@ -1,4 +1,5 @@
-"""What a search raises: the lowest natural frequency at a pose, its least over a workspace, its mean over a path."""
+"""What a search raises: the lowest natural frequency at a pose, its least over a workspace, its mean over a path; or,
+for comparison, how well conditioned the force transformation is."""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.errors import ArgumentError
+from flexapod.optimal.kinds import Conditioning
 from flexapod.optimal.places import Places, PoseList, places
 from flexapod.optimal.slopes import Slopes, index_slopes
 from flexapod.pose import Array, Pose
@@ -17,15 +19,18 @@ _HELD = 16  # lowest poses of a sweep that the finish holds up
 
 
 class Objective(Protocol):
-    """An index made of the lowest frequencies at some places, rad/s."""
+    """A number to raise, made of a quantity of the sweep at some places. unit, label: as figures show it."""
 
     over: Places
+    quantity: str
+    unit: str
+    label: str
 
-    def index(self, omega_1: Array) -> float:
-        """From the lowest frequency at every pose swept."""
+    def index(self, found: Array) -> float:
+        """From the quantity at every pose swept; 0 where a pose has none."""
         ...
 
-    def held(self, omega_1: Array) -> Array:
+    def held(self, found: Array) -> Array:
         """Numbers of the poses that decide it."""
         ...
 
@@ -36,17 +41,23 @@ class Objective(Protocol):
     def describe(self) -> dict[str, Any]: ...
 
 
-class LeastIndex:
+class _Index:
+    quantity = "omega_1"
+    unit = "rad/s"
+    label = "index"
+
+
+class LeastIndex(_Index):
     """The least stability index over a workspace, a box, or poses; at one pose, the index there. None: at home."""
 
     def __init__(self, over: Places | Box | Pose | ArrayLike | None = None) -> None:
         self.over = places(over)
 
-    def index(self, omega_1: Array) -> float:
-        return float(omega_1.min()) if np.isfinite(omega_1).all() else 0.0
+    def index(self, found: Array) -> float:
+        return float(found.min()) if np.isfinite(found).all() else 0.0
 
-    def held(self, omega_1: Array) -> Array:
-        return np.argsort(omega_1)[:_HELD]
+    def held(self, found: Array) -> Array:
+        return np.argsort(found)[:_HELD]
 
     def slopes(self, at: Slopes, sharpness: float) -> tuple[Array, Array]:
         return index_slopes(at, sharpness)
@@ -58,7 +69,7 @@ class LeastIndex:
         return f"least index over {self.over!r}"
 
 
-class MeanIndex:
+class MeanIndex(_Index):
     """The weighted mean of the stability index over the poses of a path. weights: one a pose, >= 0; default equal."""
 
     def __init__(self, poses: Pose | ArrayLike, weights: ArrayLike | None = None) -> None:
@@ -74,11 +85,11 @@ class MeanIndex:
             )
         self.weights: Array = given / given.sum()
 
-    def index(self, omega_1: Array) -> float:
-        return float(self.weights @ omega_1) if np.isfinite(omega_1).all() else 0.0
+    def index(self, found: Array) -> float:
+        return float(self.weights @ found) if np.isfinite(found).all() else 0.0
 
-    def held(self, omega_1: Array) -> Array:
-        return np.arange(len(omega_1))
+    def held(self, found: Array) -> Array:
+        return np.arange(len(found))
 
     def slopes(self, at: Slopes, sharpness: float) -> tuple[Array, Array]:
         logarithm, slope = index_slopes(at, sharpness)
@@ -90,3 +101,33 @@ class MeanIndex:
 
     def __repr__(self) -> str:
         return f"mean index over {self.over!r}"
+
+
+class Dexterity:
+    """1/cond(H), H in metres, at its least over a workspace, a box, or poses: what "best conditioned" designs maximise.
+
+    It knows nothing of mass and stiffness, and its optimum is not that of the stability index.
+    """
+
+    quantity = "cond_H"
+    unit = ""
+    label = "1/cond(H)"
+
+    def __init__(self, over: Places | Box | Pose | ArrayLike | None = None) -> None:
+        self.over = places(over)
+
+    def index(self, found: Array) -> float:
+        return float(1 / found.max()) if np.isfinite(found).all() else 0.0
+
+    def held(self, found: Array) -> Array:
+        return np.argsort(-found)[:_HELD]
+
+    def slopes(self, at: Slopes, sharpness: float) -> tuple[Array, Array]:
+        value, slope, _ = Conditioning().slopes(at)
+        return -np.log(value), -slope / value[:, None]
+
+    def describe(self) -> dict[str, Any]:
+        return {"least 1/cond(H) over": self.over.describe()}
+
+    def __repr__(self) -> str:
+        return f"least 1/cond(H) over {self.over!r}"

@@ -13,9 +13,8 @@ import numpy as np
 from flexapod.errors import ArgumentError, InfeasibleError
 from flexapod.hexapod import Hexapod
 from flexapod.optimal.constraints import Constraint
-from flexapod.optimal.entries import HOME, numbers
 from flexapod.optimal.finish import finish
-from flexapod.optimal.objectives import LeastIndex, Objective
+from flexapod.optimal.objectives import LeastIndex, MeanIndex, Objective
 from flexapod.optimal.problem import Assessment, Problem
 from flexapod.optimal.search import Progress, Stop, Study, Trial
 from flexapod.optimal.variables import JointCircle, Variable
@@ -66,7 +65,7 @@ class OptimalDesign:
     """What `optimise` found.
 
     hexapod: the design; variables: its values by name, in their keys' units; at_bounds: those on a bound. index: rad/s,
-    as verified; start_index: of the design one began with, verified alike. searched_index: best of the trials, before
+    as verified (for Dexterity: 1/cond(H)); start_index: of the design one began with, verified alike. searched_index: best of the trials, before
     the gradient (NaN without trials). coincident: frequencies within 0.1 % of the lowest at the worst pose: where more
     than one, the optimum lies where modes meet. history: Dataset of the finished trials.
     """
@@ -102,7 +101,8 @@ def optimise(
     study: str | Path | None = None,
     **options: Any,
 ) -> OptimalDesign:
-    """The design with the highest objective: `LeastIndex` at a pose (default: home) or over a workspace, or `MeanIndex`.
+    """The design with the highest objective: `LeastIndex` at a pose (default: home) or over a workspace, `MeanIndex` over a
+    path, or, for comparison, `Dexterity`.
 
     variables: `Variable` and `JointCircle`. constraints: such as `Footprint` or `Stroke`. trials: of the global search
     (0: gradients from the start only). start: values by name, in the keys' units; default: the design's own. study: an
@@ -234,13 +234,13 @@ def verify(problem: Problem, hexapod: Hexapod, points: int) -> Verification:
     """Sweeps every workspace of a problem at poses that no search has seen, and descends from the worst."""
     found = problem.assess(hexapod, points, _SEED + 1)
     index, pose = found.index, None
-    box = problem.objective.over.box(numbers(hexapod)[HOME])
+    box = problem.box(hexapod)
     if box is not None and index > 0:
         worst = worst_pose(hexapod, box, problem.joint, points=points, seed=_SEED + 2, threads=problem.threads)
         index, pose = min(index, worst.omega_1), worst.pose
-    elif isinstance(problem.objective, LeastIndex):
+    elif not isinstance(problem.objective, MeanIndex):
         rows, swept = problem.sweep(hexapod, 0, points, 0)
-        pose = rows[int(np.argmin(np.nan_to_num(swept["omega_1"])))]
+        pose = rows[problem.objective.held(np.nan_to_num(swept[problem.objective.quantity]))[0]]
     return Verification(points, index, pose, _checks(problem, found))
 
 
@@ -271,13 +271,13 @@ def history(problem: Problem, found: Sequence[Trial]) -> xr.Dataset:
     """The finished trials: every variable, the objectives, whether feasible."""
     import xarray as xr
 
-    numbers_ = [t.number for t in found]
+    aim, order = problem.objective, [t.number for t in found]
     x = np.array([t.x for t in found]).reshape(len(found), len(problem.map.names))
     data: dict[str, Any] = {
         p.name: ("trial", x[:, k] / p.unit) for k, p in enumerate(problem.map.parameters)
     }
-    data["index"] = ("trial", [t.values[0] for t in found], {"units": "rad s-1", "long_name": repr(problem.objective)})
+    data["index"] = ("trial", [t.values[0] for t in found], {"units": aim.unit, "label": aim.label, "long_name": repr(aim)})
     if found and len(found[0].values) > 1:
         data["against"] = ("trial", [t.values[1] for t in found])
     data["feasible"] = ("trial", np.array([t.feasible for t in found], dtype=bool))
-    return xr.Dataset(data, {"trial": numbers_}, {"design": problem.hexapod.name, "digest": problem.hexapod.digest})
+    return xr.Dataset(data, {"trial": order}, {"design": problem.hexapod.name, "digest": problem.hexapod.digest})

@@ -20,6 +20,7 @@ from flexapod.optimal.objectives import Objective
 from flexapod.optimal.places import Places
 from flexapod.optimal.variables import DesignMap, JointCircle, Variable
 from flexapod.pose import Array
+from flexapod.posesets import Box
 from flexapod.quantities import evaluate, thread_count
 from flexapod.states import JointModel, is_universal
 
@@ -119,9 +120,13 @@ class Problem:
         """Poses of one of the `groups`, and every quantity that objective and requirements need there."""
         over, requirements = self.groups()[group]
         wanted = {name for requirement in requirements for name in requirement.kind.quantities}
-        wanted |= {"omega_1"} if group == 0 else set()
+        wanted |= {self.objective.quantity} if group == 0 else set()
         rows = over.rows(numbers(hexapod)[HOME], points, seed)
         return rows, evaluate(hexapod, rows, tuple(sorted(wanted)), self.joint, self.threads)
+
+    def box(self, hexapod: Hexapod) -> Box | None:
+        """The box over which the least frequency is to be found between the poses of a sweep; None where none is."""
+        return self.objective.over.box(numbers(hexapod)[HOME]) if self.objective.quantity == "omega_1" else None
 
     def assess(self, hexapod: Hexapod, points: int, seed: int = 0) -> Assessment:
         """Sweeps `points` poses of every workspace, and descends from the lowest ones."""
@@ -131,8 +136,8 @@ class Problem:
         for group, (over, requirements) in enumerate(self.groups()):
             rows, found = self.sweep(hexapod, group, points, seed)
             if group == 0:
-                index = self.objective.index(found["omega_1"])
-                box = over.box(own[HOME])
+                index = self.objective.index(found[self.objective.quantity])
+                box = self.box(hexapod)
                 if box is not None and index > 0:
                     index = min(index, descend(hexapod, self.universal, box, rows, found["omega_1"]))
             values |= {id(r): r.kind.measure(found, own, r.side) for r in requirements}

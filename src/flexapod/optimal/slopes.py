@@ -53,6 +53,7 @@ class Slopes:
 
     @property
     def leg_distance(self) -> tuple[Array, Array]:
+        """Of every pair of legs, (k, 15): each is smooth, where the least of them is not."""
         return self._legs["leg_distance"]
 
     @property
