@@ -14,47 +14,56 @@ template <int n, class T> struct SquaredBidiagonal {
   T q[n], e[n > 1 ? n - 1 : 1];
 };
 
-/// Overwrites x with the vector v of the reflection E - beta v v^T that turns x into its first axis. A vector of zeros
-/// is left alone (beta = 0).
-template <int m, class T> FLEXAPOD_INLINE T householder(T (&x)[m], T& square) {
-  square = x[0] * x[0];
-  T rest = x[m - 1] * x[m - 1];
-  for (int i = 1; i < m - 1; ++i)
-    if (i % 2) square += x[i] * x[i];
-    else rest += x[i] * x[i];
-  if constexpr (m > 1) square += rest;
-  const T length = square * rsqrt(max(square, T(1e-280)));
-  const T beta = 1.0 / (square + abs(x[0]) * length);
-  x[0] = x[0] + select(x[0] < 0.0, -length, length);
-  return select(square > 1e-280, beta, T(0.0));
+/// Sum of products in two chains.
+template <int m, class A, class B> FLEXAPOD_INLINE auto inner(const A& a, const B& b) {
+  auto even = a(0) * b(0);
+  if constexpr (m == 1) {
+    return even;
+  } else {
+    auto odd = a(1) * b(1);
+    FLEXAPOD_UNROLL for (int i = 2; i < m; ++i)
+      if (i % 2) odd += a(i) * b(i);
+      else even += a(i) * b(i);
+    return even + odd;
+  }
 }
+
+/// The reflection E - beta v v^T that turns x into its first axis: v is x with `shift` added to its first part. For
+/// x = 0 it is the identity.
+template <class T> struct Reflection {
+  T square, shift, beta;  // square = |x|^2
+
+  template <int m, class X> static FLEXAPOD_INLINE Reflection of(const X& x) {
+    Reflection r;
+    r.square = inner<m>(x, x);
+    const T length = sqrt(r.square), first = x(0);
+    r.shift = select(first < 0.0, -length, length);
+    r.beta = select(r.square > 1e-280, 1.0 / (r.square + abs(first) * length), T(0.0));
+    return r;
+  }
+  /// Reflects y; x as it was given.
+  template <int m, class X, class Y> FLEXAPOD_INLINE void apply(const X& x, const Y& y) const {
+    const T sum = beta * (inner<m>(x, y) + shift * y(0));  // the inner product does not wait for the length
+    y(0) -= sum * (x(0) + shift);
+    FLEXAPOD_UNROLL for (int i = 1; i < m; ++i) y(i) -= sum * x(i);
+  }
+};
 
 template <int k, class T> FLEXAPOD_INLINE void bidiagonal_step(T (&a)[6][6], SquaredBidiagonal<6, T>& b) {
   if constexpr (k == 5) {
     b.q[5] = a[5][5] * a[5][5];
   } else {
-    constexpr int m = 6 - k;
-    T v[m];
-    FLEXAPOD_UNROLL for (int i = 0; i < m; ++i) v[i] = a[k + i][k];
-    T beta = householder(v, b.q[k]);
-    FLEXAPOD_UNROLL for (int j = k + 1; j < 6; ++j) {
-      T sum = v[0] * a[k][j];
-      FLEXAPOD_UNROLL for (int i = 1; i < m; ++i) sum += v[i] * a[k + i][j];
-      sum *= beta;
-      FLEXAPOD_UNROLL for (int i = 0; i < m; ++i) a[k + i][j] -= sum * v[i];
-    }
+    const auto column = [&](int j) { return [&a, j](int i) -> T& { return a[k + i][j]; }; };
+    const auto left = Reflection<T>::template of<6 - k>(column(k));
+    b.q[k] = left.square;
+    FLEXAPOD_UNROLL for (int j = k + 1; j < 6; ++j) left.template apply<6 - k>(column(k), column(j));
     if constexpr (k == 4) {
       b.e[4] = a[4][5] * a[4][5];
     } else {
-      T w[m - 1];
-      FLEXAPOD_UNROLL for (int j = 0; j < m - 1; ++j) w[j] = a[k][k + 1 + j];
-      beta = householder(w, b.e[k]);
-      FLEXAPOD_UNROLL for (int i = k + 1; i < 6; ++i) {
-        T sum = w[0] * a[i][k + 1];
-        FLEXAPOD_UNROLL for (int j = 1; j < m - 1; ++j) sum += w[j] * a[i][k + 1 + j];
-        sum *= beta;
-        FLEXAPOD_UNROLL for (int j = 0; j < m - 1; ++j) a[i][k + 1 + j] -= sum * w[j];
-      }
+      const auto row = [&](int i) { return [&a, i](int j) -> T& { return a[i][k + 1 + j]; }; };
+      const auto right = Reflection<T>::template of<5 - k>(row(k));
+      b.e[k] = right.square;
+      FLEXAPOD_UNROLL for (int i = k + 1; i < 6; ++i) right.template apply<5 - k>(row(k), row(i));
     }
     bidiagonal_step<k + 1>(a, b);
   }
@@ -143,31 +152,48 @@ template <int n, class T, class M> FLEXAPOD_INLINE T highest(const SquaredBidiag
   return x;
 }
 
-/// The form of order n - 1 that is left when the lowest squared singular value x is taken out and from all others:
-/// two steps of the quotient-difference algorithm. `failed`: lanes where x did not come out at the end.
+/// One step of the differential quotient-difference algorithm: the form whose squared singular values are lower by x.
+/// Its last q is zero when x is the lowest of them. `failed`: lanes where it is no real form.
+template <int n, class T, class M>
+FLEXAPOD_INLINE SquaredBidiagonal<n, T> shifted(const SquaredBidiagonal<n, T>& b, const T& x, M& failed) {
+  SquaredBidiagonal<n, T> next;
+  T d = b.q[0] - x;
+  FLEXAPOD_UNROLL for (int i = 0; i < n - 1; ++i) {
+    next.q[i] = d + b.e[i];
+    const T ratio = b.q[i + 1] / next.q[i];
+    next.e[i] = b.e[i] * ratio;
+    failed = failed | (!(next.q[i] > 0.0));
+    d = d * ratio - x;
+  }
+  next.q[n - 1] = d;
+  return next;
+}
+
+/// The form of order n - 1 that is left when the lowest squared singular value x is taken out and from all others.
+/// `failed`: lanes where x did not come out at the end.
 template <int n, class T, class M>
 FLEXAPOD_INLINE SquaredBidiagonal<n - 1, T> deflated(const SquaredBidiagonal<n, T>& b, const T& x, const T& tolerance,
                                                      M& failed) {
-  T q[n - 1], e[n - 1];
-  T d = b.q[0] - x;
-  FLEXAPOD_UNROLL for (int i = 0; i < n - 1; ++i) {
-    q[i] = d + b.e[i];
-    const T ratio = b.q[i + 1] / q[i];
-    e[i] = b.e[i] * ratio;
-    failed = failed | (!(q[i] > 0.0));
-    d = d * ratio - x;
+  SquaredBidiagonal<n, T> rest = shifted(b, x, failed);
+  auto left = !(abs(rest.q[n - 1]) <= tolerance);  // rounding, large where the value hardly lives at the end
+  for (int step = 0; step < 3 && any(left); ++step) {  // each step brings it there
+    const SquaredBidiagonal<n, T> next = shifted(rest, T(0.0), failed);
+    for (int i = 0; i < n; ++i) rest.q[i] = select(left, next.q[i], rest.q[i]);
+    for (int i = 0; i < n - 1; ++i) rest.e[i] = select(left, next.e[i], rest.e[i]);
+    left = left & (!(abs(rest.q[n - 1]) <= tolerance));
   }
-  failed = failed | (!(abs(d) <= tolerance));
-  SquaredBidiagonal<n - 1, T> rest;
-  d = q[0];
+  failed = failed | left;
+  // The last q is zero now; a step without it draws the last e in.
+  SquaredBidiagonal<n - 1, T> result;
+  T d = rest.q[0];
   FLEXAPOD_UNROLL for (int i = 0; i < n - 2; ++i) {
-    rest.q[i] = d + e[i];
-    const T ratio = q[i + 1] / rest.q[i];
-    rest.e[i] = e[i] * ratio;
+    result.q[i] = d + rest.e[i];
+    const T ratio = rest.q[i + 1] / result.q[i];
+    result.e[i] = rest.e[i] * ratio;
     d = d * ratio;
   }
-  rest.q[n - 2] = d + e[n - 2];
-  return rest;
+  result.q[n - 2] = d + rest.e[n - 2];
+  return result;
 }
 
 template <int n, class T, class M>

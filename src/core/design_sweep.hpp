@@ -14,17 +14,18 @@ using sweep_task::DesignTask;
 /// B = L^-1 H K^1/2 in the platform's axes; `legs`: lanes where every leg has a length and lies across its axis.
 template <class T> Mat6<T> scaled_force_transformation(const Machine<T>& machine, const Pose<T>& pose, mask_t<T>& legs) {
   const Geometry<T> g(machine.design, Pose<T>(), Pose<T>{-transposed(pose.R, pose.t), transpose(pose.R)});
-  Mat6<T> J = platform_inertia(machine.design, Mat3<T>::identity()), B;
+  SpatialInertia<T> J = platform_inertia(machine.design, Mat3<T>::identity());
+  Mat6<T> B;
   legs = T(0.0) < T(1.0);
   for (int i = 0; i < 6; ++i) {
     const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
-    add_inertia_at(J, g.q_p[i], rotate(transpose(leg.axes), leg_inertia(leg, machine.inertia[i])));
+    add_leg_inertia(J, leg, machine.inertia[i], g.q_p[i]);
     const T root = sqrt(machine.design.leg[i].stiffness);
     const Vec6<T> h = leg_wrench(g.q_p[i], root * leg.s());
     for (int r = 0; r < 6; ++r) B[r][i] = h[r];
     legs = legs & (leg.cosecant < 1e7) & (leg.L > 0.0);
   }
-  const Cholesky<T> L(J);
+  const Cholesky<T> L(J.matrix());
   for (int i = 0; i < 6; ++i) {
     Vec6<T> column;
     for (int r = 0; r < 6; ++r) column[r] = B[r][i];

@@ -21,7 +21,7 @@ template <class T> FLEXAPOD_INLINE T nearest(const T& x) {
 template <class T> struct SinCos {
   T sin, cos;
 
-  /// Any finite x; |x| beyond 1e6 is left to the C library.
+  /// |x| up to 1e6.
   explicit FLEXAPOD_INLINE SinCos(const T& x) {
     constexpr double s[] = {-0.16666666666666666,     0.008333333333330827,     -0.0001984126983657571,
                             2.755731600817155e-06,    -2.5051112272573243e-08,  1.5916726193889336e-10};
@@ -38,18 +38,6 @@ template <class T> struct SinCos {
     const T first = select(odd, cosine, sine), second = select(odd, sine, cosine);
     sin = select(half | (odd & (quarter < 0.0)), -first, first);
     cos = select(half | (odd & (quarter > 0.0)), -second, second);
-    if (any(abs(x) > 1e6)) [[unlikely]] far(x);
-  }
-
- private:
-  void far(const T& x) {
-    if constexpr (requires { T::lanes; }) {
-      double angle[T::lanes], s[T::lanes], c[T::lanes];
-      x.store(angle), sin.store(s), cos.store(c);
-      for (int i = 0; i < T::lanes; ++i)
-        if (__builtin_fabs(angle[i]) > 1e6) s[i] = __builtin_sin(angle[i]), c[i] = __builtin_cos(angle[i]);
-      sin = T::load(s), cos = T::load(c);
-    }
   }
 };
 

@@ -36,10 +36,12 @@ template <class T, class P = T> struct Geometry {
   }
 };
 
-/// H: column i is the wrench on the platform of a unit force in leg i, [s; q_p x s].
+/// A leg's column of H: the wrench on the platform of a unit force in the leg, [s; q_p x s].
 template <class T, class P> Vec6<T> leg_wrench(const Vec3<P>& q_p, const Vec3<T>& s) {
   return Vec6<T>::of(s, cross(q_p, s));
 }
+
+/// H: leg forces to the wrench on the platform.
 template <class T> Mat6<T> force_transformation(const Geometry<T>& g) {
   Mat6<T> H;
   for (int i = 0; i < 6; ++i) {
@@ -49,45 +51,62 @@ template <class T> Mat6<T> force_transformation(const Geometry<T>& g) {
   return H;
 }
 
-/// Adds [Q, -Q q~; q~ Q, -q~ Q q~] with Q symmetric: the inertia Q at the point q.
-template <class T, class P> void add_inertia_at(Mat6<T>& J, const Vec3<P>& q, const Sym3<T>& Q) {
-  const Mat3<T> top{{{Q.xx, Q.xy, Q.xz}, {Q.xy, Q.yy, Q.yz}, {Q.xz, Q.yz, Q.zz}}};
-  const Mat3<T> right{{cross(q, top.row[0]), cross(q, top.row[1]), cross(q, top.row[2])}};
-  const Mat3<T> left = transpose(right);
-  for (int i = 0; i < 3; ++i) {
-    const Vec6<T> upper = Vec6<T>::of(top.row[i], right.row[i]);
-    const Vec6<T> lower = Vec6<T>::of(left.row[i], cross(q, left.row[i]));
-    for (int j = 0; j < 6; ++j) J[i][j] += upper[j], J[3 + i][j] += lower[j];
+/// A symmetric 6x6 inertia [top, bottom_left^T; bottom_left, bottom]: of a velocity and an angular velocity.
+template <class T> struct SpatialInertia {
+  Sym3<T> top;
+  Mat3<T> bottom_left;
+  Sym3<T> bottom;
+
+  /// Adds [Q, -Q q~; q~ Q, -q~ Q q~] with Q symmetric: the inertia Q at the point q.
+  template <class P> void add(const Vec3<P>& q, const Sym3<T>& Q) {
+    const Mat3<T> right{{cross(q, Vec3<T>(Q.xx, Q.xy, Q.xz)), cross(q, Vec3<T>(Q.xy, Q.yy, Q.yz)),
+                         cross(q, Vec3<T>(Q.xz, Q.yz, Q.zz))}};
+    const Mat3<T> left = transpose(right);
+    const Vec3<T> x = cross(q, left.row[0]), y = cross(q, left.row[1]), z = cross(q, left.row[2]);
+    top = top + Q;
+    for (int i = 0; i < 3; ++i) bottom_left.row[i] += left.row[i];
+    bottom = bottom + Sym3<T>{x.x, y.y, z.z, y.x, z.x, z.y};
   }
-}
+  Mat6<T> matrix() const {
+    const Mat3<T> right = transpose(bottom_left);
+    const Mat3<T> A = full(top), D = full(bottom);
+    Mat6<T> J;
+    for (int i = 0; i < 3; ++i) {
+      const Vec6<T> upper = Vec6<T>::of(A.row[i], right.row[i]), lower = Vec6<T>::of(bottom_left.row[i], D.row[i]);
+      for (int j = 0; j < 6; ++j) J[i][j] = upper[j], J[3 + i][j] = lower[j];
+    }
+    return J;
+  }
+
+ private:
+  static Mat3<T> full(const Sym3<T>& m) { return {{{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.zz}}}; }
+};
 
 /// J_plat of Eq. 34, in the axes of R.
-template <class T, class D> Mat6<T> platform_inertia(const Design<D>& d, const Mat3<T>& R) {
-  const Vec3<T> R_p = R * d.R_0, zero;
-  const T M(d.M);
-  Mat6<T> J;
-  add_inertia_at(J, R_p, Sym3<T>{M, M, M, T(0.0), T(0.0), T(0.0)});
-  const Sym3<T> I = rotate(R, d.I_p);
-  J[3][3] += I.xx, J[4][4] += I.yy, J[5][5] += I.zz;
-  J[3][4] += I.xy, J[4][3] += I.xy, J[3][5] += I.xz, J[5][3] += I.xz, J[4][5] += I.yz, J[5][4] += I.yz;
+template <class T, class D> SpatialInertia<T> platform_inertia(const Design<D>& d, const Mat3<T>& R) {
+  const Vec3<T> R_p = R * d.R_0;
+  const T M(d.M), zero(0.0);
+  SpatialInertia<T> J;
+  J.add(R_p, Sym3<T>{M, M, M, zero, zero, zero});
+  J.bottom = J.bottom + rotate(R, d.I_p);
   return J;
 }
 
 /// J_p_i of Eq. 34: the inertia of a leg, whose platform joint is at q_p, seen at the platform's reference point.
-template <class T, class D>
-void add_leg_inertia(Mat6<T>& J, const LegAxes<T>& leg, const LegInertia<D>& in, const Vec3<T>& q_p) {
-  add_inertia_at(J, q_p, rotate(transpose(leg.axes), leg_inertia(leg, in)));
+template <class T, class D, class P>
+void add_leg_inertia(SpatialInertia<T>& J, const LegAxes<T>& leg, const LegInertia<D>& in, const Vec3<P>& q_p) {
+  J.add(q_p, rotate(transpose(leg.axes), leg_inertia(leg, in)));
 }
 template <class T, class D>
-void add_leg_inertia(Mat6<T>& J, const Machine<D>& machine, const Geometry<T>& g, int i) {
+void add_leg_inertia(SpatialInertia<T>& J, const Machine<D>& machine, const Geometry<T>& g, int i) {
   add_leg_inertia(J, LegAxes<T>(g.S[i], g.k[i], machine.joint), machine.inertia[i], g.q_p[i]);
 }
 
 /// J_p of Eq. 34: the inertia of platform and legs seen at the platform's reference point.
 template <class T, class D> Mat6<T> inertia(const Machine<D>& machine, const Geometry<T>& g, const Mat3<T>& R) {
-  Mat6<T> J = platform_inertia(machine.design, R);
+  SpatialInertia<T> J = platform_inertia(machine.design, R);
   for (int i = 0; i < 6; ++i) add_leg_inertia(J, machine, g, i);
-  return J;
+  return J.matrix();
 }
 
 /// J_b of Eq. 34: how acceleration of the base enters. In the exact joint model a turning base also spins the legs.

@@ -67,6 +67,14 @@ template <class T> struct Cholesky {
     }
     return b;
   }
+  void forward_all(Mat6<T>& B) const {  // L X = B, in place
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) {
+        T sum = B[i][j];
+        for (int k = 0; k < i; ++k) sum = sum - l[i][k] * B[k][j];
+        B[i][j] = sum * l[i][i];
+      }
+  }
   Vec6<T> backward(Vec6<T> b) const {  // L^T x = b
     for (int i = 5; i >= 0; --i) {
       for (int k = i + 1; k < 6; ++k) b[i] = b[i] - l[k][i] * b[k];

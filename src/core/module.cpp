@@ -207,11 +207,11 @@ nb::tuple inertia_parts(const Input& design, bool universal, const Input& platfo
   double *p = platform.data(), *l = legs.data();
   for (size_t i = 0; i < s.n; ++i) {
     const Geometry<double> g = geometry(machine, s, i);
-    write(p, platform_inertia(machine.design, s.platform[i].pose.R));
+    write(p, platform_inertia(machine.design, s.platform[i].pose.R).matrix());
     for (int j = 0; j < 6; ++j) {
-      Mat6<double> J;
+      SpatialInertia<double> J;
       add_leg_inertia(J, machine, g, j);
-      write(l, J);
+      write(l, J.matrix());
     }
   }
   return nb::make_tuple(platform.array(), legs.array());

@@ -154,21 +154,6 @@ template <class V> FLEXAPOD_INLINE V sqrt_vector(V a) {
   std::memcpy(&a, x, sizeof(V));
   return a;
 }
-
-/// 1 / sqrt(a) to about one rounding, for 0 < a < inf: an estimate of 14 bits, then steps of order three and two.
-template <class V> FLEXAPOD_INLINE V rsqrt_vector(V a) {
-#if defined(__AVX512F__)
-  if constexpr (sizeof(V) == 64) {
-    V y = (V)_mm512_maskz_rsqrt14_pd(0xff, (__m512d)a);
-    V e = 1.0 - (a * y) * y;
-    y = y + (y * e) * (0.5 + 0.375 * e);
-    const V half = 0.5 * y;
-    e = 1.0 - (a * y) * y;
-    return y + half * e;
-  }
-#endif
-  return 1.0 / sqrt_vector(a);
-}
 }  // namespace detail
 
 template <class V, int N> FLEXAPOD_INLINE Pack<V, N> sqrt(const Pack<V, N>& a) {
@@ -178,7 +163,7 @@ template <class V, int N> FLEXAPOD_INLINE Pack<V, N> sqrt(const Pack<V, N>& a) {
 }
 template <class V, int N> FLEXAPOD_INLINE Pack<V, N> rsqrt(const Pack<V, N>& a) {
   Pack<V, N> r;
-  for (int i = 0; i < N; ++i) r.v[i] = detail::rsqrt_vector(a.v[i]);
+  for (int i = 0; i < N; ++i) r.v[i] = 1.0 / detail::sqrt_vector(a.v[i]);
   return r;
 }
 

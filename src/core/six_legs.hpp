@@ -89,7 +89,7 @@ struct LegPlaces {
 
 /// What legs add to J_p, and the wrench that they take from a platform with the accelerations given.
 struct LegSums {
-  Mat6<Lanes> J;
+  SpatialInertia<Lanes> J;
   Vec3<Lanes> force, moment;
 
   FLEXAPOD_FLAT void add(const SixLegs& legs, int g, const LegPlaces::Group& at, const Motion<double>& platform,
@@ -115,10 +115,11 @@ inline Vec6<double> forward_dynamics(const SixLegs& legs, const LegPlaces& at, M
   for (int g = 0; g < leg_groups; ++g) sums.add(legs, g, at.group[g], platform, base, leg_force.group[g]);
   Vec6<double> load = platform_wrench(legs.design, platform);
   add(load, sum(sums.force), sum(sums.moment));
-  Mat6<double> J = platform_inertia(legs.design, platform.pose.R);
+  Mat6<double> J = platform_inertia(legs.design, platform.pose.R).matrix();
+  const Mat6<Lanes> of_legs = sums.J.matrix();
   for (int i = 0; i < 6; ++i) {
     load[i] = wrench[i] - load[i];
-    for (int j = 0; j <= i; ++j) J[i][j] += sum(sums.J[i][j]);
+    for (int j = 0; j <= i; ++j) J[i][j] += sum(of_legs[i][j]);
   }
   return Cholesky<double>(J).solve(load);
 }

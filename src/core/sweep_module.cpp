@@ -77,39 +77,58 @@ template <class Number> nb::ndarray<nb::numpy, Number> owned(std::unique_ptr<Num
   return {raw, columns == 1 ? size_t{1} : size_t{2}, shape, owner};
 }
 
+/// A task and the arrays of its results.
+struct Job {
+  Task task{};
+  size_t n;
+  std::unique_ptr<double[]> numbers[std::size(arrays)];
+  std::unique_ptr<bool[]> within;
+  std::unique_ptr<std::uint8_t[]> status;
+
+  Job(const Input& design, bool universal, const Input& poses, unsigned quantities) {
+    if (poses.ndim() != 2 || (poses.shape(1) != 6 && poses.shape(1) != 12))
+      throw std::invalid_argument("poses must have shape (n, 6) or (n, 12)");
+    n = poses.shape(0);
+    task.design = rows(design, 1, design_size, "design");
+    task.universal = universal;
+    task.poses = poses.data();
+    task.width = static_cast<int>(poses.shape(1));
+    task.quantities = quantities;
+    for (size_t i = 0; i < std::size(arrays); ++i)
+      if (quantities & arrays[i].quantity) {
+        numbers[i].reset(new double[n * arrays[i].columns]);
+        task.*arrays[i].place = numbers[i].get();
+      }
+    if (quantities & sweep_task::within_limits) within.reset(new bool[n]);
+    status.reset(new std::uint8_t[n]);
+    task.within_limits_ = within.get();
+    task.status_ = status.get();
+  }
+};
+
 nb::dict sweep_(const Input& design, bool universal, const Input& poses, unsigned quantities, const Input& limits,
                 int threads) {
   if (threads < 1) throw std::invalid_argument("threads is " + std::to_string(threads) + "; it must be >= 1");
-  if (poses.ndim() != 2 || (poses.shape(1) != 6 && poses.shape(1) != 12))
-    throw std::invalid_argument("poses must have shape (n, 6) or (n, 12)");
-  const size_t n = poses.shape(0);
-  Task task{};
-  task.design = rows(design, 1, design_size, "design");
-  task.universal = universal;
-  task.poses = poses.data();
-  task.width = static_cast<int>(poses.shape(1));
-  task.quantities = quantities;
-  task.limits = reinterpret_cast<const sweep_task::Limits*>(rows(limits, 1, sweep_task::limits_size, "limits"));
-  std::unique_ptr<double[]> numbers[std::size(arrays)];
-  for (size_t i = 0; i < std::size(arrays); ++i)
-    if (quantities & arrays[i].quantity) {
-      numbers[i].reset(new double[n * arrays[i].columns]);
-      task.*arrays[i].place = numbers[i].get();
-    }
-  std::unique_ptr<bool[]> within(quantities & sweep_task::within_limits ? new bool[n] : nullptr);
-  std::unique_ptr<std::uint8_t[]> status(new std::uint8_t[n]);
-  task.within_limits_ = within.get();
-  task.status_ = status.get();
+  Job job(design, universal, poses, quantities);
+  job.task.limits = reinterpret_cast<const sweep_task::Limits*>(rows(limits, 1, sweep_task::limits_size, "limits"));
   {
     nb::gil_scoped_release release;
-    run(task, n, threads);
+    run(job.task, job.n, threads);
   }
   nb::dict result;
   for (size_t i = 0; i < std::size(arrays); ++i)
-    if (numbers[i]) result[arrays[i].name] = owned(std::move(numbers[i]), n, arrays[i].columns);
-  if (within) result["within_limits"] = owned(std::move(within), n, 1);
-  result["status"] = owned(std::move(status), n, 1);
+    if (job.numbers[i]) result[arrays[i].name] = owned(std::move(job.numbers[i]), job.n, arrays[i].columns);
+  if (job.within) result["within_limits"] = owned(std::move(job.within), job.n, 1);
+  result["status"] = owned(std::move(job.status), job.n, 1);
   return result;
+}
+
+/// The mean over the poses.
+double sweep_flops(const Input& design, bool universal, const Input& poses, unsigned quantities) {
+  const sweep_task::Limits no_limits{};
+  Job job(design, universal, poses, quantities);
+  job.task.limits = &no_limits;
+  return count_flops(job.task, job.n) / static_cast<double>(job.n);
 }
 
 nb::tuple simd_available() {
@@ -126,6 +145,7 @@ const Kernel& kernel_in_use() { return *chosen; }
 void bind_sweep(nb::module_& m) {
   chosen = &choose_kernel();
   m.def("sweep", &sweep_);
+  m.def("sweep_flops", &sweep_flops);
   m.def("simd", [] { return chosen->name; });
   m.def("simd_available", &simd_available);
   m.def("peak_flops", [](size_t rounds) { return chosen->peak(rounds); }, nb::call_guard<nb::gil_scoped_release>());

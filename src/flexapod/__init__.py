@@ -133,10 +133,10 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:  # what type checkers and editors see
+    from flexapod.animate import *  # noqa: F403
     from flexapod.assessment import ClosedLoop as ClosedLoop
     from flexapod.damping_loops import open_zeros as open_zeros
     from flexapod.damping_loops import root_locus as root_locus
-    from flexapod.animate import *  # noqa: F403
     from flexapod.dynamics import *  # noqa: F403
     from flexapod.errors import *  # noqa: F403
     from flexapod.excitation import *  # noqa: F403
@@ -166,19 +166,19 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.recordings import *  # noqa: F403
     from flexapod.requirements import PathRequirements as PathRequirements
     from flexapod.response import *  # noqa: F403
+    from flexapod.robust import *  # noqa: F403
     from flexapod.sampled import Hardware as Hardware
     from flexapod.sampled import simulate_control as simulate_control
     from flexapod.sampling import sampling_time as sampling_time
     from flexapod.schedule import gain_schedule as gain_schedule
     from flexapod.simulation import *  # noqa: F403
     from flexapod.spectra import *  # noqa: F403
-    from flexapod.robust import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403
+    from flexapod.stepped import *  # noqa: F403
     from flexapod.sweeps.cluster import *  # noqa: F403
     from flexapod.sweeps.dataset import *  # noqa: F403
     from flexapod.sweeps.store import *  # noqa: F403
     from flexapod.sweeps.summary import *  # noqa: F403
     from flexapod.sweeps.worst import *  # noqa: F403
-    from flexapod.stepped import *  # noqa: F403
     from flexapod.trajectory import *  # noqa: F403
     from flexapod.waypoints import Path as Path

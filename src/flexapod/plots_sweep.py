@@ -42,17 +42,21 @@ LABELS = {
 }
 
 
-def index_scatter(sweep: xr.Dataset, ax: Axes | None = None, colorbar: bool = True) -> Axes:
+def index_scatter(
+    sweep: xr.Dataset, ax: Axes | None = None, colorbar: bool = True, most_cond: float | None = None
+) -> Axes:
     """omega_1 against cond(H), one dot a pose; of many poses the shade tells how many lie together.
 
     Takes a sweep of both in memory, or one of `open_sweep`, which is read block by block. The axis of cond(H) is
-    logarithmic where it spans more than a factor of five. Poses without an index are left out.
+    logarithmic where it spans more than a factor of five; it ends at `most_cond`, where given. Poses without an
+    index are left out.
     """
     for name in ("omega_1", "cond_H"):
         if name not in sweep:
             raise PoseError(f"this figure needs the quantity {name}. Sweep it.")
     ax = _axes() if ax is None else ax
     low, high, count = _ranges(sweep)
+    high[1] = high[1] if most_cond is None else min(high[1], most_cond)
     logarithmic = high[1] > 5 * low[1]
     if count <= _DOTS:
         for _, (omega, cond) in columns(sweep, ("omega_1", "cond_H")):
@@ -62,6 +66,7 @@ def index_scatter(sweep: xr.Dataset, ax: Axes | None = None, colorbar: bool = Tr
     if logarithmic:
         ax.set_xscale("log")
         _plain_log_ticks(ax, low[1], high[1])
+    ax.set_xlim(right=high[1])
     ax.set_ylim(bottom=0)
     ax.set_xlabel(LABELS["cond_H"])
     ax.set_ylabel(LABELS["omega_1"])

@@ -131,7 +131,7 @@ class RandomPoses(PoseSet):
 
     def rows(self, start: int, stop: int) -> Array:
         bits = np.random.PCG64DXSM(self.seed)
-        bits.advance(6 * start)  # every pose takes six draws, whether its coordinates vary or not
+        bits.advance(6 * int(start))  # every pose takes six draws, whether its coordinates vary or not
         generator = np.random.Generator(bits)
         out = np.empty((stop - start, 6))
         assert self.box is not None
@@ -270,7 +270,8 @@ def random_poses(box: Box, count: int, seed: int = 0) -> PoseSet:
 def low_discrepancy(box: Box, count: int, seed: int = 0) -> PoseSet:
     """`count` poses of the scrambled six-dimensional Sobol sequence of scipy.stats.qmc: more even than chance.
 
-    Best with a power of two. For other sequences give `fx.sweep` the array `box.scale(sampler.random(n))`.
+    Rows are x, y, z in m and roll, pitch, yaw in rad. Best with a power of two. For other sequences give `fx.sweep` the
+    array `box.scale(sampler.random(n))`.
     """
     return SobolPoses(_box(box), count, seed)
 
@@ -302,7 +303,8 @@ def pose_grid(
 def pose_path(waypoints: Pose | ArrayLike, count: int) -> PoseSet:
     """`count` poses along a path through waypoints (a batch of poses, or rows (k, 6)), equally many between each two.
 
-    Positions follow straight lines; orientations turn at a steady rate about a fixed axis from one to the next.
+    Rows are x, y, z in m and roll, pitch, yaw in rad. Positions follow straight lines; orientations turn at a steady
+    rate about a fixed axis from one to the next.
     """
     from scipy.spatial.transform import Rotation, Slerp
 

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from flexapod.sweeps.summary import At, SweepSummary
     from flexapod.sweeps.worst import WorstPose
 
+POSE_HEAD = ("x m", "y m", "z m", "roll°", "pitch°", "yaw°")
+
 
 def pose_text(pose: Array) -> str:
     """x, y, z in m and roll, pitch, yaw in degrees."""
@@ -27,16 +29,16 @@ def print_summary(summary: SweepSummary) -> None:
     console = common.console()
     statuses = ", ".join(f"{count} {word}" for word, count in summary.statuses.items())
     console.print(f"{summary.poses} poses: {statuses}")
-    table = Table("", "ω1 rad/s", "Hz", "cond(H)", "pose", "number", box=None, pad_edge=False)
+    table = Table("", "ω1 rad/s", "cond(H)", *POSE_HEAD, box=None, pad_edge=False)
     for words, at in (
-        ("worst index", summary.worst),
-        ("best index", summary.best),
-        ("least cond(H)", summary.best_conditioned),
-        ("largest cond(H)", summary.worst_conditioned),
+        ("worst ω1", summary.worst),
+        ("best ω1", summary.best),
+        ("least cond", summary.best_conditioned),
+        ("most cond", summary.worst_conditioned),
     ):
         if at is not None:
-            numbers = (f"{at.omega_1:.6g}", f"{at.omega_1 / math.tau:.5g}", f"{at.cond_H:.5g}")
-            table.add_row(words, *numbers, pose_text(at.pose), str(at.number))
+            pose = [f"{v:.3g}" for v in (*at.pose[:3], *map(math.degrees, at.pose[3:]))]
+            table.add_row(words, f"{at.omega_1:.5g}", f"{at.cond_H:.4g}", *pose)
     console.print(table)
     quantiles = Table(
         *(f"{q:.0%}" for q in summary.quantiles), title="quantiles of ω1, rad/s", box=None, title_justify="left"

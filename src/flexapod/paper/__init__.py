@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 #: Number of the figure -> module of this package that draws it.
-FIGURES = {7: "vibration", 8: "vibration", 9: "vibration"}
+FIGURES = {2: "scatter", 3: "scatter", 4: "scatter", 5: "scatter", 7: "vibration", 8: "vibration", 9: "vibration"}
 
 
 class Settings(NamedTuple):

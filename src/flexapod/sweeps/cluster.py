@@ -70,7 +70,7 @@ def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
     except ImportError:
         raise ClusterError("a cluster needs dask.distributed. Install it with: pip install 'flexapod[sweep]'") from None
     if address == LOCAL:
-        with LocalCluster(threads_per_worker=1, dashboard_address=None) as own, Client(own) as client:
+        with LocalCluster(threads_per_worker=1, dashboard_address="localhost:0") as own, Client(own) as client:
             yield Cluster(client)
         return
     try:

@@ -79,8 +79,8 @@ def write_block(job: Job, number: int, rows: Array | None = None) -> Finished:
     for name, values in found.items():
         shape = tuple(part.stop - part.start for part in block.region)
         arrays[name][block.region] = values.reshape(shape + values.shape[1:])
-    codes, counts = np.unique(found["status"], return_counts=True)
-    return Finished(number, block.stop - block.start, dict(zip(codes.tolist(), counts.tolist(), strict=True)))
+    counts = np.bincount(found["status"], minlength=1)
+    return Finished(number, block.stop - block.start, {code: int(n) for code, n in enumerate(counts) if n})
 
 
 def _pose_columns(rows: Array) -> dict[str, Array]:
@@ -103,15 +103,16 @@ def zarr_package() -> Any:
 @lru_cache(maxsize=8)
 def open_arrays(path: str, token: str) -> dict[str, zarr.Array]:
     """The arrays of a store, opened once in a process and run."""
+    zarr = zarr_package()
     try:
-        group = zarr_package().open_group(path, mode="r+")
+        with zarr.config.set({"array.write_empty_chunks": True}):  # or each chunk is compared with the fill value first
+            return dict(zarr.open_group(path, mode="r+").arrays())
     except FileNotFoundError:
         import socket
 
         raise OutputError(
             f"{path} is not there as {socket.gethostname()} sees it. Put the store on a disk that all workers share."
         ) from None
-    return dict(group.arrays())
 
 
 def flush_block(job: Job, number: int) -> None:
@@ -129,8 +130,6 @@ def sync(path: Path) -> None:
     """Have a file or directory on the disk itself."""
     try:
         handle = os.open(path, os.O_RDONLY)
-    except FileNotFoundError:  # a chunk that holds nothing but the fill value is not written
-        return
     except PermissionError:  # directories cannot be opened on Windows
         return
     try:

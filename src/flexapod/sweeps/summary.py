@@ -25,6 +25,7 @@ _IN_MEMORY = 2**20  # poses looked at together
 _EXACT = 2**22  # poses up to which all are sorted
 _BINS = 2**16
 _RANK_BINS = 2**10
+_BANDS = 50
 
 
 class At(NamedTuple):
@@ -79,10 +80,8 @@ def summarise(sweep: xr.Dataset, at_least: float | None = None) -> SweepSummary:
         raise PoseError("a summary needs the quantity omega_1. Sweep it.")
     first = _extremes(sweep)
     both = "cond_H" in sweep and first.usable > 1
-    quantiles = _quantiles(sweep, "omega_1", first, np.array(QUANTILES))
-    correlation = spread = float("nan")
-    if both:
-        correlation, spread = _together(sweep, first)
+    names = ("omega_1", "cond_H") if both else ("omega_1",)
+    spread_out = _exactly(sweep, names) if first.usable <= _EXACT else _binned(sweep, names, first)
     return SweepSummary(
         poses=first.poses,
         statuses=first.statuses,
@@ -90,10 +89,10 @@ def summarise(sweep: xr.Dataset, at_least: float | None = None) -> SweepSummary:
         best=_at(sweep, first.place["omega_1", "most"]),
         best_conditioned=_at(sweep, first.place["cond_H", "least"]) if both else None,
         worst_conditioned=_at(sweep, first.place["cond_H", "most"]) if both else None,
-        quantiles=dict(zip(QUANTILES, quantiles.tolist(), strict=True)),
+        quantiles=dict(zip(QUANTILES, spread_out.quantiles.tolist(), strict=True)),
         above=None if at_least is None else _above(sweep, first, at_least),
-        correlation=correlation,
-        spread=spread,
+        correlation=spread_out.correlation,
+        spread=spread_out.spread,
     )
 
 
@@ -164,41 +163,6 @@ def _at(sweep: xr.Dataset, number: int) -> At:
     return At(number, pose, float(one["omega_1"]), cond)
 
 
-def _edges(least: float, most: float, bins: int) -> Array:
-    """Bins between two values, even in the logarithm where they are positive and far apart."""
-    if least > 0 and most > 4 * least:
-        edges = np.geomspace(least, most, bins + 1)
-    else:
-        edges = np.linspace(least, most, bins + 1)
-    edges[0], edges[-1] = -np.inf, np.inf
-    return edges
-
-
-def _quantiles(sweep: xr.Dataset, name: str, extremes: _Extremes, at: Array) -> Array:
-    """Quantiles; of many poses from counts in narrow bins, and within a bin in proportion."""
-    others = ("omega_1", name) if name != "omega_1" else ("omega_1",)
-    if extremes.usable <= _EXACT:
-        return np.quantile(np.concatenate([values[-1] for values in _finite(sweep, others)]), at)
-    low, high = extremes.value[name, "least"], extremes.value[name, "most"]
-    if not np.isfinite(high):
-        high = np.finfo(float).max
-    if high == low:
-        return np.full(len(at), low)
-    edges = _edges(low, high, _BINS)
-    counts = np.zeros(_BINS, dtype=np.int64)
-    for values in _finite(sweep, others):
-        counts += _histogram(values[-1], edges)
-    edges[0], edges[-1] = low, high
-    cumulated = np.concatenate([[0], np.cumsum(counts)])
-    return np.interp(at * cumulated[-1], cumulated, edges)
-
-
-def _histogram(values: Array, edges: Array) -> np.ndarray:
-    return np.bincount(
-        np.searchsorted(edges, values, side="right").clip(1, len(edges) - 1) - 1, minlength=len(edges) - 1
-    )
-
-
 def _above(sweep: xr.Dataset, extremes: _Extremes, wanted: float) -> Above:
     good = sum(int((values[0] >= wanted).sum()) for values in _finite(sweep, ("omega_1",)))
     computed = extremes.poses - extremes.statuses.get(statuses()[PENDING], 0)
@@ -208,22 +172,24 @@ def _above(sweep: xr.Dataset, extremes: _Extremes, wanted: float) -> Above:
     return Above(wanted, fraction, error, volume, sweep.attrs.get("box_volume_unit", ""))
 
 
-def _together(sweep: xr.Dataset, extremes: _Extremes) -> tuple[float, float]:
-    """Spearman's correlation of omega_1 with cond(H), and the spread of omega_1 at equal cond(H)."""
-    if extremes.usable <= _EXACT:
-        from scipy.stats import rankdata
+class _Distribution(NamedTuple):
+    """How omega_1 is spread, and how it goes with cond(H) (NaN without it)."""
 
-        parts = list(_finite(sweep, ("omega_1", "cond_H")))
-        omega, cond = (np.concatenate(column) for column in zip(*parts, strict=True))
-        ranks = rankdata(omega), rankdata(cond)
-        return _pearson(*ranks), _spread(omega, cond)
-    levels = np.arange(1, _RANK_BINS) / _RANK_BINS
-    inner = [_quantiles(sweep, name, extremes, levels) for name in ("omega_1", "cond_H")]
-    table = np.zeros((_RANK_BINS, _RANK_BINS), dtype=np.int64)
-    for omega, cond in _finite(sweep, ("omega_1", "cond_H")):
-        place = np.searchsorted(inner[1], cond) * _RANK_BINS + np.searchsorted(inner[0], omega)
-        table += np.bincount(place, minlength=table.size).reshape(table.shape)
-    return _table_correlation(table), _table_spread(table, inner[0], extremes)
+    quantiles: Array
+    correlation: float = float("nan")
+    spread: float = float("nan")
+
+
+def _exactly(sweep: xr.Dataset, names: tuple[str, ...]) -> _Distribution:
+    """From all values at once."""
+    from scipy.stats import rankdata
+
+    found = [np.concatenate(column) for column in zip(*_finite(sweep, names), strict=True)]
+    quantiles = np.quantile(found[0], QUANTILES)
+    if len(found) == 1:
+        return _Distribution(quantiles)
+    omega, cond = found
+    return _Distribution(quantiles, _pearson(rankdata(omega), rankdata(cond)), _spread(omega, cond))
 
 
 def _pearson(a: Array, b: Array) -> float:
@@ -234,15 +200,66 @@ def _pearson(a: Array, b: Array) -> float:
 
 def _spread(omega: Array, cond: Array) -> float:
     """Median, over bands of equal count in cond(H), of the ratio of the 95 % to the 5 % quantile of omega_1."""
-    bands = max(1, min(50, len(omega) // 100))
+    bands = max(1, min(_BANDS, len(omega) // 100))
     parts = np.array_split(omega[np.argsort(cond, kind="stable")], bands)
     low, high = np.array([np.quantile(part, [0.05, 0.95]) for part in parts]).T
     with np.errstate(divide="ignore", invalid="ignore"):
         return float(np.median(high / low))
 
 
+class _Bins:
+    """Narrow bins between two values, even in the logarithm where they are positive and far apart."""
+
+    def __init__(self, least: float, most: float) -> None:
+        self.most = min(most, np.finfo(float).max)
+        self.logarithmic = least > 0 and self.most > 4 * least
+        ends = np.array([least, self.most])
+        self.low, self.high = np.log(ends) if self.logarithmic else ends
+        self.scale = _BINS / (self.high - self.low) if self.high > self.low else 0.0
+        self.counts = np.zeros(_BINS, dtype=np.int64)
+
+    def place(self, values: Array) -> np.ndarray:
+        """The number of each value's bin."""
+        inside = np.minimum(values, self.most)
+        if self.logarithmic:
+            np.log(inside, out=inside)
+        inside -= self.low
+        inside *= self.scale
+        return np.clip(inside.astype(np.int32), 0, _BINS - 1)
+
+    def quantiles(self, at: Array) -> Array:
+        """Within a bin, in proportion."""
+        edges = np.linspace(self.low, self.high, _BINS + 1)
+        cumulated = np.concatenate([[0], np.cumsum(self.counts)])
+        found = np.interp(at * cumulated[-1], cumulated, edges)
+        return np.exp(found) if self.logarithmic else found
+
+    def ranks(self) -> np.ndarray:
+        """Bin -> which of the `_RANK_BINS` parts of equal count its middle is in."""
+        middle = np.cumsum(self.counts) - self.counts / 2
+        return np.minimum(middle * _RANK_BINS / self.counts.sum(), _RANK_BINS - 1).astype(np.int32)
+
+
+def _binned(sweep: xr.Dataset, names: tuple[str, ...], extremes: _Extremes) -> _Distribution:
+    """From counts in bins, in two passes."""
+    bins = [_Bins(extremes.value[name, "least"], extremes.value[name, "most"]) for name in names]
+    for values in _finite(sweep, names):
+        for one, column in zip(bins, values, strict=True):
+            one.counts += np.bincount(one.place(column), minlength=_BINS)
+    quantiles = bins[0].quantiles(np.array(QUANTILES))
+    if len(bins) == 1:
+        return _Distribution(quantiles)
+    ranks = [one.ranks() for one in bins]
+    table = np.zeros((_RANK_BINS, _RANK_BINS), dtype=np.int64)
+    for values in _finite(sweep, names):
+        omega, cond = (rank[one.place(column)] for rank, one, column in zip(ranks, bins, values, strict=True))
+        table += np.bincount(cond * _RANK_BINS + omega, minlength=table.size).reshape(table.shape)
+    edges = bins[0].quantiles(np.arange(_RANK_BINS + 1) / _RANK_BINS)
+    return _Distribution(quantiles, _table_correlation(table), _table_spread(table, edges))
+
+
 def _table_correlation(table: np.ndarray) -> float:
-    """Of ranks, each taken in the middle of its band."""
+    """Of ranks, each taken in the middle of its part."""
 
     def middles(counts: np.ndarray) -> Array:
         return np.cumsum(counts) - counts / 2.0
@@ -254,10 +271,10 @@ def _table_correlation(table: np.ndarray) -> float:
     return float(a @ table @ b / np.sqrt((a * a @ by_cond) * (b * b @ by_omega)))
 
 
-def _table_spread(table: np.ndarray, inner: Array, extremes: _Extremes) -> float:
-    edges = np.concatenate([[extremes.value["omega_1", "least"]], inner, [extremes.value["omega_1", "most"]]])
+def _table_spread(table: np.ndarray, edges: Array) -> float:
+    """As `_spread`; `edges` are those of the table's columns."""
     ratios = []
-    for rows in np.array_split(table, 50):
+    for rows in np.array_split(table, _BANDS):
         cumulated = np.concatenate([[0], np.cumsum(rows.sum(axis=0))])
         low, high = np.interp([0.05 * cumulated[-1], 0.95 * cumulated[-1]], cumulated, edges)
         ratios.append(high / low if low > 0 else np.inf)

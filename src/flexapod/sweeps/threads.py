@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from typing import Any
 
 from flexapod.quantities import thread_count
 from flexapod.sweeps.job import Finished, Job, flush_block, write_block
@@ -37,7 +38,8 @@ class Threads:
                         return
                     if stop():
                         computing = {future for future in computing if not future.cancel()}
-                    wait([*computing, *flushing], _POLL, FIRST_COMPLETED)
+                    begun: list[Future[Any]] = [*computing, *flushing]
+                    wait(begun, _POLL, FIRST_COMPLETED)
                     for future in [future for future in computing if future.done()]:
                         computing.remove(future)
                         block = future.result()

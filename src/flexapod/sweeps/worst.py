@@ -50,7 +50,7 @@ def worst_pose(
     seed: int = 0,
     threads: int | None = None,
 ) -> WorstPose:
-    """The pose of a box with the least stability index.
+    """The pose of a box with the least stability index (rad/s).
 
     A Sobol sweep of `points` poses gives `starts` low poses apart from one another; from each, L-BFGS-B descends on
     omega_1^2 with exact derivatives. The lowest of several frequencies that meet is never least where they meet

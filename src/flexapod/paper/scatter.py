@@ -1,0 +1,129 @@
+"""Figures 2-5: the lowest natural frequency against cond(H) over many poses, two manipulators with two masses each.
+
+The paper prints neither the poses nor their ranges. The boxes here are chosen so that the poses reach from the best
+conditioned ones near home into singular ones, as the paper's text says of its figures.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from flexapod import plots_sweep
+from flexapod.hexapod import Hexapod, load
+from flexapod.kinematics import home_pose
+from flexapod.paper import PaperFigure, Settings
+from flexapod.posesets import Box, random_poses
+from flexapod.sweeps.dataset import sweep
+from flexapod.sweeps.summary import SweepSummary, summarise
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+POINTS = 200_000
+_SHOWN = 0.99  # part of the poses inside the axis of cond(H); the rest lies beyond, with an index near zero
+
+
+class Case(NamedTuple):
+    """A manipulator, its platform's mass (kg) and the other mass of the pair; the box: home plus and minus m, rad."""
+
+    name: str
+    design: str
+    mass: float
+    other_mass: float
+    position: float
+    angle: float
+
+    def hexapod(self, mass: float) -> Hexapod:
+        return load(self.design).replace({"platform.mass": mass})
+
+    def box(self) -> Box:
+        home = home_pose(load(self.design))
+        assert home is not None
+        return Box.about(home, self.position, self.angle)
+
+
+_I = ("manipulator I", "mukherjee-i")
+_II = ("manipulator II", "mukherjee-ii")
+CASES = {
+    2: Case(*_I, 40.0, 4000.0, 0.15, np.radians(25)),
+    3: Case(*_I, 4000.0, 40.0, 0.15, np.radians(25)),
+    4: Case(*_II, 4.0, 400.0, 0.02, np.radians(60)),
+    5: Case(*_II, 400.0, 4.0, 0.02, np.radians(60)),
+}
+
+
+def draw(figure: int, settings: Settings) -> PaperFigure:
+    """One of Figures 2-5, with the numbers behind what the paper says of it."""
+    case = CASES[figure]
+    poses = random_poses(case.box(), settings.points or POINTS, settings.seed)
+    own, other = (
+        sweep(case.hexapod(mass), poses, joint=settings.joint, threads=settings.threads)
+        for mass in (case.mass, case.other_mass)
+    )
+    summary = summarise(own)
+    light, heavy = (own, other) if case.mass < case.other_mass else (other, own)
+    light_omega, heavy_omega = light["omega_1"].values, heavy["omega_1"].values
+    ratio = float(np.nanmedian(light_omega) / np.nanmedian(heavy_omega))
+    numbers = {
+        "poses": summary.poses,
+        "mass_kg": case.mass,
+        "omega_1_median_rad_s": summary.quantiles[0.5],
+        "omega_1_by_cond_H": _falls(own),
+        "rank_correlation": summary.correlation,
+        "spread_at_equal_cond_H": summary.spread,
+        "least_cond_H": None if summary.best_conditioned is None else summary.best_conditioned.cond_H,
+        "median_ratio_light_to_heavy": ratio,
+        "part_of_poses_lower_with_larger_mass": float(np.mean(heavy_omega < light_omega)),
+    }
+    axes = plots_sweep.index_scatter(own, most_cond=float(np.nanquantile(own["cond_H"], _SHOWN)))
+    axes.set_title(f"Figure {figure}: {case.name}, platform {case.mass:g} kg", fontsize=11, color=plots_sweep.INK)
+    axes.text(
+        0.98,
+        0.97,
+        _words(case, summary, ratio),
+        transform=axes.transAxes,
+        ha="right",
+        va="top",
+        fontsize=9,
+        color=plots_sweep.INK,
+    )
+    drawn = axes.get_figure(root=True)
+    assert drawn is not None
+    return PaperFigure(figure, drawn, _caption(case, settings, summary), numbers)
+
+
+def _falls(own: xr.Dataset) -> dict[str, float]:
+    """Median index, rad/s, of the poses in bands of cond(H)."""
+    cond, omega = own["cond_H"].values, own["omega_1"].values
+    edges = np.nanquantile(cond, [0, 0.1, 0.5, 0.9, 0.99, 1])
+    bands = np.searchsorted(edges[1:-1], cond)
+    return {
+        f"{edges[k]:.4g} to {edges[k + 1]:.4g}": float(np.nanmedian(omega[bands == k]))
+        for k in range(5)
+        if (bands == k).any()
+    }
+
+
+def _words(case: Case, summary: SweepSummary, ratio: float) -> str:
+    return (
+        f"{summary.poses} poses\n"
+        f"median $\\omega_1$ {summary.quantiles[0.5]:.4g} rad/s\n"
+        f"rank correlation {summary.correlation:.2f}\n"
+        f"spread at equal cond(H) {summary.spread:.2f}\n"
+        f"median, {min(case.mass, case.other_mass):g} kg : {max(case.mass, case.other_mass):g} kg = {ratio:.2f}"
+    )
+
+
+def _caption(case: Case, settings: Settings, summary: SweepSummary) -> str:
+    box = case.box()
+    centre = (box.low + box.high)[:3] / 2
+    return (
+        f"Lowest natural frequency against cond(H) for the paper's {case.name} with a platform of {case.mass:g} kg, "
+        f"{summary.poses} random poses, joint model {settings.joint}. The paper does not print its poses; here: "
+        f"position ({', '.join(f'{c:g}' for c in centre)}) m, each coordinate plus and minus {case.position:g} m; "
+        f"roll, pitch and yaw plus and minus {np.degrees(case.angle):.3g} degrees. The axis ends at the "
+        f"{_SHOWN:.0%} quantile of cond(H). "
+        "Spread at equal cond(H): 95 % over 5 % quantile of the index in bands of equal cond(H), their median."
+    )
