@@ -181,4 +181,4 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.sweeps.summary import *  # noqa: F403
     from flexapod.sweeps.worst import *  # noqa: F403
     from flexapod.trajectory import *  # noqa: F403
-    from flexapod.waypoints import Path as Path
+    from flexapod.waypoints import Path as Path  # type: ignore[assignment]  # pathlib's, through a star
