@@ -1,8 +1,8 @@
 """Worst-case optimisation of manipulator II in six variables, with 1e6 poses of its workspace an evaluation.
 
-Evaluations per second of the compiled sweep, alone and as a trial of the search, against the same sweep in NumPy (batched
-LAPACK on blocks of poses), interleaved; then the time to the optimum. `FLEXAPOD_BENCH_POSES` sets the poses (default
-1e6), `FLEXAPOD_BENCH_TRIALS` the trials (default 30).
+Evaluations per second of the compiled sweep, alone and as a trial of the search, against the same sweep in NumPy
+(batched LAPACK on blocks of poses), interleaved; then the time to the optimum. `FLEXAPOD_BENCH_POSES` sets the poses
+(default 1e6), `FLEXAPOD_BENCH_TRIALS` the trials (default 30).
 """
 
 import os
@@ -23,7 +23,7 @@ HALF, ANGLE = 0.005, np.radians(5)
 
 
 def problem() -> Problem:
-    """Radii and half angles of both joint circles, turn of the platform's, height: least index, same footprint, stroke."""
+    """Radii, half angles and turn of the joint circles, height: least index within the same footprint and stroke."""
     workspace = fx.Workspace.about_home(HALF, ANGLE)
     variables = [
         fx.JointCircle("base", radius=(0.02, 0.03), half_angle=(0.1, 0.95)),
@@ -105,7 +105,9 @@ def main() -> None:
     end = finish(p, best.x, POSES)
     whole = time.perf_counter() - began
     print(f"{TRIALS} trials: {best.values[0]:.5g} rad/s in {searched:.1f} s, {TRIALS / searched:.3g} evaluations/s")
-    print(f"optimum: {end.assessment.index:.6g} rad/s (start {p.assess(p.hexapod, POSES).index:.5g}) after {whole:.1f} s")
+    print(
+        f"optimum: {end.assessment.index:.6g} rad/s (start {p.assess(p.hexapod, POSES).index:.5g}) after {whole:.1f} s"
+    )
     sweeps = TRIALS + 3 * (end.rounds + 1)
     print(f"its {sweeps} sweeps alone would take NumPy {sweeps * theirs * SHARE:.0f} s")
 

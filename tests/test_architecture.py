@@ -24,7 +24,8 @@ FLOORS = [
     ["steady", "spectra", "recordings", "trajectory", "quantities"],
     ["requirements", "freespace", "feedback"],
     ["assessment", "smoothing"],
-    ["laws"],
+    ["laws", "sweeps"],
+    ["optimal"],
     [STUDIES],
     ["plots"],
     [

@@ -16,7 +16,9 @@ from flexapod.quantities import evaluate
 RADIANS = np.radians
 
 
-def three_pairs(base_radius=0.2, base_half=0.2, radius=0.15, half=0.25, height=0.2, mass=10.0, inertia=(0.1, 0.1, 0.15)):
+def three_pairs(
+    base_radius=0.2, base_half=0.2, radius=0.15, half=0.25, height=0.2, mass=10.0, inertia=(0.1, 0.1, 0.15)
+):
     """A machine with three-fold and mirror symmetry and massless legs of 1e6 N/m."""
     angle = np.repeat(np.arange(3) * 2 * np.pi / 3, 2)
     side = np.tile([-1.0, 1.0], 3)
@@ -249,7 +251,9 @@ def test_massless_legs_are_best_isotropic():
         trials=0,
     )
     most = np.sqrt(2 * 1e6 / 10.0)
-    assert (1 - 1e-3) * most < found.index < (1 + 1e-12) * most  # log(3)/4000 from the smooth minimum, and flat about it
+    assert (
+        (1 - 1e-3) * most < found.index < (1 + 1e-12) * most
+    )  # log(3)/4000 from the smooth minimum, and flat about it
     H = fx.force_transformation(found.hexapod, fx.home_pose(found.hexapod))
     np.testing.assert_allclose(H[:3] @ H[:3].T, 2 * np.eye(3), atol=4e-3)  # twice the relative shortfall of the index
 
@@ -352,7 +356,9 @@ def test_clearance_angles_and_deflection_are_kept():
 
 def test_pareto_front_is_one_and_its_designs_are_what_it_says():
     start = fx.load("mukherjee-ii")
-    front = fx.pareto_front(start, circles(), fx.Footprint(), constraints=[fx.Stroke(over=workspace())], trials=40, refine=3, points=256)
+    front = fx.pareto_front(
+        start, circles(), fx.Footprint(), constraints=[fx.Stroke(over=workspace())], trials=40, refine=3, points=256
+    )
     assert len(front.designs) >= 2
     assert (np.diff(front.index) > 0).all()
     assert (np.diff(front.against) > 0).all()

@@ -7,6 +7,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -173,5 +174,5 @@ def test_a_search_is_stopped_between_trials():
     )
     assert [done for done, _, _ in seen] == [0, 1, 2, 3, 4]
     assert np.isnan(seen[0][2])
-    assert all(b2 >= b1 for (_, _, b1), (_, _, b2) in zip(seen[1:], seen[2:], strict=False))
+    assert all(b2 >= b1 for (_, _, b1), (_, _, b2) in pairwise(seen[1:]))
     assert len(study.finished()) == 5

@@ -1,7 +1,7 @@
 // The core as Python sees it: functions of a design (211 numbers) and motions (n rows of 24 numbers) that return
 // arrays with n rows. Shapes and values are checked in Python; here only sizes are.
 #include "arrays.hpp"
-#include "bind_designs.hpp"
+#include "design_module.hpp"
 #include "simulation_module.hpp"
 #include "energy.hpp"
 #include "kinematics.hpp"

@@ -151,6 +151,25 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.laws import VelocityFeedback as VelocityFeedback
     from flexapod.linear import *  # noqa: F403
     from flexapod.modal import *  # noqa: F403
+    from flexapod.optimal.constraints import ConditionNumber as ConditionNumber
+    from flexapod.optimal.constraints import Deflection as Deflection
+    from flexapod.optimal.constraints import DesignLimits as DesignLimits
+    from flexapod.optimal.constraints import Footprint as Footprint
+    from flexapod.optimal.constraints import JointAngle as JointAngle
+    from flexapod.optimal.constraints import LegClearance as LegClearance
+    from flexapod.optimal.constraints import LegLength as LegLength
+    from flexapod.optimal.constraints import Stroke as Stroke
+    from flexapod.optimal.constraints import TotalMass as TotalMass
+    from flexapod.optimal.objectives import Dexterity as Dexterity
+    from flexapod.optimal.objectives import LeastIndex as LeastIndex
+    from flexapod.optimal.objectives import MeanIndex as MeanIndex
+    from flexapod.optimal.optimise import OptimalDesign as OptimalDesign
+    from flexapod.optimal.optimise import optimise as optimise
+    from flexapod.optimal.pareto import ParetoFront as ParetoFront
+    from flexapod.optimal.pareto import pareto_front as pareto_front
+    from flexapod.optimal.places import Workspace as Workspace
+    from flexapod.optimal.variables import JointCircle as JointCircle
+    from flexapod.optimal.variables import Variable as Variable
     from flexapod.path import PathIndex as PathIndex
     from flexapod.path import path_index as path_index
     from flexapod.path import path_loads as path_loads
@@ -166,7 +185,10 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.recordings import *  # noqa: F403
     from flexapod.requirements import PathRequirements as PathRequirements
     from flexapod.response import *  # noqa: F403
-    from flexapod.robust import *  # noqa: F403
+    from flexapod.robust import Payload as Payload
+    from flexapod.robust import Robustness as Robustness
+    from flexapod.robust import Uncertain as Uncertain
+    from flexapod.robust import robustness as robustness
     from flexapod.sampled import Hardware as Hardware
     from flexapod.sampled import simulate_control as simulate_control
     from flexapod.sampling import sampling_time as sampling_time

@@ -1,4 +1,4 @@
-"""Figures of optimal design and of robustness. Each function draws a result on a new matplotlib Figure and returns it."""
+"""Figures of optimal design and of robustness. Each function draws a result on a new Figure and returns it."""
 
 from __future__ import annotations
 
@@ -34,7 +34,9 @@ def search(found: OptimalDesign) -> Figure:
         best = np.fmax.accumulate(np.where(feasible, index, np.nan))
         ax.step(trial, best, where="post", color=BLUE, lw=1.4, label="best so far")
     ax.axhline(found.index, color=GREEN, lw=1.8, label=f"finished and verified: {found.index:.5g}")
-    ax.axhline(found.start_index, color=ORANGE, lw=1.4, ls=(0, (5, 2)), label=f"design begun with: {found.start_index:.5g}")
+    ax.axhline(
+        found.start_index, color=ORANGE, lw=1.4, ls=(0, (5, 2)), label=f"design begun with: {found.start_index:.5g}"
+    )
     if not trial.size:
         ax.set_xticks([])
     told = found.history["index"].attrs
@@ -90,7 +92,15 @@ def front(found: ParetoFront) -> Figure:
     ax.plot(told["against"].values[keep], told["index"].values[keep], ".", ms=5, color=FAINT, mew=0, label="trial")
     ax.plot(found.against, found.index, "-o", ms=5.5, lw=1.6, color=BLUE, mec="white", mew=0.7, label="Pareto front")
     ax.plot(
-        found.start[1], found.start[0], "D", ms=8, color=ORANGE, mec="white", mew=0.9, ls="none", label="design begun with"
+        found.start[1],
+        found.start[0],
+        "D",
+        ms=8,
+        color=ORANGE,
+        mec="white",
+        mew=0.9,
+        ls="none",
+        label="design begun with",
     )
     seen = np.append(found.against, found.start[1])
     if keep.any() and told["against"].values[keep].max() > 20 * seen.min():

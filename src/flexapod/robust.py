@@ -52,7 +52,9 @@ class Uncertain:
             raise ArgumentError("the home pose is where the machine is told to stand, not a number that strays.")
         value = numbers(hexapod)[index]
         if self.relative and not value.any():
-            raise ArgumentError(f"{self.target} is zero, so a share of it is nothing. Give relative=False and an amount.")
+            raise ArgumentError(
+                f"{self.target} is zero, so a share of it is nothing. Give relative=False and an amount."
+            )
         width = self.spread * np.abs(value) if self.relative else np.full(len(index), self.spread * unit)
         sets = [[k] for k in range(len(index))] if self.each else [list(range(len(index)))]
         found = []
@@ -111,7 +113,7 @@ def _check(name: str, spread: float, distribution: str) -> None:
         raise ArgumentError(f"{name}: the spread is {spread}; it must be > 0.")
     if distribution not in ("uniform", "normal", "triangular", "lognormal"):
         raise ArgumentError(
-            f"{name}: the distribution is {distribution!r}; it must be 'uniform', 'normal', 'triangular' or 'lognormal'."
+            f"{name}: the distribution is {distribution!r}; it must be uniform, normal, triangular or lognormal."
         )
     if distribution == "lognormal" and spread > 2:
         raise ArgumentError(f"{name}: a lognormal spread of {spread} is of the logarithm; it must be at most 2.")
@@ -149,7 +151,9 @@ class Ensemble:
         uncertain = [uncertain] if isinstance(uncertain, Uncertain | Payload) else uncertain
         wrong = [u for u in uncertain if not isinstance(u, Uncertain | Payload)]
         if wrong or not uncertain:
-            raise ArgumentError(f"uncertain {f'holds {wrong[0]!r}' if wrong else 'is empty'}; give Uncertain or Payload.")
+            raise ArgumentError(
+                f"uncertain {f'holds {wrong[0]!r}' if wrong else 'is empty'}; give Uncertain or Payload."
+            )
         self.hexapod = hexapod
         self.base = numbers(hexapod)[: HOME.start]
         every = [p for u in uncertain for p in u.parameters(hexapod)]
@@ -222,67 +226,74 @@ def robustness(
     samples: int = 2**14,
     poses: int = 256,
     sensitivity: int = 0,
-    joint: JointModel = "universal",
-    seed: int = 0,
-    threads: int | None = None,
-    progress: Callable[[str, float], None] | None = None,
+    **options: Any,
 ) -> Robustness:
     """Distribution and worst case of the stability index when parts of the design are uncertain.
 
     uncertain: `Uncertain` and `Payload`, independent of one another. over: a pose (default: home), poses, or a box or
     `Workspace`, of which `poses` poses are looked at; the index of a sample is the least over them. samples: designs
     drawn (a scrambled Sobol sequence). sensitivity: base samples of a Sobol analysis (SALib), a power of two such as
-    1024, which takes sensitivity * (parameters + 2) designs more; 0: none. Raises ArgumentError for ranges that a design
-    cannot have, and where SALib is missing.
+    1024, which takes sensitivity * (parameters + 2) designs more; 0: none. Options: joint, seed=0, threads, progress
+    (called with a stage and its share done). Raises ArgumentError for ranges that a design cannot have, and where SALib
+    is missing.
     """
+    settings = _Settings(**options)
     ensemble = Ensemble(hexapod, uncertain)
     if samples < 2:
         raise ArgumentError(f"samples is {samples}; at least 2 designs must be drawn.")
-    where = places(over)
-    if where.from_home and hexapod.home is None:
-        raise ArgumentError(f"{hexapod.name!r} names no home pose. Give a pose or a box.")
-    rows = where.rows(numbers(hexapod)[HOME], poses)
-    index = _Index(ensemble, rows, is_universal(joint), thread_count(threads), progress)
+    rows = _rows(hexapod, places(over), poses)
+    index = _Index(ensemble, rows, settings)
+    nominal = index.nominal(hexapod.name)
     from scipy.stats import qmc
 
-    u = qmc.Sobol(len(ensemble.names), scramble=True, rng=seed).random(samples)
+    u = qmc.Sobol(len(ensemble.names), scramble=True, rng=settings.seed).random_base2((samples - 1).bit_length())[
+        :samples
+    ]
     values = index(u, "samples")
-    nominal = index.of(ensemble.base[None])[0]
     worst, worst_u = _worst(index, u, values)
-    indices = _sobol(ensemble, index, sensitivity, seed) if sensitivity else None
-    if nominal <= 0:
-        raise ArgumentError(f"the index of {hexapod.name!r} itself is zero over {where!r}; choose poses that it can hold.")
     return Robustness(
-        samples=_samples(ensemble, u, values, hexapod, joint, len(rows)),
-        nominal=float(nominal),
+        samples=_samples(ensemble, u, values, hexapod, {"joint": settings.joint, "poses": len(rows)}),
+        nominal=nominal,
         mean=float(values.mean()),
         deviation=float(values.std(ddof=1)),
         quantiles={q: float(np.quantile(values, q)) for q in _QUANTILES},
         worst=worst,
         worst_at={name: float(ensemble.value(k, worst_u[k : k + 1])[0]) for k, name in enumerate(ensemble.names)},
-        sensitivity=indices,
+        sensitivity=_sobol(ensemble, index, sensitivity, settings.seed) if sensitivity else None,
     )
+
+
+def _rows(hexapod: Hexapod, where: Places, poses: int) -> Array:
+    if where.from_home and hexapod.home is None:
+        raise ArgumentError(f"{hexapod.name!r} names no home pose. Give a pose or a box.")
+    return where.rows(numbers(hexapod)[HOME], poses)
+
+
+@dataclass(frozen=True)
+class _Settings:
+    joint: JointModel = "universal"
+    seed: int = 0
+    threads: int | None = None
+    progress: Callable[[str, float], None] | None = None
 
 
 class _Index:
     """The least index over poses, for designs at points of the unit cube."""
 
-    def __init__(
-        self,
-        ensemble: Ensemble,
-        rows: Array,
-        universal: bool,
-        threads: int,
-        progress: Callable[[str, float], None] | None,
-    ) -> None:
-        self.ensemble, self.universal, self.threads, self.progress = ensemble, universal, threads, progress
+    def __init__(self, ensemble: Ensemble, rows: Array, settings: _Settings) -> None:
+        self.ensemble, self.progress = ensemble, settings.progress
+        self.universal, self.threads = is_universal(settings.joint), thread_count(settings.threads)
         pose = Pose.from_rpy(*rows.T)
         self.poses = np.ascontiguousarray(np.concatenate([pose.position, pose.matrix.reshape(-1, 9)], axis=1))
 
+    def nominal(self, name: str) -> float:
+        found = float(self.of(self.ensemble.base[None])[0])
+        if found <= 0:
+            raise ArgumentError(f"the index of {name!r} itself is zero at these poses; choose some that it can hold.")
+        return found
+
     def of(self, designs: Array) -> Array:
-        omega = _core.sweep_designs(
-            np.ascontiguousarray(designs), self.universal, self.poses, False, 1, self.threads
-        )
+        omega = _core.sweep_designs(np.ascontiguousarray(designs), self.universal, self.poses, False, 1, self.threads)
         return np.nan_to_num(omega[:, :, 0]).min(axis=1)
 
     def __call__(self, u: Array, stage: str = "") -> Array:
@@ -311,7 +322,9 @@ def _worst(index: _Index, u: Array, values: Array) -> tuple[float, Array]:
         trial = np.clip(starts[:, None] + reach[:, None, None] * directions, 0.0, 1.0)
         found = index(trial.reshape(-1, p)).reshape(len(starts), 2 * p)
         # Every coordinate's better side at once, where that is better still.
-        side = np.where(found[:, :p] < found[:, p:], 1.0, -1.0) * (np.minimum(found[:, :p], found[:, p:]) < best[:, None])
+        side = np.where(found[:, :p] < found[:, p:], 1.0, -1.0) * (
+            np.minimum(found[:, :p], found[:, p:]) < best[:, None]
+        )
         together = np.clip(starts + reach[:, None] * side, 0.0, 1.0)
         all_found = np.concatenate([found, index(together)[:, None]], axis=1)
         all_trial = np.concatenate([trial, together[:, None]], axis=1)
@@ -361,14 +374,9 @@ def _sobol(ensemble: Ensemble, index: _Index, base: int, seed: int) -> xr.Datase
     )
 
 
-def _samples(
-    ensemble: Ensemble, u: Array, values: Array, hexapod: Hexapod, joint: str, poses: int
-) -> xr.Dataset:
+def _samples(ensemble: Ensemble, u: Array, values: Array, hexapod: Hexapod, about: dict[str, Any]) -> xr.Dataset:
     import xarray as xr
 
     data: dict[str, Any] = {name: ("sample", ensemble.value(k, u[:, k])) for k, name in enumerate(ensemble.names)}
     data["index"] = ("sample", values, {"units": "rad s-1", "long_name": "dynamic stability index"})
-    attrs = {"design": hexapod.name, "digest": hexapod.digest, "joint": joint, "poses": poses}
-    return xr.Dataset(data, attrs=attrs)
-
-
+    return xr.Dataset(data, attrs={"design": hexapod.name, "digest": hexapod.digest, **about})

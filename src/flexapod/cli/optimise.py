@@ -77,9 +77,9 @@ class Options:
     multiple=True,
     required=True,
     metavar="KEY=LEAST:LARGEST",
-    help="A variable: a key of the design file, as platform.mass=20:40 or platform.joints_mm[:][2]=-5:5. +KEY adds to what "
-    "is there, *KEY scales it, A,-B ties B to minus A. base.circle.radius, .half_angle, .turn, .height and the same of "
-    "the platform keep three symmetric pairs of joints. Repeatable.",
+    help="A variable: a key of the design file, as platform.mass=20:40 or platform.joints_mm[:][2]=-5:5. +KEY adds to "
+    "what is there, *KEY scales it, A,-B ties B to minus A. base.circle.radius, .half_angle, .turn, .height and the "
+    "same of the platform keep three symmetric pairs of joints. Repeatable.",
 )
 @click.option(
     "--keep",
@@ -87,7 +87,9 @@ class Options:
     metavar="NAME[_UNIT][=BOUND]",
     help=f"A constraint: {', '.join(problemarg.KEEPS)}. Without a bound: no worse than the design is now. Repeatable.",
 )
-@click.option("--against", metavar="NAME", help="The Pareto front of the index against this (mass, footprint, cond, ...).")
+@click.option(
+    "--against", metavar="NAME", help="The Pareto front of the index against this (mass, footprint, cond, ...)."
+)
 @where_options
 @click.option(
     "--mean",
@@ -150,7 +152,14 @@ class TrialProgress:
 
     def __init__(self) -> None:
         from rich.console import Console
-        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+        from rich.progress import (
+            BarColumn,
+            MofNCompleteColumn,
+            Progress,
+            TextColumn,
+            TimeElapsedColumn,
+            TimeRemainingColumn,
+        )
 
         columns = (
             TextColumn("{task.description}"),
@@ -225,7 +234,7 @@ def _show_design(found: OptimalDesign, aim: Objective, options: Options) -> None
             }
         )
         return
-    click.echo(f"{repr(aim)}: {found.start_index:.6g} -> {found.index:.6g} rad/s ({100 * found.gain:+.3g} %), verified at "
+    click.echo(f"{aim!r}: {found.start_index:.6g} -> {found.index:.6g} rad/s ({100 * found.gain:+.3g} %), verified at "
                f"{found.verification.points} poses")  # fmt: skip
     for name, value in found.variables.items():
         click.echo(f"  {name} = {value:.6g}" + ("  (on its bound)" if name in found.at_bounds else ""))
@@ -264,7 +273,7 @@ def _show_front(found: ParetoFront, aim: Objective, options: Options) -> None:
             }
         )
         return
-    click.echo(f"{repr(aim)} against {found.name}; the design begun with has {found.start[0]:.6g} rad/s at "
+    click.echo(f"{aim!r} against {found.name}; the design begun with has {found.start[0]:.6g} rad/s at "
                f"{found.start[1]:.6g} {found.unit}".rstrip())  # fmt: skip
     for index, value in zip(found.index, found.against, strict=True):
         click.echo(f"  {index:.6g} rad/s at {value:.6g} {found.unit}".rstrip())

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -47,7 +48,7 @@ def variables(texts: Iterable[str]) -> list[Variable | JointCircle]:
         plate, _, part = keys.partition(".circle.")
         if part:
             name, unit = _unit("--vary", part, _CIRCLE)
-            circles.setdefault(plate, {})[name] = (low * unit, high * unit)
+            circles.setdefault(plate, {})[name] = (unit(low), unit(high))
             continue
         ties = {key.lstrip("-"): -1.0 if key.startswith("-") else 1.0 for key in keys.split(",")}
         found.append(Variable(ties, low, high, kind))  # type: ignore[arg-type]
@@ -65,7 +66,7 @@ def keep(text: str) -> Constraint:
 
     given, equals, value = text.partition("=")
     name, unit = _unit("--keep", given.strip(), KEEPS)
-    bound = _number("--keep", text, value) * unit if equals else None
+    bound = unit(_number("--keep", text, value)) if equals else None
     if name == "limits" and equals:
         raise click.UsageError("--keep limits takes no bound: it keeps the [limits] of the design.")
     makers = {
@@ -137,14 +138,17 @@ def uncertain(texts: Iterable[str]) -> list[Any]:
         key, equals, value = text.partition("=")
         spread, *words = (word.strip() for word in value.split(","))
         if not equals or not spread:
-            raise click.UsageError(f"--uncertain {text}: write KEY=SPREAD, such as legs.stiffness=10% or {key}=5%,normal.")
+            raise click.UsageError(
+                f"--uncertain {text}: write KEY=SPREAD, such as legs.stiffness=10% or {key}=5%,normal."
+            )
         together = "together" in words
         kinds = [word for word in words if word != "together"]
         if len(kinds) > 1:
             raise click.UsageError(f"--uncertain {text}: {' and '.join(kinds)} are two distributions. Give one.")
+        kind = kinds[0] if kinds else "uniform"
         relative = spread.endswith("%")
         number = _number("--uncertain", text, spread.rstrip("%")) * (0.01 if relative else 1.0)
-        found.append(Uncertain(key.strip(), number, *kinds, relative=relative, each=not together))  # type: ignore[arg-type]
+        found.append(Uncertain(key.strip(), number, kind, relative, not together))  # type: ignore[arg-type]
     return found
 
 
@@ -171,16 +175,22 @@ def _number(option: str, text: str, number: str) -> float:
         raise click.UsageError(f"{option} {text}: {number!r} is no number.") from None
 
 
-def _unit(option: str, given: str, known: dict[str, Any]) -> tuple[str, float]:
-    """`stroke_mm` -> its name and the unit in SI units."""
-    from flexapod.units import UNITS, to_si
+def _si(number: float, dimension: str, unit: str) -> float:
+    from flexapod.units import to_si
+
+    return float(to_si(number, dimension, unit))
+
+
+def _unit(option: str, given: str, known: dict[str, Any]) -> tuple[str, Callable[[float], float]]:
+    """`stroke_mm` -> its name and what turns its numbers into SI units."""
+    from flexapod.units import UNITS
 
     for name in sorted(known, key=len, reverse=True):
         if given == name:
-            return name, 1.0
+            return name, float
         unit = given[len(name) + 1 :]
         if given.startswith(f"{name}_") and known[name] and unit in UNITS[known[name]]:
-            return name, float(to_si(1.0, known[name], unit))
+            return name, partial(_si, dimension=known[name], unit=unit)
     raise click.UsageError(
         f"{option}: there is no {given!r}. There are {', '.join(known)}; lengths, angles and masses may carry a unit, "
         "as in stroke_mm or universal-angle_deg."

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     "--uncertain",
     multiple=True,
     metavar="KEY=SPREAD[%][,DISTRIBUTION][,together]",
-    help="A number of the design that strays: legs.stiffness=10% or platform.mass=50,normal. Uniform by default: plus and "
-    "minus the spread; also normal, lognormal, triangular. Legs stray one by one, unless `together`. Repeatable.",
+    help="A number of the design that strays: legs.stiffness=10% or platform.mass=50,normal. Uniform by default: plus "
+    "and minus the spread; also normal, lognormal, triangular. Legs stray one by one, unless `together`. Repeatable.",
 )
 @click.option("--payload", metavar="LEAST:LARGEST", help="Mass (kg) of a load on the platform beyond the design's.")
 @click.option(
@@ -71,7 +71,9 @@ def command(design: str, changes: tuple[str, ...], out: Path | None, as_json: bo
     if out is not None or not as_json:
         files = _write(found, hexapod, words, common.output_directory(Path() if out is None else out))
     if as_json:
-        common.print_json({"design": hexapod.name, "digest": hexapod.digest, "over": words, **_plain(found), "files": files})
+        common.print_json(
+            {"design": hexapod.name, "digest": hexapod.digest, "over": words, **_plain(found), "files": files}
+        )
         return
     _show(found, words)
     for file in files:

@@ -34,7 +34,9 @@ class Requirement:
 
     def margins(self, value: Array, column: Array | None = None) -> Array:
         """Relative margins, >= 0 where the bound is kept."""
-        bound = np.broadcast_to(self.bound, value.shape) if column is None or not self.bound.ndim else self.bound[column]
+        bound = (
+            np.broadcast_to(self.bound, value.shape) if column is None or not self.bound.ndim else self.bound[column]
+        )
         sign = 1.0 if self.side == "most" else -1.0
         if self.kind.log:
             with np.errstate(divide="ignore"):
@@ -94,7 +96,9 @@ class Footprint(Constraint):
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints
         (x, y), radius = kinds.enclosing_circle(joints[:, :2])
         kind = kinds.Radius(self.plate, float(x), float(y))
-        return _one(f"footprint of the {self.plate}", kind, "most", radius if self.most is None else self.most, None, measure)
+        return _one(
+            f"footprint of the {self.plate}", kind, "most", radius if self.most is None else self.most, None, measure
+        )
 
 
 @dataclass(frozen=True)
@@ -185,7 +189,7 @@ class ConditionNumber(_Everywhere):
 
 @dataclass(frozen=True)
 class Deflection(_Everywhere):
-    """A static force (N; default: the platform's weight), whatever its direction, moves the platform by at most `most` (m).
+    """A static force (N; default: the platform's weight) in any direction moves the platform by at most `most` (m).
 
     From the stiffness H K H^T of the legs at the reference point, without moment.
     """
@@ -210,14 +214,14 @@ class DesignLimits(_Everywhere):
         found: list[Requirement] = []
         if limits.leg_length is not None:
             pairs = np.reshape(limits.leg_length, (-1, 2))
-            low, high = (pairs[0] if len(pairs) == 1 else pairs.T)
+            low, high = pairs[0] if len(pairs) == 1 else pairs.T
             if np.all(low > 0):
                 found.append(Requirement("shortest leg", kinds.LegLengths(), "least", np.asarray(low), where))
             found.append(Requirement("longest leg", kinds.LegLengths(), "most", np.asarray(high), where))
         for name in ("universal", "spherical"):
             most = getattr(limits, f"{name}_angle")
             if most is not None:
-                found += JointAngle(name, most, over=where).requirements(hexapod, over, measure)  # type: ignore[arg-type]
+                found += JointAngle(name, most, over=where).requirements(hexapod, over, measure)
         if limits.leg_distance:
             found += LegClearance(limits.leg_distance, over=where).requirements(hexapod, over, measure)
         if not found:

@@ -129,7 +129,7 @@ def _add(held: list[_Held], requirement: Requirement | None, from_home: bool, ro
 
 
 class _Local:
-    """The problem with poses held: variables u in the unit cube and t, logarithm of the index over that at the start."""
+    """The problem with poses held: variables u in the unit cube, and t = ln(index / index at the start)."""
 
     def __init__(self, problem: Problem, held: Sequence[_Held], sharpness: float) -> None:
         self.problem, self.held, self.sharpness = problem, held, sharpness

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from flexapod.errors import ArgumentError
 from flexapod.optimal.kinds import Conditioning
@@ -15,22 +15,25 @@ from flexapod.optimal.slopes import Slopes, index_slopes
 from flexapod.pose import Array, Pose
 from flexapod.posesets import Box
 
+Numbers = NDArray[np.int64]
 _HELD = 16  # lowest poses of a sweep that the finish holds up
 
 
 class Objective(Protocol):
     """A number to raise, made of a quantity of the sweep at some places. unit, label: as figures show it."""
 
-    over: Places
     quantity: str
     unit: str
     label: str
+
+    @property
+    def over(self) -> Places: ...
 
     def index(self, found: Array) -> float:
         """From the quantity at every pose swept; 0 where a pose has none."""
         ...
 
-    def held(self, found: Array) -> Array:
+    def held(self, found: Array) -> Numbers:
         """Numbers of the poses that decide it."""
         ...
 
@@ -56,7 +59,7 @@ class LeastIndex(_Index):
     def index(self, found: Array) -> float:
         return float(found.min()) if np.isfinite(found).all() else 0.0
 
-    def held(self, found: Array) -> Array:
+    def held(self, found: Array) -> Numbers:
         return np.argsort(found)[:_HELD]
 
     def slopes(self, at: Slopes, sharpness: float) -> tuple[Array, Array]:
@@ -81,14 +84,14 @@ class MeanIndex(_Index):
         given = np.ones(count) if weights is None else np.asarray(weights, dtype=np.float64)
         if given.shape != (count,) or not np.isfinite(given).all() or (given < 0).any() or not given.any():
             raise ArgumentError(
-                f"weights has shape {given.shape} for {count} poses; it must hold one number >= 0 for each pose, not all 0."
+                f"weights has shape {given.shape} for {count} poses; one number >= 0 is needed for each, not all 0."
             )
         self.weights: Array = given / given.sum()
 
     def index(self, found: Array) -> float:
         return float(self.weights @ found) if np.isfinite(found).all() else 0.0
 
-    def held(self, found: Array) -> Array:
+    def held(self, found: Array) -> Numbers:
         return np.arange(len(found))
 
     def slopes(self, at: Slopes, sharpness: float) -> tuple[Array, Array]:
@@ -119,7 +122,7 @@ class Dexterity:
     def index(self, found: Array) -> float:
         return float(1 / found.max()) if np.isfinite(found).all() else 0.0
 
-    def held(self, found: Array) -> Array:
+    def held(self, found: Array) -> Numbers:
         return np.argsort(-found)[:_HELD]
 
     def slopes(self, at: Slopes, sharpness: float) -> tuple[Array, Array]:

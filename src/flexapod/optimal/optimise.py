@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
@@ -65,9 +65,9 @@ class OptimalDesign:
     """What `optimise` found.
 
     hexapod: the design; variables: its values by name, in their keys' units; at_bounds: those on a bound. index: rad/s,
-    as verified (for Dexterity: 1/cond(H)); start_index: of the design one began with, verified alike. searched_index: best of the trials, before
-    the gradient (NaN without trials). coincident: frequencies within 0.1 % of the lowest at the worst pose: where more
-    than one, the optimum lies where modes meet. history: Dataset of the finished trials.
+    as verified (for Dexterity: 1/cond(H)); start_index: of the design one began with, verified alike. searched_index:
+    best of the trials, before the gradient (NaN without trials). coincident: frequencies within 0.1 % of the lowest at
+    the worst pose: where more than one, the optimum lies where modes meet. history: Dataset of the finished trials.
     """
 
     hexapod: Hexapod
@@ -101,8 +101,8 @@ def optimise(
     study: str | Path | None = None,
     **options: Any,
 ) -> OptimalDesign:
-    """The design with the highest objective: `LeastIndex` at a pose (default: home) or over a workspace, `MeanIndex` over a
-    path, or, for comparison, `Dexterity`.
+    """The design with the highest objective: `LeastIndex` at a pose (default: home) or over a workspace, `MeanIndex`
+    over a path, or, for comparison, `Dexterity`.
 
     variables: `Variable` and `JointCircle`. constraints: such as `Footprint` or `Stroke`. trials: of the global search
     (0: gradients from the start only). start: values by name, in the keys' units; default: the design's own. study: an
@@ -114,14 +114,8 @@ def optimise(
     """
     began = perf_counter()
     settings = Settings(**options)
-    problem = Problem(
-        hexapod,
-        variables,
-        LeastIndex() if objective is None else objective,
-        constraints,
-        settings.joint,
-        settings.threads,
-    )
+    aim = LeastIndex() if objective is None else objective
+    problem = Problem(hexapod, variables, aim, constraints, settings.joint, settings.threads)
     if isinstance(trials, bool) or not isinstance(trials, int) or trials < 0:
         raise ArgumentError(f"trials is {trials!r}; it must be a whole number, 0 or more.")
     begin = _start(problem, start, settings)
@@ -136,14 +130,21 @@ def optimise(
             f"no design that keeps every constraint was found in {len(found)} trials; the nearest one breaks: "
             f"{problem.violations(best)}. Loosen a bound, widen the variables, or allow more trials."
         )
-    design = problem.map.hexapod_at(best_x)
-    checked, by_start = verify(problem, design, settings.verify), verify(problem, hexapod, settings.verify)
+    return _told(problem, best_x, found, evaluations, settings, began)
+
+
+def _told(
+    problem: Problem, x: Array, found: Sequence[Trial], evaluations: int, settings: Settings, began: float
+) -> OptimalDesign:
+    """The result, verified; the design one began with is judged on the same poses."""
+    design, start = problem.map.hexapod_at(x), problem.hexapod
+    checked, by_start = verify(problem, design, settings.verify), verify(problem, start, settings.verify)
     return OptimalDesign(
-        hexapod=design.replace({"name": f"{hexapod.name}-optimised"}),
-        variables=problem.map.values(best_x),
-        at_bounds=_at_bounds(problem, best_x),
+        hexapod=design.replace({"name": f"{start.name}-optimised"}),
+        variables=problem.map.values(x),
+        at_bounds=_at_bounds(problem, x),
         index=checked.index,
-        start=hexapod,
+        start=start,
         start_index=by_start.index,
         searched_index=max((t.values[0] for t in found if t.feasible), default=float("nan")),
         coincident=_coincident(problem, design, checked.pose),
@@ -196,7 +197,7 @@ def _one(problem: Problem, x: Array, settings: Settings) -> tuple[Assessment, tu
 def _finish_best(
     problem: Problem, begin: Array, found: Sequence[Trial], settings: Settings
 ) -> tuple[Array, Assessment, int]:
-    """Finishes the start and the best trials by gradients, and verifies: what the dense sweep finds worse is held up."""
+    """Finishes the start and the best trials by gradients; what denser sweeps find worse is finished anew."""
     order = sorted(found, key=lambda t: (not t.feasible, -t.values[0] if t.feasible else t.violation))
     starts = [t.x for t in _apart(problem, order)] or [begin]
     if not any(np.array_equal(x, begin) for x in starts):
@@ -273,10 +274,12 @@ def history(problem: Problem, found: Sequence[Trial]) -> xr.Dataset:
 
     aim, order = problem.objective, [t.number for t in found]
     x = np.array([t.x for t in found]).reshape(len(found), len(problem.map.names))
-    data: dict[str, Any] = {
-        p.name: ("trial", x[:, k] / p.unit) for k, p in enumerate(problem.map.parameters)
-    }
-    data["index"] = ("trial", [t.values[0] for t in found], {"units": aim.unit, "label": aim.label, "long_name": repr(aim)})
+    data: dict[str, Any] = {p.name: ("trial", x[:, k] / p.unit) for k, p in enumerate(problem.map.parameters)}
+    data["index"] = (
+        "trial",
+        [t.values[0] for t in found],
+        {"units": aim.unit, "label": aim.label, "long_name": repr(aim)},
+    )
     if found and len(found[0].values) > 1:
         data["against"] = ("trial", [t.values[1] for t in found])
     data["feasible"] = ("trial", np.array([t.feasible for t in found], dtype=bool))

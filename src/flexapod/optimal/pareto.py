@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+_HOPELESS = 1e12  # of what is made small, where a design has none
+
+
 @dataclass(frozen=True, eq=False)
 class ParetoFront:
     """Designs from the least of `against` to the highest index. index: (m,) rad/s, verified; against: (m,) SI.
@@ -63,18 +66,16 @@ def pareto_front(
     """
     settings = Settings(**options)
     aim = LeastIndex() if objective is None else objective
-    problem = Problem(hexapod, variables, aim, constraints, settings.joint, settings.threads)
-    bounded = getattr(against, "most", None) is not None
-    other = Problem(
-        hexapod, variables, aim, [*constraints, against], settings.joint, settings.threads
-    )  # its last requirement is the one that is traded
     if not isinstance(against, Constraint) or not hasattr(against, "most"):
-        raise ArgumentError(f"against is {against!r}; it must be a constraint with an upper bound, such as TotalMass().")
-    traded = other.requirements[-1]
-    if not bounded:
-        other.requirements[-1] = replace(traded, bound=np.array(np.inf))
+        raise ArgumentError(
+            f"against is {against!r}; it must be a constraint with an upper bound, such as TotalMass()."
+        )
+    problem = Problem(hexapod, variables, aim, [*constraints, against], settings.joint, settings.threads)
+    traded = problem.requirements[-1]
+    if against.most is None:
+        problem.requirements[-1] = replace(traded, bound=np.array(np.inf))
     search = Study(
-        other,
+        problem,
         study,
         aim=f"index against {traded.name}",
         directions=("maximize", "minimize"),
@@ -82,20 +83,22 @@ def pareto_front(
         sampler="nsga2",
         points=settings.points,
     )
-
-    def evaluate(x: Array) -> tuple[Assessment, tuple[float, ...]]:
-        found = other.assess_at(x, settings.points, settings.seed)
-        value = found.values[-1] if np.isfinite(found.values[-1]) else 1e12
-        return found, (found.index, float(value))
-
-    search.run(trials, evaluate, settings.progress, settings.stop)
+    search.run(trials, lambda x: _both(problem, x, settings), settings.progress, settings.stop)
     found = search.finished()
-    front = _nondominated([t.values for t in found if t.feasible])
-    if not front:
-        raise InfeasibleError(f"none of {len(found)} trials keeps every constraint. Loosen a bound, or allow more trials.")
     feasible = [t for t in found if t.feasible]
-    points = _refined(other, [feasible[i] for i in front], refine, settings)
-    return _front(hexapod, problem, other, points, history(other, found), settings)
+    front = _nondominated([t.values for t in feasible])
+    if not front:
+        raise InfeasibleError(
+            f"none of {len(found)} trials keeps every constraint. Loosen a bound, or allow more trials."
+        )
+    points = _refined(problem, [feasible[i] for i in front], refine, settings)
+    return _front(problem, points, history(problem, found), settings)
+
+
+def _both(problem: Problem, x: Array, settings: Settings) -> tuple[Assessment, tuple[float, ...]]:
+    found = problem.assess_at(x, settings.points, settings.seed)
+    value = found.values[-1] if np.isfinite(found.values[-1]) else _HOPELESS
+    return found, (found.index, float(value))
 
 
 def _nondominated(values: Sequence[tuple[float, ...]]) -> list[int]:
@@ -124,22 +127,20 @@ def _refined(problem: Problem, front: Sequence[Trial], count: int, settings: Set
     return xs
 
 
-def _front(
-    hexapod: Hexapod, problem: Problem, other: Problem, xs: Sequence[Array], trials: xr.Dataset, settings: Settings
-) -> ParetoFront:
+def _front(problem: Problem, xs: Sequence[Array], trials: xr.Dataset, settings: Settings) -> ParetoFront:
     """Every candidate judged anew, on poses that the search has not seen, and those kept that none beats."""
-    other.requirements[-1] = replace(other.requirements[-1], bound=np.array(np.inf))
-    judged = []
+    problem.requirements[-1] = replace(problem.requirements[-1], bound=np.array(np.inf))
+    start, judged = problem.hexapod, []
     for x in xs:
         design = problem.map.hexapod_at(x)
-        seen = verify(other, design, 4 * settings.points)
+        seen = verify(problem, design, 4 * settings.points)
         if seen.holds:
             judged.append((x, design, seen.index, seen.checks[-1].value))
     kept = [judged[i] for i in _nondominated([(index, value) for _, _, index, value in judged])]
-    begun = verify(other, hexapod, 4 * settings.points)
-    last = other.requirements[-1]
+    begun = verify(problem, start, 4 * settings.points)
+    last = problem.requirements[-1]
     return ParetoFront(
-        designs=tuple(d.replace({"name": f"{hexapod.name}-{i + 1}"}) for i, (_, d, _, _) in enumerate(kept)),
+        designs=tuple(d.replace({"name": f"{start.name}-{i + 1}"}) for i, (_, d, _, _) in enumerate(kept)),
         index=np.array([index for _, _, index, _ in kept]),
         against=np.array([value for _, _, _, value in kept]),
         variables=np.array([x for x, _, _, _ in kept]),

@@ -115,6 +115,6 @@ def places(value: Places | Box | Pose | ArrayLike | None) -> Places:
         rows = np.zeros(())
     if rows.ndim not in (1, 2) or rows.shape[-1] != 6 or not rows.size or not np.isfinite(rows).all():
         raise PoseError(
-            f"{value!r} names no poses; give a Workspace, a Box, a Pose, or rows of x, y, z (m), roll, pitch, yaw (rad)."
+            f"{value!r} names no poses; give a Workspace, a Box, a Pose, or rows x, y, z (m), roll, pitch, yaw (rad)."
         )
     return PoseList(rows.reshape(-1, 6))

@@ -82,8 +82,8 @@ class Problem:
     def _check_home(self, all_places: Sequence[Places]) -> None:
         if self.hexapod.home is None and any(place.from_home for place in all_places):
             raise ArgumentError(
-                f"the objective or a constraint is measured at home, but {self.hexapod.name!r} names no home pose. Give "
-                'a Box, a Pose, or a home: hexapod.replace({"home.position": [x, y, z]}).'
+                f"the objective or a constraint is measured at home, but {self.hexapod.name!r} names no home pose. "
+                'Give a Box, a Pose, or a home: hexapod.replace({"home.position": [x, y, z]}).'
             )
 
     def _check_bounds(self) -> None:
@@ -133,7 +133,7 @@ class Problem:
         own = numbers(hexapod)
         values = {id(r): r.kind.measure({}, own, r.side) for r in self.requirements if r.over is None}
         index = 0.0
-        for group, (over, requirements) in enumerate(self.groups()):
+        for group, (_, requirements) in enumerate(self.groups()):
             rows, found = self.sweep(hexapod, group, points, seed)
             if group == 0:
                 index = self.objective.index(found[self.objective.quantity])

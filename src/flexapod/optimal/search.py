@@ -81,9 +81,11 @@ class Study:
             there = json.loads(summary.user_attrs.get("problem", "{}"))
             if not there:
                 raise OutputError(
-                    f"{self.file} holds the study {summary.study_name!r}, which is none of flexapod. Choose another file."
+                    f"{self.file} holds the study {summary.study_name!r}, none of flexapod's. Choose another file."
                 )
-            raise OutputError(f"{self.file} {_conflict(there, self._told)} Choose another file, or set up the same again.")
+            raise OutputError(
+                f"{self.file} {_conflict(there, self._told)} Choose another file, or set up the same again."
+            )
 
     def _give_up_dead(self, optuna: Any) -> None:
         """Trials of processes of this machine that are no more are closed; they will be made up for."""
@@ -230,7 +232,7 @@ def _sampler(problem: Problem, space: Mapping[str, Any], seed: int, kind: str) -
     even = max(10, 2 * len(space))
     start = np.clip(problem.map.own(), problem.map.low, problem.map.high)
 
-    class Numbered(optuna.samplers.BaseSampler):  # type: ignore[misc, name-defined]
+    class Numbered(optuna.samplers.BaseSampler):  # type: ignore[name-defined]
         def _proper(self, number: int) -> Any:
             own = np.random.SeedSequence([seed, number]).generate_state(1)[0]
             if kind == "nsga2":

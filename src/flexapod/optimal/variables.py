@@ -101,7 +101,7 @@ class Variable:
 
 @dataclass(frozen=True)
 class JointCircle:
-    """The six joints of a plate as three pairs on a circle about its z axis, 120 degrees apart and each mirror-symmetric.
+    """The six joints of a plate as three mirror-symmetric pairs, 120 degrees apart on a circle about its z axis.
 
     radius m, half_angle rad (between a joint and the middle of its pair), turn rad (of the first pair's middle from x),
     height m: a pair (least, most) makes a variable, a number holds it, None holds what the design has (the mean over

@@ -39,7 +39,9 @@ def optimal_page(found: OptimalDesign, objective: str) -> str:
         drawing(lambda: plots_optimise.plan(found), "plan", "The two designs", f"At home. {objective}.{where}"),
         f"<h2>Variables</h2>\n{table(['variable', 'value'], bounds, 'In the unit of each key; SI where it has none.')}",
         _constraints(found.verification.checks, found.start_checks, found.verification.points),
-        drawing(lambda: plots_optimise.search(found), "search", "The search", "One mark a trial; constraints as above."),
+        drawing(
+            lambda: plots_optimise.search(found), "search", "The search", "One mark a trial; constraints as above."
+        ),
     ]
     return short(found.hexapod, "optimal design", f"Better than {found.start.name}: {objective}.", cards, sections)
 
@@ -51,7 +53,7 @@ def _cautions(found: OptimalDesign) -> list[str]:
         words.append(f"The dense sweep breaks: {broken}. Search with more poses.")
     if found.coincident > 1:
         words.append(
-            f"{found.coincident} frequencies meet at the worst pose: raising the index further takes raising all of them."
+            f"{found.coincident} frequencies meet at the worst pose: to raise the index, all of them must rise."
         )
     if found.at_bounds:
         words.append(f"On their bounds: {', '.join(found.at_bounds)}. Wider bounds would give more.")

@@ -1,5 +1,5 @@
 // Searches over designs as Python sees them.
-#include "bind_designs.hpp"
+#include "design_module.hpp"
 
 #include "blocks.hpp"
 #include "design_gradient.hpp"
