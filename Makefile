@@ -7,7 +7,7 @@ OUT    ?= out
 
 CORE := CMakeLists.txt $(wildcard src/core/*)
 
-.PHONY: report test build lint types bench clean
+.PHONY: report test build lint types bench clean web web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
@@ -26,6 +26,23 @@ types: build
 
 bench: build ## ratios from one interleaved run
 	$(BIN)/python -m benchmarks
+
+WEB := web/package.json web/package-lock.json web/index.html web/vite.config.ts web/tsconfig.json \
+       $(wildcard web/src/* web/public/*)
+
+web: web/node_modules/.built ## the page's bundle, which is committed: needs Node 20
+
+web-check: web/node_modules/.installed ## is the committed bundle what the sources give?
+	cd web && npm run types && npm run build -- --outDir node_modules/.check --emptyOutDir
+	diff -r web/node_modules/.check src/flexapod/web/static
+
+web/node_modules/.installed: web/package.json web/package-lock.json
+	cd web && npm ci
+	touch $@
+
+web/node_modules/.built: web/node_modules/.installed $(WEB)
+	cd web && npm run types && npm run build
+	touch $@
 
 $(VENV)/.tools: pyproject.toml constraints.txt
 	$(PYTHON) -c 'import sys; assert sys.version_info >= (3, 11), "Python 3.11 or newer is needed; pass PYTHON=python3.x"'

@@ -10,10 +10,15 @@ import numpy as np
 import pytest
 
 import flexapod as fx
+from flexapod.sweeps.cluster import Cluster
 from stores import BOX, POSES, I, content, stored
 
-# dask.distributed closes its event loops by __del__ when it is thrown away, and warns about its own sockets
-pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning", "ignore::ResourceWarning")
+# dask.distributed closes its event loops when they are thrown away, and its threads may see sockets close under them
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::pytest.PytestUnraisableExceptionWarning",
+    "ignore::pytest.PytestUnhandledThreadExceptionWarning",
+    "ignore::ResourceWarning",
+)
 
 
 @pytest.fixture(scope="module")
@@ -72,6 +77,33 @@ def test_a_cluster_stops_when_asked_and_is_gone_on_with_by_threads(tmp_path, wor
     fx.SweepStore.resume(path, I, POSES).run()
     stored(tmp_path / "whole.zarr", chunk=500)
     assert content(path) == content(tmp_path / "whole.zarr")
+
+
+def test_a_lost_scheduler_is_told_and_what_is_done_is_kept(tmp_path):
+    from distributed import Client, LocalCluster
+
+    path = tmp_path / "map.zarr"
+    own = LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="localhost:0")
+    with Client(own) as client:
+        store = fx.SweepStore.create(path, I, POSES, chunk=500)
+        with pytest.raises(fx.ClusterError, match="connection to the scheduler was lost"):
+            store.run(Cluster(client), progress=lambda state: own.close())
+    assert 0 < len(fx.SweepStore.resume(path, I, POSES).done) < 20
+
+
+def test_a_worker_with_other_instructions_is_refused(tmp_path, workers):
+    """Its last digits may differ, and the bytes of a store would depend on who computed what."""
+    store = fx.SweepStore.create(tmp_path / "map.zarr", I, POSES)
+    store.job = store.job._replace(instruction_set="abacus")
+    with fx.cluster(workers) as crew, pytest.raises(fx.OutputError, match=r"with abacus instructions.*FLEXAPOD_SIMD"):
+        store.run(crew)
+
+
+def test_a_worker_that_does_not_see_the_store_is_told(tmp_path, workers):
+    store = fx.SweepStore.create(tmp_path / "map.zarr", I, POSES)
+    job = store.job._replace(path=str(tmp_path / "elsewhere.zarr"))
+    with fx.cluster(workers) as crew, pytest.raises(fx.OutputError, match="on a disk that all workers share"):
+        next(crew.compute(job, [0], lambda: False))
 
 
 def test_no_scheduler_is_told_soon():

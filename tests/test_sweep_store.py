@@ -154,6 +154,15 @@ def test_killed_and_resumed_is_the_same_to_the_byte(tmp_path):
     assert content(path) == content(tmp_path / "whole.zarr")
 
 
+def test_what_a_killed_worker_left_is_taken_away(tmp_path):
+    path = tmp_path / "map.zarr"
+    store = fx.SweepStore.create(path, I, POSES, chunk=4000)
+    left = path / "cond_H" / "c" / "1.0123.partial"
+    store.run(progress=lambda state: left.write_bytes(b"half a chunk"))
+    stored(tmp_path / "whole.zarr", chunk=4000)
+    assert content(path) == content(tmp_path / "whole.zarr")
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [

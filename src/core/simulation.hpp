@@ -138,7 +138,9 @@ class Simulation {
       rk_.accept(f);
       const Outcome outcome = look(f);
       if (outcome != Outcome::complete) return outcome;
-      const double growth = error > 0 ? std::min(6.0, 0.9 * std::pow(error, -0.125)) : 6.0;
+      // Proportional-integral control (Hairer and Wanner II, IV.2): a fast mode's phase makes the error go up and down.
+      const double growth = std::clamp(0.93 * std::pow(error, -0.7 / 8) * std::pow(last_error_, 0.4 / 8), 0.3, 6.0);
+      last_error_ = std::max(error, 1e-4);
       const double proposed = h * (rejected ? std::min(1.0, growth) : growth);
       next_step_ = std::min(h < next_step_ ? std::max(proposed, next_step_) : proposed, max_step_);
       rejected = false;
@@ -280,6 +282,7 @@ class Simulation {
   State last_{};
   double size_ = 0, slowest_, fastest_, max_step_, next_step_ = 0, time_ = 0;
   Peaks peaks_;
+  double last_error_ = 1.0;
   double side_ = 0;                      // sign of det H
   Vec3<double> S_[6];                    // legs at the end of the last step
   size_t next_sample_ = 0;

@@ -194,10 +194,7 @@ def half_sine_pulse(channel: str, peak: float, duration: float) -> Excitation:
 
 
 def polynomial(channel: str, coefficients: ArrayLike) -> Excitation:
-    """c0 + c1 t + c2 t^2 + ..., up to eight coefficients in m/s^i or rad/s^i.
-
-    `polynomial("yaw", [0, rate])` spins the base at a constant rate.
-    """
+    """c0 + c1 t + c2 t^2 + ... with t in s, up to eight coefficients: ("yaw", [0, rate]) spins the base (rad/s)."""
     c = np.atleast_1d(np.asarray(coefficients, dtype=float))
     _finite(c, "coefficients")
     if c.ndim != 1 or not 1 <= c.size <= 8:

@@ -189,10 +189,11 @@ def check_limits(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> Limi
     excess = limit_excess(hexapod, pose, base)
     ok = np.ones(pose.shape, dtype=bool)
     words: list[str] = []
-    for what, value, least, most in excess:
+    for quantity in excess:
+        _, value, least, most = quantity
         ok &= ((value >= least) & (value <= most)).reshape(*pose.shape, -1).all(axis=-1)
         if not pose.shape:
-            words += _in_words(what, np.atleast_1d(value), least, most)
+            words += in_words(quantity)
     return LimitsCheck(ok, tuple(words))
 
 
@@ -225,9 +226,11 @@ def limit_excess(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> list
     return result
 
 
-def _in_words(what: str, value: Array, least: Array | float, most: Array | float) -> list[str]:
-    name, unit = what.rsplit(" ", 1)
-    low, high = np.broadcast_to(least, value.shape), np.broadcast_to(most, value.shape)
+def in_words(quantity: Quantity) -> list[str]:
+    """What a quantity of one pose exceeds, leg by leg."""
+    value = np.atleast_1d(quantity.value)
+    name, unit = quantity.what.rsplit(" ", 1)
+    low, high = np.broadcast_to(quantity.least, value.shape), np.broadcast_to(quantity.most, value.shape)
     words = []
     for i, v in enumerate(value):
         leg = f"leg {i + 1}: " if value.size == 6 else ""

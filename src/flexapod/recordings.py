@@ -65,12 +65,13 @@ def read_time_series(path: str | Path, recorded: Recorded | None = None) -> Exci
     except (OSError, UnicodeDecodeError) as error:
         raise ArgumentError(f"{file} cannot be read: {error}. Give a CSV file in UTF-8.") from error
     try:
-        return _read(text, recorded)
+        return parse_time_series(text, recorded)
     except ArgumentError as error:
         raise ArgumentError(f"{file}: {error}") from error
 
 
-def _read(text: str, recorded: Recorded | None) -> Excitation:
+def parse_time_series(text: str, recorded: Recorded | None = None) -> Excitation:
+    """A recording from the text of a CSV file; see `read_time_series`."""
     lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
     if not lines:
         raise ArgumentError("there is nothing in it; a header and at least six lines of numbers are needed.")

@@ -137,8 +137,7 @@ def sea_spectrum(height: float, period: float, gamma: float = 1.0) -> Spectrum:
 def random_motion(channel: str, spectrum: Spectrum, *, seed: int, lines: int = 400) -> Excitation:
     """A sum of `lines` sinusoids with random phases that has a spectrum (of displacement, velocity or acceleration).
 
-    The channel moves in m or rad. One frequency is drawn in each of `lines` bands of equal width, so that the motion
-    does not repeat.
+    One frequency (rad/s) is drawn in each of `lines` bands of equal width, so that the motion does not repeat.
     """
     omega, amplitude, phase = _lines(spectrum, seed, lines)
     return harmonic(channel, amplitude, omega, phase)

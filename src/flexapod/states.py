@@ -18,6 +18,9 @@ ZERO = (0.0, 0.0, 0.0)
 NO_LEGS = (0.0,) * 6
 
 
+_AT_ORIGIN = Motion.fixed()
+
+
 class States(NamedTuple):
     """n states of platform and base as rows of 24 numbers, and the batch axes to give results."""
 
@@ -30,7 +33,7 @@ def states(hexapod: Hexapod, platform: Pose | Motion, base: Pose | Motion | None
     """Rows for the core. A single pose that no leg can take raises PoseError; in a batch its row is NaN."""
     if not isinstance(hexapod, Hexapod):
         raise DesignError(f"hexapod is {hexapod!r}; it must be a flexapod Hexapod, as flexapod.load returns it")
-    motions = [_motion(platform, "platform"), _motion(Motion.fixed() if base is None else base, "base")]
+    motions = [_motion(platform, "platform"), _AT_ORIGIN if base is None else _motion(base, "base")]
     try:
         shape = np.broadcast_shapes(*(motion.shape for motion in motions))
     except ValueError:

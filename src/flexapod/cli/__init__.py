@@ -23,6 +23,7 @@ COMMANDS = (
     "report",
     "response",
     "robust",
+    "serve",
     "simulate",
     "sweep",
 )

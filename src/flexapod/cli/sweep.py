@@ -108,7 +108,10 @@ def _streamed(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], op
         store = _store(hexapod, points, quantities, options)
         _run(store, options.threads)
     else:
+        import logging
+
         with cluster(options.scheduler) as workers:
+            logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what matters is raised, and told by us
             store = _store(hexapod, points, quantities, options)
             _run(store, workers)
     return open_sweep(options.out)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Any
 
@@ -22,6 +23,7 @@ class Cluster:
 
     def compute(self, job: Job, numbers: Iterable[int], stop: Callable[[], bool]) -> Iterator[Finished]:
         from distributed import KilledWorker, wait
+        from distributed.comm import CommClosedError
 
         waiting = iter(numbers)
         running: dict[Any, int] = {}
@@ -42,12 +44,24 @@ class Cluster:
                     del running[future]
                     yield future.result()
         except KilledWorker as error:
-            raise ClusterError(f"the cluster lost several workers over one block: {error}") from error
+            raise ClusterError(
+                f"the cluster lost several workers over one block ({error}). What is done is kept; look at the logs of "
+                "the workers, then go on with --resume."
+            ) from error
+        except (CancelledError, CommClosedError) as error:
+            raise ClusterError(
+                "the connection to the scheduler was lost. What is done is kept; go on with --resume."
+            ) from error
         finally:
-            self.client.cancel(list(running))
+            if self.client.status == "running":
+                self.client.cancel(list(running))
 
     def _most(self) -> int:
         """Blocks to have under way: enough that no worker waits for its next one."""
+        from distributed.comm import CommClosedError
+
+        if self.client.status != "running":
+            raise CommClosedError
         return max(2, 2 * sum(self.client.nthreads().values()))
 
     def _submit(self, job: Job, number: int) -> Any:
@@ -57,6 +71,25 @@ class Cluster:
             rows = job.points.rows(block.start, block.stop)
             job = job._replace(points=None)
         return self.client.submit(compute_block, job, number, rows, key=f"sweep-{job.token}-{number}", retries=2)
+
+
+def _knock(address: str, timeout: float) -> None:
+    """Raises OSError or ValueError where no scheduler answers.
+
+    A Client finds that out as well, but one that failed stays behind half made, and hangs the process when the garbage
+    collector takes it while another is made.
+    """
+    import asyncio
+
+    from distributed.comm import connect
+    from distributed.security import Security
+
+    async def try_to_connect() -> None:
+        comm = await connect(address, timeout=timeout, **Security().get_connection_args("client"))
+        await comm.close()
+
+    with ThreadPoolExecutor(1) as pool:  # an event loop may be running in this thread, as in a notebook
+        pool.submit(asyncio.run, asyncio.wait_for(try_to_connect(), timeout + 1)).result()
 
 
 @contextmanager
@@ -74,11 +107,12 @@ def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
             yield Cluster(client)
         return
     try:
+        _knock(address, timeout)
         client = Client(address, timeout=timeout)
-    except (OSError, TimeoutError, ValueError) as error:
+    except (OSError, ValueError, OverflowError) as error:
         raise ClusterError(
-            f"no Dask scheduler answers at {address} ({error}). Start one with `dask scheduler`, check the address "
-            "(tcp://host:port), or use the address `local`."
+            f"no Dask scheduler answers at {address} ({str(error) or 'timed out'}). Start one with "
+            "`dask scheduler`, check the address (tcp://host:port), or use the address `local`."
         ) from error
     with client:
         try:

@@ -137,10 +137,14 @@ class SweepStore:
                         marked = time.monotonic()
                     if progress is not None:
                         progress(Progress(poses, total, before, dict(seen)))
+                if self.complete:
+                    _sweep_up(self.job.path)  # what a killed worker left
                 self._mark()
             except OSError as error:
                 with suppress(OSError):
                     self._mark()
+                if isinstance(error, OutputError):
+                    raise
                 raise OutputError(
                     f"{self.job.path} cannot be written: {error.strerror or error}. {poses} of {total} poses are in "
                     "it and stay readable. Make room, then go on with --resume."
@@ -327,10 +331,13 @@ def _locked(path: str) -> Iterator[None]:
         return
     handle = os.open(path, os.O_RDONLY)
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise OutputError(
+                f"another run is writing {path} just now. Wait for it, or write to another store."
+            ) from None
         yield
-    except BlockingIOError:
-        raise OutputError(f"another run is writing {path} just now. Wait for it, or write to another store.") from None
     finally:
         os.close(handle)
 

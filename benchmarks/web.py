@@ -1,0 +1,165 @@
+"""How quickly the page answers: `python -m benchmarks.web` (needs chromium; software WebGL is what it measures).
+
+- page ready: from navigation to a drawn cloud of 100 000 poses, in a fresh browser context with a warm server
+- slider to table: from one input event of a slider to the changed table, median and 95th percentile over 100 moves
+- frames per second of an animated mode at 1400 x 850
+- many pages: 20 clients, each with one question in flight and ten moves a second, as hands on sliders make them
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import statistics
+import subprocess
+import sys
+import threading
+import time
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+FLAGS = [
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+]
+MOVES = 100
+PAGES = 20
+SECONDS = 10.0
+
+# In the page: moves a slider and waits for the first cell of the table to change.
+MOVE = """async (share) => {
+  const slider = document.querySelector('input[aria-label="x slider"]')
+  const cell = () => document.querySelector('#modes-table tbody td').textContent
+  const before = cell()
+  slider.value = String(Number(slider.min) + share * (Number(slider.max) - Number(slider.min)))
+  const began = performance.now()
+  slider.dispatchEvent(new Event('input', { bubbles: true }))
+  while (cell() === before && performance.now() - began < 5000) await new Promise((r) => setTimeout(r, 1))
+  return performance.now() - began
+}"""
+
+
+@contextmanager
+def served() -> Iterator[tuple[str, int]]:
+    """A server's address and process."""
+    command = [sys.executable, "-m", "flexapod", "serve", "--port", "0", "--json"]
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as process:
+        assert process.stdout is not None
+        yield json.loads(process.stdout.readline())["url"], process.pid
+        process.terminate()
+
+
+def opened(browser: Any, url: str, tab: str) -> Any:
+    page = browser.new_context(viewport={"width": 1400, "height": 850}).new_page()
+    page.goto(f"{url}#design=motion-base&tab={tab}", wait_until="commit")
+    page.locator("#index:not(:empty)").wait_for()
+    return page
+
+
+def page_ready(browser: Any, url: str) -> float:
+    """Seconds to the cloud of 100 000 poses, as the page's own clock has it."""
+    page = opened(browser, url, "workspace")
+    page.locator("#cloud[data-points='100000']").wait_for()
+    ready = page.evaluate("new Promise(r => requestAnimationFrame(() => r(performance.now())))") / 1000
+    page.context.close()
+    return float(ready)
+
+
+def slider_to_table(browser: Any, url: str) -> list[float]:
+    page = opened(browser, url, "modes")
+    page.wait_for_timeout(1000)
+    found = [page.evaluate(MOVE, 0.3 + 0.4 * ((i * 37) % MOVES) / MOVES) for i in range(MOVES)]
+    page.context.close()
+    return [float(value) for value in found]
+
+
+def frames_per_second(browser: Any, url: str) -> float:
+    page = opened(browser, url, "modes")
+    page.get_by_role("button", name="Animate mode 1").click()
+    page.wait_for_timeout(1000)
+    scene = page.locator(".scene")
+    began, first = time.perf_counter(), int(scene.get_attribute("data-frames"))
+    page.wait_for_timeout(5000)
+    rate = (int(scene.get_attribute("data-frames")) - first) / (time.perf_counter() - began)
+    page.context.close()
+    return rate
+
+
+def many_pages(url: str) -> list[float]:
+    """Milliseconds of every answer to PAGES clients that ask without rest, each with its own poses."""
+    start = json.load(urllib.request.urlopen(f"{url}api/start"))
+    text = start["presets"]["motion-base"]
+    found: list[float] = []
+    end = time.perf_counter() + SECONDS
+
+    def client(number: int) -> None:
+        i = 0
+        while time.perf_counter() < end:
+            i += 1
+            pose = [0.001 * (i % 500), 0.002 * number, 2.39, 0, 0, 0]
+            body = json.dumps({"design": text, "changes": {}, "pose": pose, "joint": "universal"}).encode()
+            request = urllib.request.Request(f"{url}api/state", body, {"content-type": "application/json"})
+            began = time.perf_counter()
+            urllib.request.urlopen(request).read()
+            found.append(1e3 * (time.perf_counter() - began))
+            time.sleep(max(0.0, 0.1 - (time.perf_counter() - began)))  # ten moves a second, as a hand makes them
+
+    threads = [threading.Thread(target=client, args=(n,)) for n in range(PAGES)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return found
+
+
+def memory(pid: int) -> float:
+    """Resident MB of a process and its children."""
+    children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+    total = 0
+    for process in [str(pid), *children]:
+        line = next(x for x in Path(f"/proc/{process}/status").read_text().splitlines() if x.startswith("VmRSS"))
+        total += int(line.split()[1])
+    return total / 1024
+
+
+def percentile(values: list[float], share: float) -> float:
+    return sorted(values)[min(len(values) - 1, int(share * len(values)))]
+
+
+def main() -> None:
+    from playwright.sync_api import sync_playwright
+
+    with served() as (url, pid):
+        time.sleep(3)
+        print(f"server at rest: {memory(pid):.0f} MB with its idle job process; load average {os.getloadavg()[0]:.1f}")
+        with sync_playwright() as playwright:
+            browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
+            page_ready(browser, url)
+            ready = [page_ready(browser, url) for _ in range(5)]
+            print(f"page ready with 100 000 poses: median {statistics.median(ready):.2f} s, worst {max(ready):.2f} s")
+            moves = slider_to_table(browser, url)
+            print(f"slider to table: median {statistics.median(moves):.0f} ms, p95 {percentile(moves, 0.95):.0f} ms")
+            print(f"an animated mode in software WebGL: {frames_per_second(browser, url):.0f} frames/s")
+            browser.close()
+        answers = many_pages(url)
+        print(
+            f"{PAGES} pages, ten moves a second each: {len(answers) / SECONDS:.0f} answers/s, median "
+            f"{statistics.median(answers):.0f} ms, p95 {percentile(answers, 0.95):.0f} ms, {memory(pid):.0f} MB; "
+            f"load average {os.getloadavg()[0]:.1f}"
+        )
+
+
+if __name__ == "__main__":
+    main()

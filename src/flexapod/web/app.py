@@ -1,0 +1,117 @@
+"""The server of the page: routes, and the application made of them."""
+
+from __future__ import annotations
+
+import contextlib
+import time
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
+from functools import partial
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import anyio
+from anyio.to_thread import run_sync
+from starlette.applications import Starlette
+from starlette.middleware import Middleware
+from starlette.requests import Request
+from starlette.responses import Response, StreamingResponse
+from starlette.routing import Mount, Route
+from starlette.staticfiles import StaticFiles
+
+from flexapod import __version__, designfile
+from flexapod.errors import FlexapodError
+from flexapod.web import asking, designs, shaking, state, work
+from flexapod.web.encode import Numbers
+from flexapod.web.jobs import Jobs
+from flexapod.web.security import Guard
+
+STATIC = Path(__file__).parent / "static"
+
+
+def application(start: Path | None = None, hosts: Iterable[str] = ()) -> Starlette:
+    """The page and its server. start: the design file shown first; hosts: names it answers to beside localhost."""
+    jobs = Jobs()
+
+    @contextlib.asynccontextmanager
+    async def lifespan(_: Starlette) -> AsyncIterator[None]:
+        async with anyio.create_task_group() as tasks:
+            tasks.start_soon(jobs.warm)
+            tasks.start_soon(partial(run_sync, import_module, "xarray"))  # slow; the first response would wait for it
+            yield
+            tasks.cancel_scope.cancel()
+        jobs.close()
+
+    async def begin(_: Request) -> Response:
+        return Numbers(await run_sync(_beginning, start))
+
+    async def run_job(request: Request) -> Response:
+        kind = request.path_params["kind"]
+        if kind not in work.KINDS:
+            raise asking.AskingError(f"there is no job {kind!r}", 404)
+        spec = await asking.body(request)
+        await run_sync(asking.question, spec)
+        return StreamingResponse(jobs.run(kind, spec), media_type="application/octet-stream")
+
+    async def stop_job(request: Request) -> Response:
+        if not jobs.cancel(request.path_params["name"]):
+            raise asking.AskingError("no such job is running", 404)
+        return Response(status_code=204)
+
+    routes = [
+        Route("/api/start", begin),
+        Route("/api/design", _asks(_design), methods=["POST"]),
+        Route("/api/state", _asks(_state), methods=["POST"]),
+        Route("/api/response", _asks(shaking.response), methods=["POST"]),
+        Route("/api/shake", _asks(shaking.shake), methods=["POST"]),
+        Route("/api/jobs/{kind}", run_job, methods=["POST"]),
+        Route("/api/jobs/{name}", stop_job, methods=["DELETE"]),
+        Mount("/", StaticFiles(directory=STATIC, html=True)),
+    ]
+    app = Starlette(
+        routes=routes,
+        middleware=[Middleware(Guard, hosts=tuple(hosts))],
+        exception_handlers={FlexapodError: _refused},
+        lifespan=lifespan,
+    )
+    app.state.jobs = jobs
+    return app
+
+
+def _beginning(start: Path | None) -> dict[str, Any]:
+    """What a new page needs before it asks anything: presets, the design to show, the keys of a design file."""
+    presets = {name: designfile.find(name).read_text(encoding="utf-8") for name in designfile.packaged_designs()}
+    return {
+        "version": __version__,
+        "presets": presets,
+        "start": None if start is None else {"name": start.stem, "text": start.read_text("utf-8-sig", "replace")},
+        "fields": designs.fields(),
+    }
+
+
+def _design(asked: dict[str, Any]) -> dict[str, Any]:
+    return designs.described(asking.source(asked))
+
+
+def _state(asked: dict[str, Any]) -> dict[str, Any]:
+    return state.snapshot(asking.question(asked))
+
+
+def _asks(answer: Callable[[dict[str, Any]], dict[str, Any]]) -> Callable[[Request], Awaitable[Response]]:
+    """A route that takes a JSON object and answers with one, computed in a thread so that other pages go on."""
+
+    async def endpoint(request: Request) -> Response:
+        asked = await asking.body(request)
+        began = time.perf_counter()
+        result = await run_sync(answer, asked)
+        spent = 1e3 * (time.perf_counter() - began)
+        return Numbers(result, headers={"server-timing": f"compute;dur={spent:.2f}"})
+
+    return endpoint
+
+
+async def _refused(_: Request, error: Exception) -> Response:
+    """Every wrong design, pose or request: what is wrong, and at which fields."""
+    fields = [e._asdict() for e in error.errors] if isinstance(error, designs.InvalidDesign) else []
+    status = error.status if isinstance(error, asking.AskingError) else 422
+    return Numbers({"error": str(error), "fields": fields}, status)

@@ -1,0 +1,49 @@
+"""Answers to the page: JSON in which NaN and infinity become null, and frames of JSON with binary numbers behind."""
+
+from __future__ import annotations
+
+import json
+import struct
+from typing import Any
+
+import numpy as np
+from starlette.responses import Response
+
+
+class Numbers(Response):
+    """JSON of nested dicts, lists and NumPy arrays."""
+
+    media_type = "application/json"
+
+    def render(self, content: Any) -> bytes:
+        return as_json(content)
+
+
+def as_json(content: Any) -> bytes:
+    """JSON text; the page shows null as a dash."""
+    return json.dumps(_plain(content), allow_nan=False, separators=(",", ":")).encode()
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, np.ndarray) and np.isfinite(value).all():
+        return value.tolist()
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    if isinstance(value, float) and value - value != 0.0:  # NaN, infinity
+        return None
+    return value
+
+
+def frame(message: dict[str, Any], data: bytes = b"") -> bytes:
+    """One message of a stream: two little-endian 32-bit lengths, JSON, bytes."""
+    head = as_json(message)
+    return struct.pack("<II", len(head), len(data)) + head + data
+
+
+def float32(array: np.ndarray) -> bytes:
+    """Numbers as the page takes many of them: little-endian float32, last axis fastest."""
+    return np.ascontiguousarray(array, dtype="<f4").tobytes()

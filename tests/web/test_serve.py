@@ -1,0 +1,115 @@
+"""The command: its errors, its end, and what becomes of jobs whose page has gone."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from click.testing import CliRunner
+
+from flexapod import designfile
+from flexapod.cli import group
+
+uvicorn = pytest.importorskip("uvicorn")
+
+
+def test_an_unknown_design_is_refused_with_the_names() -> None:
+    found = subprocess.run(
+        [sys.executable, "-m", "flexapod", "serve", "nonsense"], capture_output=True, text=True, check=False
+    )
+    assert found.returncode == 2
+    assert "mukherjee-ii" in found.stderr
+
+
+def test_a_taken_port_is_told() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        found = CliRunner().invoke(group, ["serve", "--port", str(port)])
+    assert found.exit_code == 2
+    assert f"port {port}" in found.output
+    assert "--port 0" in found.output
+
+
+def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "uvicorn", None)
+    found = CliRunner().invoke(group, ["serve"])
+    assert found.exit_code != 0
+    assert "pip install 'flexapod[web]'" in found.output
+
+
+def ended(group: int) -> bool:
+    """Whether a process group is gone within ten seconds."""
+    deadline = time.monotonic() + 10
+    while time.monotonic() < deadline:
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def test_ctrl_c_ends_it_and_its_processes() -> None:
+    command = [sys.executable, "-m", "flexapod", "serve", "--port", "0", "--json"]
+    environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment, start_new_session=True
+    ) as run:
+        assert run.stdout is not None
+        assert run.stderr is not None
+        address = json.loads(run.stdout.readline())["url"]
+        assert address.startswith("http://127.0.0.1:")
+        time.sleep(1.0)
+        os.killpg(run.pid, signal.SIGINT)  # what a terminal does: to the server and its jobs alike
+        assert run.wait(timeout=20) == 0
+        assert run.stderr.read() == ""
+    assert ended(run.pid), "a process of the group lives on"
+
+
+@pytest.fixture
+def app_and_port() -> Iterator[tuple[Any, int]]:
+    from flexapod.web.app import application
+
+    app = application()
+    server = uvicorn.Server(uvicorn.Config(app, port=0, log_level="warning", timeout_graceful_shutdown=1))
+    thread = threading.Thread(target=server.run)
+    thread.start()
+    while not server.started:
+        time.sleep(0.02)
+    yield app, server.servers[0].sockets[0].getsockname()[1]
+    server.should_exit = True
+    thread.join(timeout=20)
+
+
+def test_a_job_ends_when_its_page_goes(app_and_port: tuple[Any, int]) -> None:
+    app, port = app_and_port
+    text = designfile.find("mukherjee-i").read_text(encoding="utf-8")
+    body = json.dumps({"design": text, "pose": [0.1, 0.2, 0.8, 0, 0, 0], "duration": 50.0}).encode()
+    head = f"POST /api/jobs/time HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: {len(body)}\r\n\r\n"
+    with socket.create_connection(("127.0.0.1", port)) as page:
+        page.sendall(head.encode() + body)
+        assert b"200 OK" in page.recv(4096)
+        deadline = time.monotonic() + 10
+        while not app.state.jobs.running() and time.monotonic() < deadline:
+            time.sleep(0.01)
+        assert len(app.state.jobs.running()) == 1
+    deadline = time.monotonic() + 10
+    while app.state.jobs.running() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert app.state.jobs.running() == []
+
+
+def test_the_bundle_is_there() -> None:
+    from flexapod.web.app import STATIC
+
+    assert {"index.html", "icon.svg"} <= {path.name for path in Path(STATIC).iterdir()}

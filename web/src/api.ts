@@ -1,0 +1,115 @@
+// Talking to the server: one question in flight with the latest one next, and streams of binary points.
+
+import type { FieldError } from './types'
+
+export class Refused extends Error {
+  constructor(message: string, readonly fields: FieldError[] = []) {
+    super(message)
+  }
+}
+
+async function send(path: string, body: unknown, signal?: AbortSignal): Promise<Response> {
+  let response: Response
+  try {
+    response = await fetch(path, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body), signal })
+  } catch (error) {
+    if (signal?.aborted) throw error
+    throw new Refused('The server does not answer. Is `flexapod serve` still running?')
+  }
+  if (response.ok) return response
+  const answer = await response.json().catch(() => ({ error: `the server answered ${response.status}`, fields: [] }))
+  throw new Refused(answer.error, answer.fields)
+}
+
+export async function ask<T>(path: string, body: unknown): Promise<T> {
+  return (await send(path, body)).json()
+}
+
+export async function get<T>(path: string): Promise<T> {
+  return (await fetch(path)).json()
+}
+
+/** Asks again when told to, one question at a time; what was asked meanwhile is asked once, with the latest values. */
+export class Live<T> {
+  private busy = false
+  private stale = false
+
+  constructor(
+    private readonly path: string,
+    private readonly body: () => unknown,
+    private readonly answered: (answer: T) => void,
+    private readonly failed: (error: Refused) => void,
+  ) {}
+
+  readonly request = (): void => {
+    this.stale = true
+    if (!this.busy) void this.run()
+  }
+
+  private async run(): Promise<void> {
+    this.busy = true
+    while (this.stale) {
+      this.stale = false
+      try {
+        const answer = await ask<T>(this.path, this.body())
+        this.answered(answer)
+      } catch (error) {
+        if (error instanceof Refused) this.failed(error)
+        else throw error
+      } finally {
+        if (!this.stale) this.busy = false
+      }
+    }
+  }
+}
+
+export interface JobMessage {
+  type: string
+  [key: string]: unknown
+}
+
+/** A long job's messages as they come. Aborting the signal stops the job on the server too. */
+export async function* job(kind: string, spec: unknown, signal: AbortSignal): AsyncGenerator<[JobMessage, Uint8Array]> {
+  const response = await send(`api/jobs/${kind}`, spec, signal)
+  const reader = response.body!.getReader()
+  let held: Uint8Array = new Uint8Array(0)
+  const take = async (length: number): Promise<Uint8Array | null> => {
+    const parts: Uint8Array[] = [held]
+    let have = held.length
+    while (have < length) {
+      const { done, value } = await reader.read()
+      if (done) return null
+      parts.push(value)
+      have += value.length
+    }
+    const all = parts.length === 1 ? held : joined(parts, have)
+    held = all.subarray(length)
+    return all.subarray(0, length)
+  }
+  for (;;) {
+    const head = await take(8)
+    if (!head) return
+    const sizes = new DataView(head.buffer, head.byteOffset, 8)
+    const text = await take(sizes.getUint32(0, true))
+    const data = await take(sizes.getUint32(4, true))
+    if (!text || !data) throw new Refused('the answer of a job broke off')
+    const message = JSON.parse(new TextDecoder().decode(text)) as JobMessage
+    if (message.type === 'failed') throw new Refused(message.error as string)
+    yield [message, data]
+  }
+}
+
+function joined(parts: Uint8Array[], size: number): Uint8Array {
+  const all = new Uint8Array(size)
+  let at = 0
+  for (const part of parts) {
+    all.set(part, at)
+    at += part.length
+  }
+  return all
+}
+
+/** Binary numbers of a message; copied, since they need not lie on a multiple of four bytes. */
+export function floats(data: Uint8Array): Float32Array {
+  return new Float32Array(data.slice().buffer)
+}
