@@ -90,8 +90,10 @@ class ControlLoop {
     double signal[SampledController::signals];
     rig_.measure(t, y, signal);
     for (int i = 0; i < SampledController::signals; ++i) signal[i] += noise[i];
-    cut = controller_.update(signal, x_, rig_.held) ? 1.0 : 0.0;
-    std::copy_n(rig_.held.a, 6, force);
+    Vec6<double> f;
+    cut = controller_.update(signal, x_, f) ? 1.0 : 0.0;
+    rig_.held = PerLeg(f);
+    std::copy_n(f.a, 6, force);
   }
 
   /// From one instant to another, split at the excitation's corners.

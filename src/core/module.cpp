@@ -290,7 +290,7 @@ NB_MODULE(_core, m) {
   m.def("frequency_derivatives", &frequency_derivatives);
   m.def("tangent", &tangent_);
   m.def("settle", &settle_);
-  bind_simulation(m);
   bind_sweep(m);
   bind_designs(m);
+  bind_simulation(m);
 }

@@ -31,7 +31,7 @@ class Rig {
   static constexpr int mechanical = 12;  // numbers of the state before the works
   enum Work { of_base = 12, of_wrench, of_command, of_friction };
 
-  Vec6<double> held{};  // leg forces beside the springs, N: what a controller holds between its samples
+  PerLeg held{};      // leg forces beside the springs, N: what a controller holds between its samples
   double inside = 0;  // an instant between the corners of the excitations that the present time lies between
 
   Rig(const RigInput& input, const Excitation& base, const Excitation& wrench, const Excitation& command)
@@ -116,13 +116,14 @@ class Rig {
   void measure(double t, const State& y, double (&out)[36]) {
     const Moment now = moment(t, y);
     const Mat3<double>& R_b = now.base.motion.pose.R;
+    const Vec6<double> force = now.leg_force.six();
     const Geometry<double> g = geometry(y), rest(machine_.design, rest_, Pose<double>());
     const Vec6<double> leg_force = now.leg_force.six();
     for (int i = 0; i < 6; ++i) {
       const double L = norm(g.S[i]);
       out[i] = dot(g.S[i] + rest.S[i], g.S[i] - rest.S[i]) / (L + norm(rest.S[i]));
       out[6 + i] = dot(g.S[i], now.v + cross(now.w, g.q_p[i])) / L;
-      out[12 + i] = leg_force[i] - in_.leg_force[i];
+      out[12 + i] = force[i] - in_.leg_force[i];
     }
     const Vec6<double> x = relative(y);
     const Vec3<double> a = R_b * now.platform.a + in_.design.gravity, alpha = R_b * now.platform.alpha;
@@ -206,8 +207,8 @@ class Rig {
       at.S = chart.S + change;
       const Lanes product = dot(2.0 * chart.S + change, change);
       const Lanes stretch = product / (sqrt(chart.L * chart.L + product) + chart.L);
-      now.leg_force.group[g] = force_.group[g] + held_forces.group[g] +
-                               legs_.group[g].leg.stiffness * (command.group[g] - stretch);
+      now.leg_force.group[g] =
+          force_.group[g] + held.group[g] + legs_.group[g].leg.stiffness * (command.group[g] - stretch);
     }
   }
 

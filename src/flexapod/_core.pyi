@@ -55,8 +55,29 @@ class Equations:
     def start(self) -> _A: ...
     def rates(self, t: float, y: _A) -> _A: ...
 
+def control_loop(
+    design: _A,
+    universal: bool,
+    setup: _A,
+    base: _A,
+    controller: list[_A],
+    noise: _A,
+    timing: _A,
+    progress: Callable[[float], object] | None,
+) -> tuple[_A, _A, _A, _A, _A]: ...
 def excitation(terms: _A, times: _A) -> _A: ...
 def base_motion(terms: _A, roll_pitch_yaw: bool, rest: _A, times: _A) -> _A: ...
+def sweep_designs(designs: _A, universal: bool, poses: _A, paired: bool, modes: int, threads: int) -> _A: ...
+def design_gradients(
+    design: _A,
+    universal: bool,
+    platforms: _A,
+    directions: _A,
+    displacements: _A,
+    home: _A,
+    home_displacements: _A,
+    what: int,
+) -> dict[str, Any]: ...
 
 # The pose sweep. quantities: sum of bits of SWEEP; limits: neutral directions (36), leg length bounds (12), largest
 # universal and spherical angle, least leg distance. Arrays by name, and "status": an index of SWEEP_STATUS.
@@ -70,16 +91,3 @@ def sweep_flops(design: _A, universal: bool, poses: _A, quantities: int) -> floa
 def simd() -> str: ...
 def simd_available() -> tuple[str, ...]: ...
 def peak_flops(rounds: int) -> float: ...
-
-# Searches over designs: frequencies of many designs; values and derivatives along directions of the design.
-def sweep_designs(designs: _A, universal: bool, poses: _A, paired: bool, modes: int, threads: int) -> _A: ...
-def design_gradients(
-    design: _A,
-    universal: bool,
-    platforms: _A,
-    directions: _A,
-    displacements: _A,
-    home: _A,
-    home_displacements: _A,
-    what: int,
-) -> dict[str, Any]: ...

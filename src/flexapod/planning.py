@@ -16,7 +16,7 @@ from flexapod.kinematics import force_transformation
 from flexapod.modal import natural_modes
 from flexapod.pose import Array, Pose
 from flexapod.requirements import Margins, PathRequirements
-from flexapod.smoothing import Knots, Smoother, Speeds, duration, resampled
+from flexapod.smoothing import Smoother, Speeds, duration, resampled
 from flexapod.states import check_pose_of_one
 from flexapod.waypoints import Chart, Path
 
@@ -236,10 +236,8 @@ class _Task:
         unit = Path(poses, np.linspace(0.0, 1.0, len(z)))
         if not isinstance(self.timing, LegSpeed):
             return unit.retimed(float(self.timing))
-        curve = tuple((B @ z) * self.scale for B in Knots(len(z), 401).B)
-        return unit.retimed(
-            duration(self.hexapod, self.chart, curve, Speeds(self.timing.rate, self.timing.acceleration))
-        )
+        motions = unit(np.linspace(0.0, 1.0, 801))
+        return unit.retimed(duration(self.hexapod, motions, Speeds(self.timing.rate, self.timing.acceleration)))
 
     def plan(self, path: Path, straight: Path, rough: Pose | None, batches: int) -> Plan:
         def least(path: Path) -> float:

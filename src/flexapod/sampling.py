@@ -9,8 +9,8 @@ from scipy.optimize import minimize, minimize_scalar
 
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.hexapod import Hexapod
+from flexapod.modal import advised_sampling_time as rule
 from flexapod.modal import natural_modes
-from flexapod.modal import sampling_time as rule
 from flexapod.pose import Array, Pose
 from flexapod.posesets import Box, low_discrepancy
 from flexapod.quantities import evaluate, thread_count

@@ -10,7 +10,7 @@ from scipy.optimize import minimize
 
 from flexapod.hexapod import Hexapod
 from flexapod.kinematics import leg_rates
-from flexapod.pose import Array
+from flexapod.pose import Array, Motion
 from flexapod.requirements import Margins, smooth_minimum
 from flexapod.waypoints import Chart, spline, turning
 
@@ -158,13 +158,14 @@ class Smoother:
 
     def _duration(self, knots: Knots, P: Array) -> float:
         """Least time, s, in which the legs can follow the spline at the speeds they have."""
-        return duration(self.hexapod, self.chart, tuple((B @ P) * self.scale for B in knots.B), self.speeds)
+        assert self.speeds is not None
+        q, rate, acceleration = ((B @ P) * self.scale for B in knots.B)
+        return duration(self.hexapod, self.chart.motions(q, rate, acceleration), self.speeds)
 
 
-def duration(hexapod: Hexapod, chart: Chart, curve: tuple[Array, ...], speeds: Speeds | None) -> float:
-    """Least time, s, for a curve given by samples of its value and derivatives over the unit interval."""
-    assert speeds is not None
-    legs = leg_rates(hexapod, chart.motions(*curve))
+def duration(hexapod: Hexapod, motions: Motion, speeds: Speeds) -> float:
+    """Least time, s, for a path given by motions that run through it in one second."""
+    legs = leg_rates(hexapod, motions)
     by_rate = np.abs(legs.rate).max() / speeds.rate
     return float(max(by_rate, np.sqrt(np.abs(legs.acceleration).max() / speeds.acceleration)))
 

@@ -184,12 +184,15 @@ def equations(run: Run, *, joint: JointModel = "universal") -> _core.Equations:
 
 
 class Prepared(NamedTuple):
+    """One run as the core takes it."""
+
     setup: Array
     excitations: list[Array]
     unstretched_length: Array
 
 
 def prepare(run: Run, until: float, joint: JointModel) -> Prepared:
+    """One run to the time `until`, s, as the core takes it."""
     force, force_history = _split(run.force, "force")
     moment, moment_history = _split(run.moment, "moment")
     if run.unstretched_length is None:
