@@ -1,6 +1,7 @@
 // The core as Python sees it: functions of a design (211 numbers) and motions (n rows of 24 numbers) that return
 // arrays with n rows. Shapes and values are checked in Python; here only sizes are.
 #include "arrays.hpp"
+#include "design_module.hpp"
 #include "simulation_module.hpp"
 #include "energy.hpp"
 #include "kinematics.hpp"
@@ -289,6 +290,7 @@ NB_MODULE(_core, m) {
   m.def("frequency_derivatives", &frequency_derivatives);
   m.def("tangent", &tangent_);
   m.def("settle", &settle_);
-  bind_simulation(m);
   bind_sweep(m);
+  bind_designs(m);
+  bind_simulation(m);
 }

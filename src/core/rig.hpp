@@ -31,6 +31,7 @@ class Rig {
   static constexpr int mechanical = 12;  // numbers of the state before the works
   enum Work { of_base = 12, of_wrench, of_command, of_friction };
 
+  PerLeg held{};      // leg forces beside the springs, N: what a controller holds between its samples
   double inside = 0;  // an instant between the corners of the excitations that the present time lies between
 
   Rig(const RigInput& input, const Excitation& base, const Excitation& wrench, const Excitation& command)
@@ -110,6 +111,29 @@ class Rig {
     return Vec6<double>::of(get(y, 0), (Quaternion::exp(get(y, 3)) * chart_).log());
   }
 
+  /// What sensors show, each as a change from rest: leg lengths, their rates, leg forces, the platform's displacement
+  /// seen from the base and its rate (axes of the base at rest, turned to the inertial frame), absolute acceleration.
+  void measure(double t, const State& y, double (&out)[36]) {
+    const Moment now = moment(t, y);
+    const Mat3<double>& R_b = now.base.motion.pose.R;
+    const Vec6<double> force = now.leg_force.six();
+    const Geometry<double> g = geometry(y), rest(machine_.design, rest_, Pose<double>());
+    const Vec6<double> leg_force = now.leg_force.six();
+    for (int i = 0; i < 6; ++i) {
+      const double L = norm(g.S[i]);
+      out[i] = dot(g.S[i] + rest.S[i], g.S[i] - rest.S[i]) / (L + norm(rest.S[i]));
+      out[6 + i] = dot(g.S[i], now.v + cross(now.w, g.q_p[i])) / L;
+      out[12 + i] = force[i] - in_.leg_force[i];
+    }
+    const Vec6<double> x = relative(y);
+    const Vec3<double> a = R_b * now.platform.a + in_.design.gravity, alpha = R_b * now.platform.alpha;
+    const Vec3<double> turned[6] = {in_.base.R * x.top(),  in_.base.R * x.bottom(), in_.base.R * now.v,
+                                    in_.base.R * now.w,    a,                       alpha};
+    double* to = out + 18;
+    for (const Vec3<double>& v : turned)
+      for (const double c : {v.x, v.y, v.z}) *to++ = c;
+  }
+
   /// Where the legs are: base axes.
   Geometry<double> geometry(const State& y) const { return {machine_.design, pose(y), Pose<double>()}; }
   Pose<double> rest() const { return rest_; }
@@ -173,6 +197,7 @@ class Rig {
       for (int i = 0; i < 6; ++i) change[i] = now.command[i].x;
       command = PerLeg(change);
     }
+    const PerLeg held_forces(held);
     const Vec3<double> d = get(y, 0) - d_chart_, theta = get(y, 3);
     for (int g = 0; g < leg_groups; ++g) {
       const Chart& chart = chart_legs_[g];
@@ -182,7 +207,8 @@ class Rig {
       at.S = chart.S + change;
       const Lanes product = dot(2.0 * chart.S + change, change);
       const Lanes stretch = product / (sqrt(chart.L * chart.L + product) + chart.L);
-      now.leg_force.group[g] = force_.group[g] + legs_.group[g].leg.stiffness * (command.group[g] - stretch);
+      now.leg_force.group[g] =
+          force_.group[g] + held.group[g] + legs_.group[g].leg.stiffness * (command.group[g] - stretch);
     }
   }
 

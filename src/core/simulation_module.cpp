@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "arrays.hpp"
+#include "control_loop.hpp"
 #include "simulation.hpp"
 
 namespace flexapod {
@@ -134,6 +135,38 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
                         time.array(), last.array(), counts.array());
 }
 
+/// One run of a sampled controller. `controller`: A, B, C, D, limit (see SampledController); `noise`: 36 for each sample;
+/// `timing`: dt, steps of a sample. Returns rows at every step's end, from t = 0, of measurements and displacement (NaN
+/// after an early end), forces and clipping at every sample, and the outcome.
+nb::tuple control_loop(const Input& design, bool universal, const Input& setup, const Input& base,
+                       const std::vector<Input>& controller, const Input& noise, const Input& timing, nb::object progress) {
+  constexpr size_t signals = SampledController::signals;
+  if (controller.size() != 5) throw std::invalid_argument("a controller is A, B, C, D and limit");
+  const size_t order = controller[2].size() / 6, samples = noise.size() / signals;
+  const SampledController law{order,
+                              rows(controller[0], order, order, "A"),
+                              rows(controller[1], order, signals, "B"),
+                              rows(controller[2], 6, order, "C"),
+                              rows(controller[3], 6, signals, "D"),
+                              rows(controller[4], 1, 6, "limit")};
+  const double* when = rows(timing, 1, 2, "timing");
+  const ControlLoop::Timing clock{when[0], samples, static_cast<size_t>(when[1])};
+  const size_t m = samples * clock.steps + 1;
+  const double* white = rows(noise, samples, signals, "noise");
+  const auto* s = reinterpret_cast<const Setup*>(rows(setup, 1, setup_size, "setup"));
+  const Excitation shaken(base.data(), base.size());
+  Output measured = nan_filled({m, signals}), displacement = nan_filled({m, 6}), force = nan_filled({samples, 6});
+  Output cut({samples}), outcome({1});
+  const ControlLoop::Record record{measured.data(), displacement.data(), force.data(), cut.data()};
+  double* how = outcome.data();
+  std::vector<std::atomic<double>> done(1);
+  Crew crew;
+  crew.run(1, 1, progress, done, [&](size_t) {
+    ControlLoop loop(rig_input(rows(design, 1, design_size, "design"), universal, *s, false), shaken, law, clock);
+    *how = static_cast<double>(loop.run(white, record, crew.stop, done[0]));
+  });
+  return nb::make_tuple(measured.array(), displacement.array(), force.array(), cut.array(), outcome.array());
+}
 /// The equations of one simulation for other integrators: y' = rates(t, y) from y = start().
 class Equations {
  public:
@@ -203,6 +236,8 @@ nb::object base_motion(const Input& terms, bool roll_pitch_yaw, const Input& res
 void bind_simulation(nb::module_& m) {
   m.attr("setup_size") = setup_size;
   m.def("simulate", &simulate, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none());
+  m.def("control_loop", &control_loop, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(),
+        nb::arg().none());
   nb::class_<Equations>(m, "Equations")
       .def(nb::init<const Input&, bool, const Input&, const std::vector<Input>&>())
       .def("start", &Equations::start)

@@ -1,5 +1,6 @@
 // The pose sweep for one instruction set. CMake compiles this file once for each, with `flexapod` defined as another
 // name: then no inline function of one can stand in for that of another in the linked module.
+#include "design_sweep.hpp"
 #include "sweep.hpp"
 
 namespace flexapod {
@@ -35,9 +36,11 @@ double peak(size_t rounds) {
   return 2.0 * chains * static_cast<double>(rounds) * (sizeof(Vector) / sizeof(double));
 }
 
+void sweep_designs(const DesignTask& task, size_t first, size_t last) { DesignSweep<Lanes>(task, first, last); }
+
 }  // namespace
 
 extern const sweep_task::Kernel sweep_kernel;
-const sweep_task::Kernel sweep_kernel = {FLEXAPOD_ISA, &runs_here, &run, &peak};
+const sweep_task::Kernel sweep_kernel = {FLEXAPOD_ISA, &runs_here, &run, &sweep_designs, &peak};
 
 }  // namespace flexapod

@@ -1,11 +1,10 @@
 // The pose sweep as Python sees it: the kernel for this processor, threads over blocks of poses.
 #include "sweep_module.hpp"
 
-#include <algorithm>
-#include <atomic>
 #include <cstdlib>
 #include <cstring>
-#include <thread>
+
+#include "blocks.hpp"
 
 #if defined(FLEXAPOD_X86)
 namespace flexapod_avx512 {
@@ -66,19 +65,9 @@ constexpr Array arrays[] = {
     {"omega_1_gradient", sweep_task::omega_1_gradient, &Task::omega_1_gradient_, 6},
 };
 
-/// Blocks are taken in turn by whichever thread is free. A pose's result does not depend on its block.
+/// A pose's result does not depend on its block.
 void run(const Task& task, size_t n, int threads) {
-  constexpr size_t block = 2048;
-  std::atomic<size_t> next{0};
-  const auto work = [&] {
-    for (size_t first = next.fetch_add(block); first < n; first = next.fetch_add(block))
-      chosen->sweep(task, first, std::min(n, first + block));
-  };
-  const size_t helpers = std::min<size_t>(threads - 1, n / block);
-  std::vector<std::thread> team;
-  for (size_t i = 0; i < helpers; ++i) team.emplace_back(work);
-  work();
-  for (std::thread& member : team) member.join();
+  in_blocks(n, 2048, threads, [&](size_t first, size_t last) { chosen->sweep(task, first, last); });
 }
 
 template <class Number> nb::ndarray<nb::numpy, Number> owned(std::unique_ptr<Number[]> data, size_t n, size_t columns) {
@@ -150,6 +139,8 @@ nb::tuple simd_available() {
 }
 
 }  // namespace
+
+const Kernel& kernel_in_use() { return *chosen; }
 
 void bind_sweep(nb::module_& m) {
   chosen = &choose_kernel();

@@ -51,11 +51,23 @@ struct Task {
   std::uint8_t* status_;
 };
 
+/// Natural frequencies of many designs: at all poses, or (paired) each design at the pose of its row.
+struct DesignTask {
+  const double* designs;  // rows of 211 numbers
+  bool universal;
+  const double* poses;  // rows of 12: position; rotation matrix by rows
+  std::size_t poses_count;
+  bool paired;
+  int modes;      // 1: the lowest, 6: all
+  double* omega;  // designs x poses (not paired) x modes
+};
+
 /// A kernel compiled for one instruction set.
 struct Kernel {
   const char* name;
   bool (*runs_here)();
   void (*sweep)(const Task& task, std::size_t first, std::size_t last);
+  void (*sweep_designs)(const DesignTask& task, std::size_t first, std::size_t last);
   double (*peak)(std::size_t rounds);  // multiplies and adds as fast as it can; returns the flops done
 };
 

@@ -14,11 +14,14 @@ _HOMES = {
         "ClusterError",
         "DesignError",
         "FlexapodError",
+        "InfeasibleError",
         "KinematicsError",
         "OutputError",
+        "PathError",
         "PoseError",
         "SimulationError",
         "SingularPoseError",
+        "UnstableError",
     ],
     "hexapod": ["Damping", "Hexapod", "LegPart", "Legs", "Limits", "load", "packaged_designs", "template"],
     "pose": ["Motion", "Pose"],
@@ -57,10 +60,22 @@ _HOMES = {
         "frequency_sensitivity",
         "natural_modes",
         "near_repeated",
-        "sampling_time",
         "stability_index",
     ],
     "linear": ["DampedModes", "Linearisation", "StateSpace", "linearise"],
+    "waypoints": ["Path"],
+    "path": ["PathIndex", "path_index", "path_loads"],
+    "requirements": ["PathRequirements"],
+    "planning": ["LegSpeed", "Plan", "plan_path", "plan_slice"],
+    "sampling": ["sampling_time"],
+    "feedback": ["Controller"],
+    "laws": ["ForceFeedback", "PID", "VelocityFeedback"],
+    "assessment": ["ClosedLoop"],
+    "position_loops": ["GainWarning", "closed_loop", "gain_map"],
+    "damping_loops": ["open_zeros", "root_locus"],
+    "isolators": ["controlled_transmissibility", "h_infinity", "lqg"],
+    "sampled": ["Hardware", "simulate_control"],
+    "schedule": ["gain_schedule"],
     "excitation": [
         "Excitation",
         "half_sine_pulse",
@@ -75,14 +90,31 @@ _HOMES = {
     "trajectory": ["Run"],
     "simulation": ["simulate", "simulate_many"],
     "response": ["random_response", "transmissibility"],
-    "stepped": ["stepped_sine"],
-    "animate": ["animate_mode", "animate_simulation"],
     "posesets": ["Box", "PoseSet", "low_discrepancy", "pose_grid", "pose_path", "random_poses"],
     "sweeps.dataset": ["sweep"],
     "sweeps.store": ["SweepStore", "open_sweep"],
     "sweeps.summary": ["SweepSummary", "summarise"],
     "sweeps.worst": ["WorstPose", "worst_pose"],
     "sweeps.cluster": ["cluster"],
+    "optimal.variables": ["JointCircle", "Variable"],
+    "optimal.places": ["Workspace"],
+    "optimal.objectives": ["Dexterity", "LeastIndex", "MeanIndex"],
+    "optimal.constraints": [
+        "ConditionNumber",
+        "Deflection",
+        "DesignLimits",
+        "Footprint",
+        "JointAngle",
+        "LegClearance",
+        "LegLength",
+        "Stroke",
+        "TotalMass",
+    ],
+    "optimal.optimise": ["OptimalDesign", "optimise"],
+    "optimal.pareto": ["ParetoFront", "pareto_front"],
+    "robust": ["Payload", "Robustness", "Uncertain", "robustness"],
+    "stepped": ["stepped_sine"],
+    "animate": ["animate_mode", "animate_simulation"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = sorted([*_HOME_OF, "__version__"])
@@ -102,17 +134,97 @@ def __dir__() -> list[str]:
 
 if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.animate import *  # noqa: F403
+    from flexapod.assessment import ClosedLoop as ClosedLoop
+    from flexapod.damping_loops import open_zeros as open_zeros
+    from flexapod.damping_loops import root_locus as root_locus
     from flexapod.dynamics import *  # noqa: F403
     from flexapod.errors import *  # noqa: F403
     from flexapod.excitation import *  # noqa: F403
-    from flexapod.hexapod import *  # noqa: F403
-    from flexapod.kinematics import *  # noqa: F403
-    from flexapod.linear import *  # noqa: F403
-    from flexapod.modal import *  # noqa: F403
+    from flexapod.feedback import Controller as Controller
+    from flexapod.hexapod import Damping as Damping
+    from flexapod.hexapod import Hexapod as Hexapod
+    from flexapod.hexapod import LegPart as LegPart
+    from flexapod.hexapod import Legs as Legs
+    from flexapod.hexapod import Limits as Limits
+    from flexapod.hexapod import load as load
+    from flexapod.hexapod import packaged_designs as packaged_designs
+    from flexapod.hexapod import template as template
+    from flexapod.isolators import controlled_transmissibility as controlled_transmissibility
+    from flexapod.isolators import h_infinity as h_infinity
+    from flexapod.isolators import lqg as lqg
+    from flexapod.kinematics import JointAngles as JointAngles
+    from flexapod.kinematics import LegRates as LegRates
+    from flexapod.kinematics import LimitsCheck as LimitsCheck
+    from flexapod.kinematics import check_limits as check_limits
+    from flexapod.kinematics import condition_number as condition_number
+    from flexapod.kinematics import force_transformation as force_transformation
+    from flexapod.kinematics import forward_kinematics as forward_kinematics
+    from flexapod.kinematics import home_pose as home_pose
+    from flexapod.kinematics import inverse_kinematics as inverse_kinematics
+    from flexapod.kinematics import joint_angles as joint_angles
+    from flexapod.kinematics import leg_distance as leg_distance
+    from flexapod.kinematics import leg_rates as leg_rates
+    from flexapod.laws import PID as PID
+    from flexapod.laws import ForceFeedback as ForceFeedback
+    from flexapod.laws import VelocityFeedback as VelocityFeedback
+    from flexapod.linear import DampedModes as DampedModes
+    from flexapod.linear import Linearisation as Linearisation
+    from flexapod.linear import StateSpace as StateSpace
+    from flexapod.linear import linearise as linearise
+    from flexapod.modal import EnergyShares as EnergyShares
+    from flexapod.modal import ModeDescription as ModeDescription
+    from flexapod.modal import NaturalModes as NaturalModes
+    from flexapod.modal import Sensitivity as Sensitivity
+    from flexapod.modal import describe_modes as describe_modes
+    from flexapod.modal import energy_shares as energy_shares
+    from flexapod.modal import frequency_sensitivity as frequency_sensitivity
+    from flexapod.modal import natural_modes as natural_modes
+    from flexapod.modal import near_repeated as near_repeated
+    from flexapod.modal import stability_index as stability_index
+    from flexapod.optimal.constraints import ConditionNumber as ConditionNumber
+    from flexapod.optimal.constraints import Deflection as Deflection
+    from flexapod.optimal.constraints import DesignLimits as DesignLimits
+    from flexapod.optimal.constraints import Footprint as Footprint
+    from flexapod.optimal.constraints import JointAngle as JointAngle
+    from flexapod.optimal.constraints import LegClearance as LegClearance
+    from flexapod.optimal.constraints import LegLength as LegLength
+    from flexapod.optimal.constraints import Stroke as Stroke
+    from flexapod.optimal.constraints import TotalMass as TotalMass
+    from flexapod.optimal.objectives import Dexterity as Dexterity
+    from flexapod.optimal.objectives import LeastIndex as LeastIndex
+    from flexapod.optimal.objectives import MeanIndex as MeanIndex
+    from flexapod.optimal.optimise import OptimalDesign as OptimalDesign
+    from flexapod.optimal.optimise import optimise as optimise
+    from flexapod.optimal.pareto import ParetoFront as ParetoFront
+    from flexapod.optimal.pareto import pareto_front as pareto_front
+    from flexapod.optimal.places import Workspace as Workspace
+    from flexapod.optimal.variables import JointCircle as JointCircle
+    from flexapod.optimal.variables import Variable as Variable
+    from flexapod.path import PathIndex as PathIndex
+    from flexapod.path import path_index as path_index
+    from flexapod.path import path_loads as path_loads
+    from flexapod.planning import LegSpeed as LegSpeed
+    from flexapod.planning import Plan as Plan
+    from flexapod.planning import plan_path as plan_path
+    from flexapod.planning import plan_slice as plan_slice
     from flexapod.pose import *  # noqa: F403
     from flexapod.posesets import *  # noqa: F403
-    from flexapod.recordings import *  # noqa: F403
-    from flexapod.response import *  # noqa: F403
+    from flexapod.position_loops import GainWarning as GainWarning
+    from flexapod.position_loops import closed_loop as closed_loop
+    from flexapod.position_loops import gain_map as gain_map
+    from flexapod.recordings import read_time_series as read_time_series
+    from flexapod.recordings import time_series as time_series
+    from flexapod.requirements import PathRequirements as PathRequirements
+    from flexapod.response import random_response as random_response
+    from flexapod.response import transmissibility as transmissibility
+    from flexapod.robust import Payload as Payload
+    from flexapod.robust import Robustness as Robustness
+    from flexapod.robust import Uncertain as Uncertain
+    from flexapod.robust import robustness as robustness
+    from flexapod.sampled import Hardware as Hardware
+    from flexapod.sampled import simulate_control as simulate_control
+    from flexapod.sampling import sampling_time as sampling_time
+    from flexapod.schedule import gain_schedule as gain_schedule
     from flexapod.simulation import *  # noqa: F403
     from flexapod.spectra import *  # noqa: F403
     from flexapod.statics import *  # noqa: F403
@@ -123,3 +235,4 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.sweeps.summary import *  # noqa: F403
     from flexapod.sweeps.worst import *  # noqa: F403
     from flexapod.trajectory import *  # noqa: F403
+    from flexapod.waypoints import Path as Path  # type: ignore[assignment]  # pathlib's, through a star

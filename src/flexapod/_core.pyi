@@ -39,14 +39,45 @@ def simulate(
     options: _A,
     progress: Callable[[float], object] | None,
 ) -> tuple[_A, _A, _A, _A, _A, _A, _A, _A, _A, _A]: ...
+def control_loop(
+    design: _A,
+    universal: bool,
+    setup: _A,
+    base: _A,
+    controller: list[_A],
+    noise: _A,
+    timing: _A,
+    progress: Callable[[float], object] | None,
+) -> tuple[_A, _A, _A, _A, _A]: ...
 
 class Equations:
     def __init__(self, design: _A, universal: bool, setup: _A, excitations: list[_A]) -> None: ...
     def start(self) -> _A: ...
     def rates(self, t: float, y: _A) -> _A: ...
 
+def control_loop(
+    design: _A,
+    universal: bool,
+    setup: _A,
+    base: _A,
+    controller: list[_A],
+    noise: _A,
+    timing: _A,
+    progress: Callable[[float], object] | None,
+) -> tuple[_A, _A, _A, _A, _A]: ...
 def excitation(terms: _A, times: _A) -> _A: ...
 def base_motion(terms: _A, roll_pitch_yaw: bool, rest: _A, times: _A) -> _A: ...
+def sweep_designs(designs: _A, universal: bool, poses: _A, paired: bool, modes: int, threads: int) -> _A: ...
+def design_gradients(
+    design: _A,
+    universal: bool,
+    platforms: _A,
+    directions: _A,
+    displacements: _A,
+    home: _A,
+    home_displacements: _A,
+    what: int,
+) -> dict[str, Any]: ...
 
 # The pose sweep. quantities: sum of bits of SWEEP; limits: neutral directions (36), leg length bounds (12), largest
 # universal and spherical angle, least leg distance. Arrays by name, and "status": an index of SWEEP_STATUS.

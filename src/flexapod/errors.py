@@ -27,12 +27,16 @@ class SingularPoseError(FlexapodError, ValueError):
     """A pose at which the legs cannot hold the platform (H is singular)."""
 
 
-class SimulationError(FlexapodError, RuntimeError):
-    """A simulation that could not go on. `time` (s) and `pose`: where it ended; `result`: the Dataset so far."""
+class InfeasibleError(FlexapodError, ValueError):
+    """No design that keeps every constraint: the start breaks one, or a search found none."""
 
-    def __init__(self, message: str, time: float = float("nan"), pose: Any = None, result: Any = None) -> None:
-        super().__init__(message)
-        self.time, self.pose, self.result = time, pose, result
+
+class PathError(FlexapodError, ValueError):
+    """Waypoints or times that make no path, or a path that cannot be found."""
+
+
+class UnstableError(FlexapodError, ValueError):
+    """A closed loop that the exact tangent shows to be unstable, or a controller that cannot be made."""
 
 
 class OutputError(FlexapodError, OSError):
@@ -41,3 +45,11 @@ class OutputError(FlexapodError, OSError):
 
 class ClusterError(FlexapodError, RuntimeError):
     """A cluster of computers that cannot be reached, or that gave up."""
+
+
+class SimulationError(FlexapodError, RuntimeError):
+    """A simulation that could not go on. `time` (s) and `pose`: where it ended; `result`: the Dataset so far."""
+
+    def __init__(self, message: str, time: float = float("nan"), pose: Any = None, result: Any = None) -> None:
+        super().__init__(message)
+        self.time, self.pose, self.result = time, pose, result

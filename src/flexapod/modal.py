@@ -188,6 +188,6 @@ def frequency_sensitivity(
     )
 
 
-def sampling_time(omega_max: float) -> float:
+def advised_sampling_time(omega_max: float) -> float:
     """Largest sensible sampling time of a controller, s: 2 pi / (20 omega_max) (paper, conclusion 3)."""
     return float(2 * np.pi / (20 * omega_max))

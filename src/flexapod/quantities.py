@@ -76,17 +76,27 @@ def chosen(quantities: Iterable[str]) -> tuple[str, ...]:
 
 
 def evaluate(
-    hexapod: Hexapod, rows: Array, quantities: tuple[str, ...], joint: JointModel, threads: int
+    hexapod: Hexapod,
+    rows: Array,
+    quantities: tuple[str, ...],
+    joint: JointModel,
+    threads: int,
+    limits: Array | None = None,
 ) -> dict[str, Any]:
-    """The quantities and `status` at poses, rows (n, 6) or (n, 12), from the compiled kernel."""
+    """The quantities and `status` at poses, rows (n, 6) or (n, 12), from the compiled kernel.
+
+    limits: `packed_limits(hexapod)`, for those who call often.
+    """
     mask = 0
     for name in quantities:
         mask |= _core.SWEEP[QUANTITIES[name].kernel or name]
-    found = _core.sweep(hexapod.packed, is_universal(joint), rows, mask, _limits(hexapod), threads)
+    found = _core.sweep(
+        hexapod.packed, is_universal(joint), rows, mask, packed_limits(hexapod) if limits is None else limits, threads
+    )
     return {name: found[name] for name in (*quantities, "status")}
 
 
-def _limits(hexapod: Hexapod) -> Array:
+def packed_limits(hexapod: Hexapod) -> Array:
     """Limits as the kernel takes them: neutral directions, leg length bounds, joint angles, leg distance."""
     limits = hexapod.limits
     lengths = (-np.inf, np.inf) if limits.leg_length is None else limits.leg_length

@@ -17,7 +17,7 @@ from flexapod.errors import ArgumentError, SimulationError
 from flexapod.excitation import AXES, LEGS, Excitation
 from flexapod.hexapod import Hexapod
 from flexapod.kinematics import leg_rates
-from flexapod.modal import natural_modes, sampling_time
+from flexapod.modal import advised_sampling_time, natural_modes
 from flexapod.pose import Array, Motion, Pose
 from flexapod.states import JointModel
 from flexapod.trajectory import Load, Method, Run, Start, Trajectories, integrate
@@ -176,7 +176,7 @@ def _sample_times(options: dict[str, Any], duration: float | None, highest: floa
         return np.asarray(options["times"], dtype=float)
     if duration is None or not (np.isfinite(duration) and duration > 0):
         raise ArgumentError(f"duration is {duration} s; it must be > 0 and finite, or give times.")
-    most = MOST_SAMPLES if highest <= 0 else min(MOST_SAMPLES, int(np.ceil(duration / sampling_time(highest))))
+    most = MOST_SAMPLES if highest <= 0 else min(MOST_SAMPLES, int(np.ceil(duration / advised_sampling_time(highest))))
     samples = options.get("samples", max(most, 1) + 1)
     if samples < 2:
         raise ArgumentError(f"samples is {samples}; it must be >= 2.")

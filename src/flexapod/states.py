@@ -76,6 +76,14 @@ def _refuse(hexapod: Hexapod, length: Array, sine: Array) -> None:
     )
 
 
+def check_pose_of_one(pose: Pose, name: str) -> None:
+    """Raises PoseError unless `pose` is one Pose."""
+    if not isinstance(pose, Pose):
+        raise PoseError(f"{name} is {type(pose).__name__}; it must be a flexapod Pose")
+    if pose.shape:
+        raise PoseError(f"{name} has batch axes {pose.shape}; one pose is needed. Index it first.")
+
+
 def is_universal(joint: str) -> bool:
     """True for the exact joint model; raises PoseError for an unknown name."""
     if joint not in get_args(JointModel):

@@ -145,7 +145,7 @@ def integrate(
     if not runs:
         raise ArgumentError("there is nothing to simulate: `runs` is empty.")
     t = _times(times, len(runs))
-    prepared = [_prepare(run, until, joint) for run, until in zip(runs, t[:, -1], strict=True)]
+    prepared = [prepare(run, until, joint) for run, until in zip(runs, t[:, -1], strict=True)]
     options = [
         method.rtol,
         method.atol or 0.0,
@@ -179,17 +179,20 @@ def equations(run: Run, *, joint: JointModel = "universal") -> _core.Equations:
     y: (12,) the platform as seen from the base, in its axes: translation from rest (m), rotation vector from rest (rad,
     below a full turn), velocity, angular velocity.
     """
-    p = _prepare(run, 0.0, joint)
+    p = prepare(run, 0.0, joint)
     return _core.Equations(run.hexapod.packed, is_universal(joint), p.setup, p.excitations)
 
 
-class _Prepared(NamedTuple):
+class Prepared(NamedTuple):
+    """One run as the core takes it."""
+
     setup: Array
     excitations: list[Array]
     unstretched_length: Array
 
 
-def _prepare(run: Run, until: float, joint: JointModel) -> _Prepared:
+def prepare(run: Run, until: float, joint: JointModel) -> Prepared:
+    """One run to the time `until`, s, as the core takes it."""
     force, force_history = _split(run.force, "force")
     moment, moment_history = _split(run.moment, "moment")
     if run.unstretched_length is None:
@@ -207,7 +210,7 @@ def _prepare(run: Run, until: float, joint: JointModel) -> _Prepared:
     pose_rows = (Motion(run.pose).packed[:12], Motion.fixed(run.base).packed[:12])
     setup = np.concatenate([*pose_rows, leg_force, force, moment, *_start(run), flags])
     packed = [base_motion.packed, np.concatenate([force_history, moment_history]), command.packed]
-    return _Prepared(setup, packed, lengths)
+    return Prepared(setup, packed, lengths)
 
 
 def _check_recordings(use: str, history: Excitation, until: float) -> None:

@@ -10,7 +10,23 @@ import click
 
 from flexapod.errors import FlexapodError
 
-COMMANDS = ("animate", "check", "designs", "modes", "new", "paper", "report", "response", "serve", "simulate", "sweep")
+COMMANDS = (
+    "animate",
+    "check",
+    "control",
+    "designs",
+    "modes",
+    "new",
+    "optimise",
+    "paper",
+    "path",
+    "report",
+    "response",
+    "robust",
+    "serve",
+    "simulate",
+    "sweep",
+)
 
 
 class _Lazy(click.Group):

@@ -27,6 +27,7 @@ import click
 from click.shell_completion import CompletionItem
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from rich.console import Console
 
     from flexapod.hexapod import Hexapod
@@ -153,6 +154,14 @@ def write_file(path: Path, text: str) -> None:
         path.write_text(text, encoding="utf-8", newline="\n")
     except OSError as error:
         raise click.UsageError(f"{path} cannot be written: {error.strerror}. Choose another place.") from error
+
+
+def save_figure(figure: Figure, path: Path) -> None:
+    """Write a figure to a file of the kind that its name ends with. Raises UsageError where that cannot be."""
+    try:
+        figure.savefig(path, dpi=160)
+    except (OSError, ValueError) as error:
+        raise click.UsageError(f"{path} cannot be written: {error}. Choose another place.") from error
 
 
 def print_json(result: Mapping[str, Any]) -> None:

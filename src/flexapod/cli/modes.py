@@ -55,7 +55,7 @@ def command(
                 "condition_number": condition,
                 "characteristic_length_m": characteristic_length,
                 "leg_lengths_m": lengths,
-                "sampling_time_s": modal.sampling_time(omega[-1]),
+                "sampling_time_s": modal.advised_sampling_time(omega[-1]),
                 "near_repeated": [[i + 1, j + 1] for i, j in modal.near_repeated(omega)],
                 "mode_shapes": shape,
                 "descriptions": descriptions,

@@ -47,6 +47,12 @@ def frequencies(f: Findings) -> str:
         return _inline(figure, "frequencies", "Six natural frequencies in Hz")
 
 
+def drawn(draw: Callable[[], Figure], prefix: str, words: str) -> str:
+    """A figure that a function of the plots makes; `prefix` tells its names from those of others on the page."""
+    with matplotlib.rc_context(_STYLE):
+        return _inline(draw(), prefix, words)
+
+
 def _svg(draw: Callable[..., object], prefix: str, words: str, size: tuple[float, float] | None = None) -> str:
     """3-D axes drawn on: a figure of a size (inches) with its axes, or, without one, cut to what the lines cover."""
     with matplotlib.rc_context(_STYLE):

@@ -15,11 +15,11 @@ from flexapod.linear import DampedModes, linearise
 from flexapod.modal import (
     EnergyShares,
     ModeDescription,
+    advised_sampling_time,
     describe_modes,
     energy_shares,
     natural_modes,
     near_repeated,
-    sampling_time,
 )
 from flexapod.pose import Array, Pose
 from flexapod.report.caution import SINGULAR, cautions
@@ -63,7 +63,7 @@ class Findings:
     @property
     def sampling_time(self) -> float:
         """Largest sensible sampling time, s."""
-        return sampling_time(self.omega[-1])
+        return advised_sampling_time(self.omega[-1])
 
 
 def gather(

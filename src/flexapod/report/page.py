@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from datetime import date
+from collections.abc import Sequence
 from html import escape
-from pathlib import Path
 
 import numpy as np
 
-from flexapod import __version__
 from flexapod.kinematics import limit_excess
 from flexapod.plots import SHORTENED, STRETCHED
 from flexapod.pose import Array
@@ -17,6 +14,7 @@ from flexapod.report import figures
 from flexapod.report.findings import TURN, Findings
 from flexapod.report.influence import MOVE, Influence, leading
 from flexapod.report.numbers import DASH, brief, percent, pose_words, shown
+from flexapod.report.sheet import foot, frame, table
 
 SHOWN = {"geometry": 7, "mass": 5, "stiffness": 4}  # so many sensitivities of each kind
 
@@ -35,16 +33,10 @@ MEANING = (
 
 def page(f: Findings) -> str:
     """The whole page."""
-    style = (Path(__file__).parent / "page.css").read_text(encoding="utf-8")
-    name = escape(f.hexapod.name)
+    name = f.hexapod.name
     sections = (_head, _cautions, _machine, _frequencies, _modes, _legs, _shares, _sensitivities, _meaning, _foot)
     body = "\n".join(section(f) for section in sections)
-    return (
-        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{name}: dynamic stability</title>\n<style>\n{style}</style>\n</head>\n"
-        f"<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n"
-    )
+    return frame(f"{name}: dynamic stability", body)
 
 
 def _head(f: Findings) -> str:
@@ -89,13 +81,13 @@ def _machine(f: Findings) -> str:
         (f"the same, moments over {shown(f.conditioning.length, 3)} m", shown(f.conditioning.scaled)),
         ("Gravity", f"{brief(float(np.linalg.norm(h.gravity)))} m/s\u00b2"),
     ]
-    table = _table((), [(escape(a), b) for a, b in rows])
+    rows_shown = table((), [(escape(a), b) for a, b in rows])
     caption = (
         "Legs by number, their lower parts thick; x, y, z: frames of base and platform; +: the platform's mass centre."
     )
     return (
         f'<h2>The machine</h2>\n<div class="pair"><figure>{figures.machine(f)}'
-        f"<figcaption>{caption}</figcaption></figure><div>{table}</div></div>"
+        f"<figcaption>{caption}</figcaption></figure><div>{rows_shown}</div></div>"
     )
 
 
@@ -118,8 +110,8 @@ def _frequencies(f: Findings) -> str:
     )
     if tangent is None:
         note = "Eq. 5, undamped, without weight or preload. The exact tangent needs a static equilibrium; here is none."
-    table = _table([*head, "mostly"], rows, note)
-    return f"<h2>Natural frequencies</h2>\n<figure class='wide'>{figures.frequencies(f)}</figure>\n{table}"
+    rows_shown = table([*head, "mostly"], rows, note)
+    return f"<h2>Natural frequencies</h2>\n<figure class='wide'>{figures.frequencies(f)}</figure>\n{rows_shown}"
 
 
 def _modes(f: Findings) -> str:
@@ -168,7 +160,7 @@ def _legs(f: Findings) -> str:
         f"Forces hold the machine at rest under its weight; positive is compression. Angles are from {neutral}. "
         f"{_limits(f)}"
     )
-    return f"<h2>Legs</h2>\n{_table(head, rows, note)}"
+    return f"<h2>Legs</h2>\n{table(head, rows, note)}"
 
 
 def _limits(f: Findings) -> str:
@@ -231,21 +223,7 @@ def _meaning(f: Findings) -> str:
 
 
 def _foot(f: Findings) -> str:
-    return (
-        f'<footer class="quiet">Flexapod {__version__}, {date.today().isoformat()}. Design '
-        f"{escape(f.hexapod.name)}, digest <code>{f.hexapod.digest}</code>.</footer>"
-    )
-
-
-def _table(head: Sequence[str], rows: Iterable[Sequence[str]], note: str = "") -> str:
-    """Rows of HTML fragments; a cell may bring its own <td>."""
-    top = "".join(f'<th scope="col">{title}</th>' for title in head)
-    body = ""
-    for name, *cells in rows:
-        data = "".join(cell if cell.startswith("<td") else f"<td>{cell}</td>" for cell in cells)
-        body += f'<tr><th scope="row">{name}</th>{data}</tr>'
-    below = f'<p class="quiet">{note}</p>' if note else ""
-    return f'<div class="scroll"><table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>{below}'
+    return foot(f.hexapod)
 
 
 def _heat(head: Sequence[str], names: Sequence[str], shares: Array) -> str:
@@ -256,7 +234,7 @@ def _heat(head: Sequence[str], names: Sequence[str], shares: Array) -> str:
         return f"<td{tint}>{percent(share)}</td>"
 
     rows = [[name, *map(cell, row)] for name, row in zip(names, shares, strict=True)]
-    return _table(head, rows).replace("<table>", '<table class="heat">')
+    return table(head, rows).replace("<table>", '<table class="heat">')
 
 
 def _swatch(color: str) -> str:

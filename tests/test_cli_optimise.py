@@ -1,0 +1,180 @@
+"""`flexapod optimise` and `flexapod robust`: what they print, write and refuse; the examples with small budgets."""
+
+import importlib.util
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import flexapod as fx
+from flexapod.cli import main
+
+EXAMPLES = Path(__file__).parent.parent / "examples"
+VARY = ["--vary", "home.position_mm[2]=70:100", "--vary", "platform.circle.radius_mm=30:60"]
+
+
+def run(capsys, *arguments):
+    code = main([str(a) for a in arguments])
+    told = capsys.readouterr()
+    return code, told.out, told.err
+
+
+def test_optimise_prints_json_and_writes_a_design_that_does_what_it_says(capsys, tmp_path):
+    code, out, _ = run(
+        capsys, "optimise", "mukherjee-ii", *VARY, "--vary", "base.circle.half_angle_deg=5:55", "--vary",
+        "base.circle.radius_mm=20:32", "--keep", "footprint", "--keep", "stroke_mm=26", "--around", 0.004, 4,
+        "--trials", 6, "--points", 256, "--verify", 4096, "--study", tmp_path / "s.db",
+        "--out", tmp_path / "out", "--json",
+    )  # fmt: skip
+    assert code == 0
+    told = json.loads(out)
+    assert told["index_rad_s"] > told["start_index_rad_s"]
+    assert told["trials"] == 6
+    assert [c["name"] for c in told["constraints"]] == ["footprint of the base", "leg stroke"]
+    assert told["constraints"][1]["bound"] == 0.026
+    toml, html, png = (Path(file) for file in told["files"])
+    better = fx.load(toml)
+    assert better.digest == told["digest"]
+    worst = fx.stability_index(better, fx.Pose.from_rpy(*told["worst_pose_m_rad"]))
+    assert worst == pytest.approx(told["index_rad_s"], rel=1e-12)
+    assert 70 <= told["variables"]["home.position_mm[2]"] <= 100
+    page = html.read_text(encoding="utf-8")
+    assert "all poses within 0.004 m and 4 degrees of home" in page
+    assert page.count("<svg") == 2
+    assert png.read_bytes()[:4] == b"\x89PNG"
+
+
+def test_optimise_goes_on_with_its_file_and_refuses_another_design(capsys, tmp_path):
+    common = ["--points", 64, "--verify", 128, "--study", tmp_path / "s.db", "--json", *VARY]
+    assert run(capsys, "optimise", "mukherjee-ii", "--trials", 3, *common)[0] == 0
+    code, out, _ = run(capsys, "optimise", "mukherjee-ii", "--trials", 5, *common)
+    assert (code, json.loads(out)["trials"]) == (0, 5)
+    code, _, err = run(capsys, "optimise", "mukherjee-i", "--trials", 5, *common)
+    assert code == 2
+    assert "mukherjee-ii" in json.loads(err)["error"]
+    assert "'mukherjee-i'" in json.loads(err)["error"]
+
+
+def test_front(capsys, tmp_path):
+    code, out, _ = run(
+        capsys, "optimise", "mukherjee-ii", *VARY, "--vary", "platform.mass=2:4", "--against", "platform-footprint",
+        "--trials", 30, "--refine", 3, "--points", 64, "--verify", 128, "--out", tmp_path,
+    )  # fmt: skip
+    assert code == 0
+    assert "against footprint of the platform" in out
+    assert (tmp_path / "mukherjee-ii-front.png").exists()
+    assert "<svg" in (tmp_path / "mukherjee-ii-front.html").read_text(encoding="utf-8")
+    assert fx.load(tmp_path / "mukherjee-ii-1.toml").platform_mass >= 2
+
+
+def test_robust(capsys, tmp_path):
+    code, out, _ = run(
+        capsys, "robust", "motion-base", "--uncertain", "legs.stiffness=10%,together", "--uncertain",
+        "platform.mass=100,normal", "--payload", "0:500", "--payload-at", 0, "-0.5:0.5", 1.2, "--samples", 256,
+        "--sensitivity", 32, "--out", tmp_path, "--json",
+    )  # fmt: skip
+    assert code == 0
+    told = json.loads(out)
+    assert told["worst_rad_s"] < told["quantiles_rad_s"]["0.01"] < told["nominal_rad_s"]
+    assert set(told["sobol_total"]) == {"legs.stiffness", "platform.mass", "payload.mass", "payload.y"}
+    assert told["worst_at"]["payload.mass"] == 500
+    page = Path(told["files"][0]).read_text(encoding="utf-8")
+    assert page.count("<svg") == 2
+    code, out, _ = run(capsys, "robust", "motion-base", "--uncertain", "legs.stiffness=10%", "--samples", 64,
+                       "--sensitivity", 0, "--out", tmp_path)  # fmt: skip
+    assert code == 0
+    assert "worst case" in out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--vary", "platform.mass"], "write KEY=LEAST:LARGEST"),
+        (["--vary", "platform.mass=5:x"], "'x' is no number"),
+        (["--vary", "platform.mass=5:2"], "contradict each other"),
+        (["--vary", "platform.circle.radus=1:2"], "there is no 'radus'"),
+        ([*VARY, "--keep", "stroke_kg=3"], "there is no 'stroke_kg'"),
+        ([*VARY, "--keep", "limits=3"], "takes no bound"),
+        ([*VARY, "--keep", "limits"], "no [limits] to respect"),
+        ([*VARY, "--keep", "longest-leg"], "needs a bound"),
+        ([*VARY, "--around", "0.1", "5", "--pose", *"000000"], "Give one of them"),
+        ([], "Missing option '--vary'"),
+    ],
+)
+def test_wrong_command_lines_exit_with_2(capsys, arguments, words):
+    code, _, err = run(capsys, "optimise", "mukherjee-ii", "--trials", 0, *arguments)
+    assert code == 2
+    assert words in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--uncertain", "legs.stiffness"], "write KEY=SPREAD"),
+        (["--uncertain", "legs.stiffness=10%,normal,uniform"], "two distributions"),
+        (["--uncertain", "legs.stiffness=10%,gauss"], "'gauss'"),
+        ([], "nothing strays"),
+    ],
+)
+def test_wrong_robust_command_lines_exit_with_2(capsys, arguments, words):
+    code, _, err = run(capsys, "robust", "mukherjee-ii", *arguments)
+    assert code == 2
+    assert words in err
+
+
+@pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
+def test_a_signal_stops_between_trials_and_tells_how_to_go_on(tmp_path):
+    file = tmp_path / "s.db"
+    command = [sys.executable, "-m", "flexapod", "optimise", "mukherjee-ii", *VARY, "--trials", "100000"]
+    command += ["--points", "64", "--verify", "128", "--study", str(file), "--out", str(tmp_path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as worker:
+        end = time.monotonic() + 60
+        while time.monotonic() < end and not (file.exists() and _trials(file) >= 3):
+            time.sleep(0.05)
+        worker.send_signal(signal.SIGINT)
+        out, err = worker.communicate(timeout=60)
+    assert worker.returncode == 0, err
+    assert "Go on with the same command" in err
+    assert "verified at 128 poses" in out
+
+
+def _trials(file):
+    import sqlite3
+
+    try:
+        with sqlite3.connect(f"file:{file}?mode=ro", uri=True) as db:
+            return db.execute("select count(*) from trials where state = 'COMPLETE'").fetchone()[0]
+    except sqlite3.Error:
+        return 0
+
+
+def example(name):
+    path = EXAMPLES / f"{name}.py"
+    assert len(path.read_text(encoding="utf-8").splitlines()) <= 60
+    spec = importlib.util.spec_from_file_location(name, path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_example_of_the_manipulators():
+    told = example("better_manipulators").main(points=256, verify=1024)
+    for name, gain, gap in (("mukherjee-i", 3.0, 1.1), ("mukherjee-ii", 1.2, 1.01)):
+        one = told[name]
+        assert one["best"] > gain * one["as printed"]
+        assert one["best"] > gap * one["best conditioned"]  # the best-conditioned design is not the best one
+        assert one["cond(H) best conditioned"] < one["cond(H) best"]
+        assert np.isfinite(list(one.values())).all()
+
+
+def test_example_of_the_positioner():
+    told = example("better_positioner").main(trials=8, points=128, verify=512, samples=256)
+    assert told["after"] > 1.1 * told["before"]
+    assert told["designs"] >= 2
+    assert told["worst"] < told["after"]
