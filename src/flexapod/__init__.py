@@ -90,6 +90,8 @@ _HOMES = {
     "trajectory": ["Run"],
     "simulation": ["simulate", "simulate_many"],
     "response": ["random_response", "transmissibility"],
+    "stepped": ["stepped_sine"],
+    "animate": ["animate_mode", "animate_simulation"],
     "posesets": ["Box", "PoseSet", "low_discrepancy", "pose_grid", "pose_path", "random_poses"],
     "sweeps.dataset": ["sweep"],
     "sweeps.store": ["SweepStore", "open_sweep"],
@@ -113,8 +115,6 @@ _HOMES = {
     "optimal.optimise": ["OptimalDesign", "optimise"],
     "optimal.pareto": ["ParetoFront", "pareto_front"],
     "robust": ["Payload", "Robustness", "Uncertain", "robustness"],
-    "stepped": ["stepped_sine"],
-    "animate": ["animate_mode", "animate_simulation"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = sorted([*_HOME_OF, "__version__"])
@@ -133,13 +133,38 @@ def __dir__() -> list[str]:
 
 
 if TYPE_CHECKING:  # what type checkers and editors see
-    from flexapod.animate import *  # noqa: F403
+    from flexapod.animate import animate_mode as animate_mode
+    from flexapod.animate import animate_simulation as animate_simulation
     from flexapod.assessment import ClosedLoop as ClosedLoop
     from flexapod.damping_loops import open_zeros as open_zeros
     from flexapod.damping_loops import root_locus as root_locus
-    from flexapod.dynamics import *  # noqa: F403
-    from flexapod.errors import *  # noqa: F403
-    from flexapod.excitation import *  # noqa: F403
+    from flexapod.dynamics import Energy as Energy
+    from flexapod.dynamics import EquationsOfMotion as EquationsOfMotion
+    from flexapod.dynamics import Reactions as Reactions
+    from flexapod.dynamics import energy as energy
+    from flexapod.dynamics import equations_of_motion as equations_of_motion
+    from flexapod.dynamics import forward_dynamics as forward_dynamics
+    from flexapod.dynamics import inverse_dynamics as inverse_dynamics
+    from flexapod.dynamics import joint_reactions as joint_reactions
+    from flexapod.errors import ArgumentError as ArgumentError
+    from flexapod.errors import ClusterError as ClusterError
+    from flexapod.errors import DesignError as DesignError
+    from flexapod.errors import FlexapodError as FlexapodError
+    from flexapod.errors import InfeasibleError as InfeasibleError
+    from flexapod.errors import KinematicsError as KinematicsError
+    from flexapod.errors import OutputError as OutputError
+    from flexapod.errors import PathError as PathError
+    from flexapod.errors import PoseError as PoseError
+    from flexapod.errors import SimulationError as SimulationError
+    from flexapod.errors import SingularPoseError as SingularPoseError
+    from flexapod.errors import UnstableError as UnstableError
+    from flexapod.excitation import Excitation as Excitation
+    from flexapod.excitation import half_sine_pulse as half_sine_pulse
+    from flexapod.excitation import half_sine_shock as half_sine_shock
+    from flexapod.excitation import harmonic as harmonic
+    from flexapod.excitation import polynomial as polynomial
+    from flexapod.excitation import sine_sweep as sine_sweep
+    from flexapod.excitation import smooth_step as smooth_step
     from flexapod.feedback import Controller as Controller
     from flexapod.hexapod import Damping as Damping
     from flexapod.hexapod import Hexapod as Hexapod
@@ -207,8 +232,14 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.planning import Plan as Plan
     from flexapod.planning import plan_path as plan_path
     from flexapod.planning import plan_slice as plan_slice
-    from flexapod.pose import *  # noqa: F403
-    from flexapod.posesets import *  # noqa: F403
+    from flexapod.pose import Motion as Motion
+    from flexapod.pose import Pose as Pose
+    from flexapod.posesets import Box as Box
+    from flexapod.posesets import PoseSet as PoseSet
+    from flexapod.posesets import low_discrepancy as low_discrepancy
+    from flexapod.posesets import pose_grid as pose_grid
+    from flexapod.posesets import pose_path as pose_path
+    from flexapod.posesets import random_poses as random_poses
     from flexapod.position_loops import GainWarning as GainWarning
     from flexapod.position_loops import closed_loop as closed_loop
     from flexapod.position_loops import gain_map as gain_map
@@ -225,14 +256,26 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.sampled import simulate_control as simulate_control
     from flexapod.sampling import sampling_time as sampling_time
     from flexapod.schedule import gain_schedule as gain_schedule
-    from flexapod.simulation import *  # noqa: F403
-    from flexapod.spectra import *  # noqa: F403
-    from flexapod.statics import *  # noqa: F403
-    from flexapod.stepped import *  # noqa: F403
-    from flexapod.sweeps.cluster import *  # noqa: F403
-    from flexapod.sweeps.dataset import *  # noqa: F403
-    from flexapod.sweeps.store import *  # noqa: F403
-    from flexapod.sweeps.summary import *  # noqa: F403
-    from flexapod.sweeps.worst import *  # noqa: F403
-    from flexapod.trajectory import *  # noqa: F403
-    from flexapod.waypoints import Path as Path  # type: ignore[assignment]  # pathlib's, through a star
+    from flexapod.simulation import simulate as simulate
+    from flexapod.simulation import simulate_many as simulate_many
+    from flexapod.spectra import Spectrum as Spectrum
+    from flexapod.spectra import flat_spectrum as flat_spectrum
+    from flexapod.spectra import ground_noise as ground_noise
+    from flexapod.spectra import random_motion as random_motion
+    from flexapod.spectra import sea_motion as sea_motion
+    from flexapod.spectra import sea_spectrum as sea_spectrum
+    from flexapod.spectra import vc_curve as vc_curve
+    from flexapod.statics import Equilibrium as Equilibrium
+    from flexapod.statics import hold as hold
+    from flexapod.statics import static_equilibrium as static_equilibrium
+    from flexapod.stepped import stepped_sine as stepped_sine
+    from flexapod.sweeps.cluster import cluster as cluster
+    from flexapod.sweeps.dataset import sweep as sweep
+    from flexapod.sweeps.store import SweepStore as SweepStore
+    from flexapod.sweeps.store import open_sweep as open_sweep
+    from flexapod.sweeps.summary import SweepSummary as SweepSummary
+    from flexapod.sweeps.summary import summarise as summarise
+    from flexapod.sweeps.worst import WorstPose as WorstPose
+    from flexapod.sweeps.worst import worst_pose as worst_pose
+    from flexapod.trajectory import Run as Run
+    from flexapod.waypoints import Path as Path

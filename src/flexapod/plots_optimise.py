@@ -41,7 +41,7 @@ def search(found: OptimalDesign) -> Figure:
         ax.set_xticks([])
     told = found.history["index"].attrs
     ax.set(xlabel="trial", ylabel=told["label"] + (f", {told['units']}" if told["units"] else ""))
-    ax.set_ylim(bottom=0, top=1.08 * max(found.index, found.start_index))
+    ax.set_ylim(bottom=0, top=1.08 * max(found.index, found.start_index, *index[np.isfinite(index)]))
     figure.legend(loc="outside lower center", ncols=3, fontsize=9, frameon=False)
     figure.suptitle(f"{found.start.name}: search", color=INK, fontsize=11)
     return figure
@@ -161,6 +161,7 @@ def _figure(width: float, height: float) -> tuple[Figure, Axes]:
 
 def _dress(ax: Axes) -> None:
     ax.grid(True, which="major", color=FAINT, lw=0.3, alpha=0.6)
+    ax.set_axisbelow(True)
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)
     ax.tick_params(which="both", color=FAINT, labelcolor=INK, labelsize=9)

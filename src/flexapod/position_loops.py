@@ -33,7 +33,7 @@ def closed_loop(
     unstable: str = "raise",
     **rest: Unpack[RestOptions],
 ) -> ClosedLoop:
-    """Poles of the machine at a pose under a control law, on the exact tangent.
+    """Poles (rad/s) of the machine at a pose under a control law, on the exact tangent.
 
     law: a PID, a ForceFeedback or VelocityFeedback, or any Controller, sampled ones included. Warns (GainWarning) when
     a pole lies within `nearness` of a natural frequency, as the paper demands. Raises UnstableError for gains that make

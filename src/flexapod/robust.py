@@ -46,6 +46,7 @@ class Uncertain:
     each: bool = True
 
     def parameters(self, hexapod: Hexapod) -> list[Stray]:
+        """One for each number that strays on its own. Raises ArgumentError for ranges that a design cannot have."""
         _check(self.target, self.spread, self.distribution)
         index, rule, unit = entries(self.target)
         if self.target.startswith("home"):
@@ -81,6 +82,7 @@ class Payload:
     position: tuple[ArrayLike, ArrayLike, ArrayLike] = (0.0, 0.0, 0.0)
 
     def parameters(self, hexapod: Hexapod) -> list[Stray]:
+        """The payload's mass and its three coordinates."""
         low, high = self.mass
         if not 0 <= low <= high < np.inf:
             raise ArgumentError(f"the payload's mass is from {low} to {high} kg; it must be >= 0, the least first.")
@@ -228,7 +230,7 @@ def robustness(
     sensitivity: int = 0,
     **options: Any,
 ) -> Robustness:
-    """Distribution and worst case of the stability index when parts of the design are uncertain.
+    """Distribution and worst case of the stability index (rad/s) when parts of the design are uncertain.
 
     uncertain: `Uncertain` and `Payload`, independent of one another. over: a pose (default: home), poses, or a box or
     `Workspace`, of which `poses` poses are looked at; the index of a sample is the least over them. samples: designs

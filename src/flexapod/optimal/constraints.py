@@ -93,6 +93,7 @@ class Footprint(Constraint):
     plate: Plate = "base"
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+        """See `Constraint`."""
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints
         (x, y), radius = kinds.enclosing_circle(joints[:, :2])
         kind = kinds.Radius(self.plate, float(x), float(y))
@@ -108,6 +109,7 @@ class TotalMass(Constraint):
     most: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+        """See `Constraint`."""
         return _one("total mass", kinds.Mass(), "most", self.most, None, measure)
 
 
@@ -126,6 +128,7 @@ class Stroke(_Everywhere):
     most: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+        """See `Constraint`."""
         return _one("leg stroke", kinds.LegStroke(), "most", self.most, self._over(over), measure)
 
 
@@ -137,6 +140,7 @@ class LegLength(_Everywhere):
     most: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+        """See `Constraint`."""
         if self.least is not None and self.most is not None and not self.least < self.most:
             raise ArgumentError(
                 f"leg length: the bounds are {self.least:.6g} and {self.most:.6g} m, which contradict each other; the "
@@ -160,6 +164,7 @@ class JointAngle(_Everywhere):
     most: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+        """See `Constraint`."""
         return _one(
             f"{self.joint} joint angle", kinds.JointAngles(self.joint), "most", self.most, self._over(over), measure
         )
@@ -172,6 +177,7 @@ class LegClearance(_Everywhere):
     least: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+        """See `Constraint`."""
         return _one("leg clearance", kinds.LegDistance(), "least", self.least, self._over(over), measure)
 
 
@@ -182,6 +188,7 @@ class ConditionNumber(_Everywhere):
     most: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+        """See `Constraint`."""
         if self.most is not None and self.most <= 1:
             raise ArgumentError(f"condition number: the bound is {self.most}; no H has less than 1.")
         return _one("condition number", kinds.Conditioning(), "most", self.most, self._over(over), measure)
@@ -198,6 +205,7 @@ class Deflection(_Everywhere):
     force: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+        """See `Constraint`."""
         if self.force is not None and not self.force > 0:
             raise ArgumentError(f"static deflection: the force is {self.force} N; it must be > 0.")
         if self.force is None and not hexapod.gravity.any():
@@ -210,6 +218,7 @@ class DesignLimits(_Everywhere):
     """The limits of the design itself: leg lengths, joint angles, clearance."""
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+        """See `Constraint`."""
         limits, where = hexapod.limits, self._over(over)
         found: list[Requirement] = []
         if limits.leg_length is not None:

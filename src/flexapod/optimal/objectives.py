@@ -57,15 +57,19 @@ class LeastIndex(_Index):
         self.over = places(over)
 
     def index(self, found: Array) -> float:
+        """See `Objective`."""
         return float(found.min()) if np.isfinite(found).all() else 0.0
 
     def held(self, found: Array) -> Numbers:
+        """See `Objective`."""
         return np.argsort(found)[:_HELD]
 
     def slopes(self, at: Slopes, sharpness: float) -> tuple[Array, Array]:
+        """See `Objective`."""
         return index_slopes(at, sharpness)
 
     def describe(self) -> dict[str, Any]:
+        """In plain numbers and words: what makes this objective and no other."""
         return {"least index over": self.over.describe()}
 
     def __repr__(self) -> str:
@@ -89,17 +93,21 @@ class MeanIndex(_Index):
         self.weights: Array = given / given.sum()
 
     def index(self, found: Array) -> float:
+        """See `Objective`."""
         return float(self.weights @ found) if np.isfinite(found).all() else 0.0
 
     def held(self, found: Array) -> Numbers:
+        """See `Objective`."""
         return np.arange(len(found))
 
     def slopes(self, at: Slopes, sharpness: float) -> tuple[Array, Array]:
+        """See `Objective`."""
         logarithm, slope = index_slopes(at, sharpness)
         part = self.weights * np.exp(logarithm)
         return np.log(part.sum(keepdims=True)), (part @ slope)[None] / part.sum()
 
     def describe(self) -> dict[str, Any]:
+        """In plain numbers and words: what makes this objective and no other."""
         return {"mean index over": self.over.describe(), "weights": self.weights.tolist()}
 
     def __repr__(self) -> str:
@@ -120,16 +128,20 @@ class Dexterity:
         self.over = places(over)
 
     def index(self, found: Array) -> float:
+        """See `Objective`."""
         return float(1 / found.max()) if np.isfinite(found).all() else 0.0
 
     def held(self, found: Array) -> Numbers:
+        """See `Objective`."""
         return np.argsort(-found)[:_HELD]
 
     def slopes(self, at: Slopes, sharpness: float) -> tuple[Array, Array]:
+        """See `Objective`."""
         value, slope, _ = Conditioning().slopes(at)
         return -np.log(value), -slope / value[:, None]
 
     def describe(self) -> dict[str, Any]:
+        """In plain numbers and words: what makes this objective and no other."""
         return {"least 1/cond(H) over": self.over.describe()}
 
     def __repr__(self) -> str:

@@ -58,7 +58,7 @@ def pareto_front(
     study: str | Path | None = None,
     **options: Any,
 ) -> ParetoFront:
-    """The highest index for every value of `against`: `TotalMass()`, `Footprint()`, `ConditionNumber()` and the like.
+    """The highest index (rad/s) for every value of `against`: `TotalMass()`, `Footprint()`, and the like.
 
     What `against` measures is made small (its bound, if it has one, is kept as well). trials: of a genetic search
     (NSGA-II) that may be stopped, resumed and shared as that of `optimise`. refine: so many points along its front are

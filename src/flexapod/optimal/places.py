@@ -51,6 +51,7 @@ class Workspace:
         return cls(Box(*zip(-half, half, strict=True)), from_home=True)
 
     def box(self, home: Array) -> Box:
+        """Where the box is for a design with this home pose (x, y, z m, roll, pitch, yaw rad)."""
         origin = home if self.from_home else ZERO
         return Box(*zip(self._box.low + origin, self._box.high + origin, strict=True))
 
@@ -64,6 +65,7 @@ class Workspace:
         return np.concatenate([middle[None], corners, low_discrepancy(box, count, seed).rows(0, count)])
 
     def describe(self) -> dict[str, Any]:
+        """In plain numbers: what makes this workspace and no other."""
         return {"box": self._box.ranges(), "from_home": self.from_home}
 
     def __repr__(self) -> str:

@@ -72,7 +72,9 @@ class Study:
             load_if_exists=True,
         )
         self._study.set_user_attr("problem", json.dumps(self._told, sort_keys=True))
+        self._worker = f"{socket.gethostname()}:{os.getpid()}"
         self._give_up_dead(optuna)
+        self._study.set_user_attr(f"worker {self._worker}", True)
 
     def _refuse_others(self, optuna: Any, storage: Any) -> None:
         for summary in optuna.get_all_study_summaries(storage=storage):
@@ -88,10 +90,14 @@ class Study:
             )
 
     def _give_up_dead(self, optuna: Any) -> None:
-        """Trials of processes of this machine that are no more are closed; they will be made up for."""
+        """Trials of processes of this machine that are no more are closed; they will be made up for.
+
+        A trial that was killed before it had its worker's name is closed where no other worker is left."""
+        names = [name.partition(" ")[2] for name in self._study.user_attrs if name.startswith("worker ")]
+        alone = not any(_at_work(name) for name in names if name != self._worker)
         for trial in self._study.get_trials(deepcopy=False, states=(optuna.trial.TrialState.RUNNING,)):
-            host, _, pid = str(trial.user_attrs.get("worker", "")).rpartition(":")
-            if host == socket.gethostname() and not _alive(int(pid)):
+            name = trial.user_attrs.get("worker")
+            if alone if name is None else not _at_work(name):
                 self._study.tell(trial.number, state=optuna.trial.TrialState.FAIL, skip_if_finished=True)
 
     def run(
@@ -110,12 +116,12 @@ class Study:
                 progress(len(done), trials, best)
             if len(done) >= trials or self._enough_under_way(optuna, len(done), trials):
                 return
-            trial = self._study.ask(self._space)
-            trial.set_user_attr("worker", f"{socket.gethostname()}:{os.getpid()}")
+            trial = self._study.ask()
+            trial.set_user_attr("worker", self._worker)
             if self._ahead(optuna, trial.number) >= trials:  # another process asked for the last one first
                 self._study.tell(trial, state=optuna.trial.TrialState.FAIL)
                 return
-            x = np.array([trial.params[name] for name in self._space])
+            x = np.array([trial.suggest_float(n, s.low, s.high, log=s.log) for n, s in self._space.items()])
             assessment, values = evaluate(x)
             trial.set_constraint("index is zero", 0.0 if assessment.index > 0 else 1.0)
             for k, (requirement, margin) in enumerate(zip(self.problem.requirements, assessment.margins, strict=True)):
@@ -212,11 +218,13 @@ class _locked:
         self._connection.close()
 
 
-def _alive(pid: int) -> bool:
-    if os.name == "nt":
-        return True  # a signal 0 would end the process there
+def _at_work(worker: str) -> bool:
+    """Whether a worker, host:process, is there; those of other machines are taken to be."""
+    host, _, pid = worker.rpartition(":")
+    if host != socket.gethostname() or os.name == "nt":  # there a signal 0 would end the process
+        return True
     try:
-        os.kill(pid, 0)
+        os.kill(int(pid), 0)
     except ProcessLookupError:
         return False
     except PermissionError:

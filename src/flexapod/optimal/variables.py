@@ -46,6 +46,7 @@ class Variable:
     log: bool = False
 
     def parts(self, hexapod: Hexapod) -> list[Part]:
+        """The map of this variable for a design. Raises ArgumentError for what cannot be one."""
         if self.kind not in ("set", "add", "scale"):
             raise ArgumentError(f"{self._name}: kind is {self.kind!r}; it must be 'set', 'add' or 'scale'.")
         factors = self._factors()
@@ -117,6 +118,7 @@ class JointCircle:
     axes: Literal["tangent", "keep"] = "tangent"
 
     def parts(self, hexapod: Hexapod) -> list[Part]:
+        """The map of this circle for a design. Raises ArgumentError for what cannot be one."""
         if self.plate not in ("base", "platform"):
             raise ArgumentError(f"a joint circle is on {self.plate!r}; it must be on 'base' or 'platform'.")
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints

@@ -36,7 +36,9 @@ def optimal_page(found: OptimalDesign, objective: str) -> str:
     where = "" if worst is None else f" It is least at {_six(worst)}."
     sections = [
         beware(_cautions(found)),
-        drawing(lambda: plots_optimise.plan(found), "plan", "The two designs", f"At home. {objective}.{where}"),
+        drawing(
+            lambda: plots_optimise.plan(found), "plan", "The two designs", f"Both at home. Raised: {objective}.{where}"
+        ),
         f"<h2>Variables</h2>\n{table(['variable', 'value'], bounds, 'In the unit of each key; SI where it has none.')}",
         _constraints(found.verification.checks, found.start_checks, found.verification.points),
         drawing(
@@ -56,7 +58,7 @@ def _cautions(found: OptimalDesign) -> list[str]:
             f"{found.coincident} frequencies meet at the worst pose: to raise the index, all of them must rise."
         )
     if found.at_bounds:
-        words.append(f"On their bounds: {', '.join(found.at_bounds)}. Wider bounds would give more.")
+        words.append(f"On their bounds: {', '.join(found.at_bounds)}. Wider bounds may give more.")
     return words
 
 
