@@ -265,7 +265,7 @@ def test_the_readmes_example_and_commands_work(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     commands = re.findall(r"^flexapod (.*?)(?:  +#.*)?$", text, re.MULTILINE)
     served = [command for command in commands if command.startswith("serve")]  # runs until it is stopped: tests/web
-    assert len(commands) == 11
+    assert len(commands) == 14
     assert len(served) == 1
     for command in [each for each in commands if each not in served]:
         assert run(*shlex.split(command))[0] == 0, command
