@@ -10,33 +10,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import flexapod as fx
-from flexapod.cli import COMMANDS, main
+from flexapod.cli import COMMANDS
 
 CENTER = ["--pose", "0", "0", "0.085", "0", "0", "0"]
-
-
-@pytest.fixture
-def run(capsys):
-    """Run the command line in this process: exit code, standard output, standard error."""
-
-    def call(*arguments):
-        code = main([str(argument) for argument in arguments])
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return call
-
-
-@pytest.fixture
-def result(run):
-    """The JSON that a command prints."""
-
-    def call(*arguments):
-        code, out, err = run(*arguments, "--json")
-        assert (code, err) == (0, "")
-        return json.loads(out, parse_constant=lambda name: pytest.fail(f"{name} is not JSON"))
-
-    return call
 
 
 def test_modes_gives_the_published_frequencies(result):

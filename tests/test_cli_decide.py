@@ -1,42 +1,16 @@
 """The commands path and control as a user meets them: numbers, files, messages."""
 
-import json
 import re
 
 import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.cli import main
 
 pytest.importorskip("ompl")
 
 FROM = ["--from", 0, 0, 0.89, 0, -33, -10]
 TO = ["--to", 0, 0, 0.89, 0, 45, 53]
-
-
-@pytest.fixture
-def run(capsys):
-    """Run the command line in this process: exit code, standard output, standard error."""
-
-    def call(*arguments):
-        code = main([str(argument) for argument in arguments])
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return call
-
-
-@pytest.fixture
-def result(run):
-    """The JSON that a command prints."""
-
-    def call(*arguments):
-        code, out, err = run(*arguments, "--json")
-        assert (code, err) == (0, "")
-        return json.loads(out)
-
-    return call
 
 
 def test_plan_writes_a_path_that_reads_back(run, result, tmp_path):

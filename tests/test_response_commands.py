@@ -18,26 +18,6 @@ AXES = ["x", "y", "z", "roll", "pitch", "yaw"]
 II = fx.Pose((0, 0, 0.085))
 
 
-@pytest.fixture
-def run(capsys):
-    def call(*arguments):
-        code = main([str(argument) for argument in arguments])
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return call
-
-
-@pytest.fixture
-def result(run):
-    def call(*arguments):
-        code, out, err = run(*arguments, "--json")
-        assert (code, err) == (0, "")
-        return json.loads(out)
-
-    return call
-
-
 # --- response ------------------------------------------------------------------------------------------------------
 
 
