@@ -1,7 +1,8 @@
 """How quickly the page answers: `python -m benchmarks.web` (needs chromium; software WebGL is what it measures).
 
 - page ready: from navigation to a drawn cloud of 100 000 poses, in a fresh browser context with a warm server
-- slider to table: from one input event of a slider to the changed table, median and 95th percentile over 100 moves
+- slider to table: from one input event of a slider to the changed table, median and 95th percentile over 100 moves, with
+  and without a rest between them in which the page draws
 - frames per second of an animated mode at 1400 x 850
 - many pages: 20 clients, each with one question in flight and ten moves a second, as hands on sliders make them
 """
@@ -77,12 +78,16 @@ def page_ready(browser: Any, url: str) -> float:
     return float(ready)
 
 
-def slider_to_table(browser: Any, url: str) -> list[float]:
+def slider_to_table(browser: Any, url: str, pause: float) -> list[float]:
+    """Milliseconds from a move of a slider to the changed table; `pause` ms after each, in which the page draws."""
     page = opened(browser, url, "modes")
     page.wait_for_timeout(1000)
-    found = [page.evaluate(MOVE, 0.3 + 0.4 * ((i * 37) % MOVES) / MOVES) for i in range(MOVES)]
+    found = []
+    for i in range(MOVES):
+        found.append(float(page.evaluate(MOVE, 0.3 + 0.4 * ((i * 37) % MOVES) / MOVES)))
+        page.wait_for_timeout(pause)
     page.context.close()
-    return [float(value) for value in found]
+    return found
 
 
 def frames_per_second(browser: Any, url: str) -> float:
@@ -149,8 +154,10 @@ def main() -> None:
             page_ready(browser, url)
             ready = [page_ready(browser, url) for _ in range(5)]
             print(f"page ready with 100 000 poses: median {statistics.median(ready):.2f} s, worst {max(ready):.2f} s")
-            moves = slider_to_table(browser, url)
-            print(f"slider to table: median {statistics.median(moves):.0f} ms, p95 {percentile(moves, 0.95):.0f} ms")
+            for words, pause in (("one move", 300.0), ("without rest", 0.0)):
+                moves = slider_to_table(browser, url, pause)
+                middle, slow = statistics.median(moves), percentile(moves, 0.95)
+                print(f"slider to table, {words}: median {middle:.0f} ms, p95 {slow:.0f} ms")
             print(f"an animated mode in software WebGL: {frames_per_second(browser, url):.0f} frames/s")
             browser.close()
         answers = many_pages(url)
