@@ -1,8 +1,8 @@
 """How quickly the page answers: `python -m benchmarks.web` (needs chromium; software WebGL is what it measures).
 
 - page ready: from navigation to a drawn cloud of 100 000 poses, in a fresh browser context with a warm server
-- slider to table: from one input event of a slider to the changed table, median and 95th percentile over 100 moves, with
-  and without a rest between them in which the page draws
+- slider to table: from one input event of a slider to the changed table, median and 95th percentile over 100 moves,
+  with and without a rest between them in which the page draws
 - frames per second of an animated mode at 1400 x 850
 - many pages: 20 clients, each with one question in flight and ten moves a second, as hands on sliders make them
 """
