@@ -1,4 +1,4 @@
-// Rest: which leg forces hold a pose, where the platform settles, and the exact tangent there.
+// Rest: where the platform settles, and the exact tangent there.
 #pragma once
 
 #include "displacement.hpp"
@@ -30,16 +30,6 @@ Vec6<T> rest_residual(const Machine<double>& machine, const Pose<T>& platform, c
   Vec6<T> r;
   for (int i = 0; i < 6; ++i) r[i] = eta[i] - legs[i] - external[i];
   return r;
-}
-
-/// The leg forces that hold a pose at rest against gravity and a wrench. False where H is singular.
-inline bool holding_forces(const Machine<double>& machine, const Pose<double>& platform, const Pose<double>& base,
-                           const Vec6<double>& wrench, Vec6<double>& F) {
-  const Geometry<double> g(machine.design, platform, base);
-  Vec6<double> needed = inverse_wrench(machine, g, at_rest(platform), at_rest(base));
-  const Vec6<double> external = external_wrench(platform.R, wrench);
-  for (int i = 0; i < 6; ++i) needed[i] -= external[i];
-  return solve_general(force_transformation(g), needed, F);
 }
 
 /// Linear dynamics about rest: M x'' + C x' + K x + M_b x_b'' + C_b x_b' + K_b x_b = H f + w, with x, x_b the small

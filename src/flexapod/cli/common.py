@@ -93,6 +93,13 @@ characteristic_length_option = click.option(
 json_option = click.option("--json", "as_json", is_flag=True, help="Print the results as JSON, in SI units.")
 
 
+def out_option(help: str) -> Callable[[Any], Any]:
+    """--out DIR: None where it is not given."""
+    return click.option(
+        "--out", type=click.Path(path_type=Path, file_okay=False), default=None, metavar="DIR", help=help
+    )
+
+
 def stack(*decorators: Callable[[Any], Any]) -> Callable[[Any], Any]:
     """Several decorators as one, the first outermost."""
 

@@ -102,11 +102,5 @@ run_options = common.stack(
     click.option("--force-limit", type=_positive, metavar="N", help="Largest force of an actuator."),
     click.option("--sensor-noise", type=_positive, help="RMS noise of the first measurement, in its unit."),
     click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of shaking and noise."),
-    click.option(
-        "--out",
-        type=click.Path(path_type=Path, file_okay=False),
-        default=None,
-        metavar="DIR",
-        help="Where to write the report and figures. Default: nothing is written.",
-    ),
+    common.out_option("Where to write the report and figures. Default: nothing is written."),
 )

@@ -30,12 +30,8 @@ where_options = common.stack(
         "--box", multiple=True, metavar="NAME=LEAST:LARGEST,...", help="A workspace in the base frame (m, degrees)."
     ),
 )
-out_option = click.option(
-    "--out",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=None,
-    metavar="DIR",
-    help="Where to write the report (HTML), figures (PNG) and designs (TOML). Default: here; with --json: no files.",
+out_option = common.out_option(
+    "Where to write the report (HTML), figures (PNG) and designs (TOML). Default: here; with --json: no files."
 )
 threads_option = click.option("--threads", type=click.IntRange(1), default=None, help="Default: all cores.")
 

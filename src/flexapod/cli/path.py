@@ -73,13 +73,7 @@ _options = common.stack(
     click.option("--clearance", type=_positive, metavar="M", help="Least distance of leg axes on a planned path."),
     click.option("--limits/--no-limits", default=True, help="Whether a planned path keeps the design's limits."),
     click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of the planner's samples."),
-    click.option(
-        "--out",
-        type=click.Path(path_type=File, file_okay=False),
-        default=None,
-        metavar="DIR",
-        help="Where to write the report, figures and planned waypoints. Default: nothing is written.",
-    ),
+    common.out_option("Where to write the report, figures and planned waypoints. Default: nothing is written."),
 )
 
 

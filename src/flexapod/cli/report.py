@@ -20,13 +20,7 @@ if TYPE_CHECKING:
 @common.set_option
 @common.joint_option
 @common.characteristic_length_option
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path, file_okay=False),
-    default=None,
-    metavar="DIR",
-    help="Where to write the HTML file; made if it is not there. Default: here; with --json: no file.",
-)
+@common.out_option("Where to write the HTML file; made if it is not there. Default: here; with --json: no file.")
 @common.json_option
 def command(
     design: str,

@@ -75,13 +75,7 @@ _response_options = common.stack(
         help="Base acceleration spectra for RMS values: column frequency_hz and one or more of x, y, z (m/s2)^2/Hz, "
         "roll, pitch, yaw (rad/s2)^2/Hz, one-sided.",
     ),
-    click.option(
-        "--out",
-        type=click.Path(path_type=Path, file_okay=False),
-        default=None,
-        metavar="DIR",
-        help="Write figures, .csv and .nc here.",
-    ),
+    common.out_option("Write figures, .csv and .nc here."),
 )
 
 

@@ -36,13 +36,7 @@ _options = common.stack(
     click.option("--samples", type=click.IntRange(2), default=None, help="Default: 20 a period of the highest mode."),
     click.option("--rtol", type=float, default=1e-9, show_default=True, help="Relative error of a step."),
     click.option("--reactions", is_flag=True, help="Forces and moments in all joints too."),
-    click.option(
-        "--out",
-        type=click.Path(path_type=Path, file_okay=False),
-        default=None,
-        metavar="DIR",
-        help="Write figures, .csv and .nc here.",
-    ),
+    common.out_option("Write figures, .csv and .nc here."),
 )
 
 
