@@ -1,6 +1,6 @@
 """MuJoCo on manipulator II: the step it needs for natural frequencies to 1 %, and its time then.
 
-The model is that of `fx.write_mjcf` without its drawing, with constraints as stiff as the step allows. The appendix's leg
+The model is that of `fx.write_mjcf` without its drawing, constraints as stiff as the step allows. The appendix's leg
 inertias, which no rigid body has and MuJoCo refuses, are replaced by the nearest ones in both codes, and the spherical
 joints' friction, for which MuJoCo needs six more bodies, is left out. A constant wrench along a mode is put on the
 resting machine; the frequency is that of what follows.
