@@ -1,6 +1,8 @@
 """Files for other tools, opened by these tools: the machine they hold is the library's."""
 
 import json
+import re
+from pathlib import Path
 
 import control
 import mujoco
@@ -286,3 +288,14 @@ def test_export_of_legs_that_do_not_spin(run, result, tmp_path):
     assert "--joint spin_free" in err
     result("export", "motion-base", "--to", "mat", "--joint", "spin_free", "--out", tmp_path / "a.mat")
     assert str(loadmat(tmp_path / "a.mat", squeeze_me=True)["joint"]) == "spin_free"
+
+
+def test_the_code_of_the_page_runs(tmp_path, monkeypatch):
+    page = (Path(__file__).parent.parent / "docs" / "interchange.md").read_text(encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    there: dict = {}
+    for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
+        exec(block, there)
+    hexapod = fx.load("motion-base")
+    assert np.sqrt(there["squares"]) == pytest.approx(fx.natural_modes(hexapod, fx.home_pose(hexapod)).omega, rel=1e-9)
+    assert there["plant"](1j) == pytest.approx(there["same"](1j), rel=1e-12)
