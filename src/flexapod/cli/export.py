@@ -67,7 +67,7 @@ def command(
     given = common.load_design(design, changes)
     where = common.chosen_pose(given, pose)
     hexapod = nearest(given) if nearest_physical else given
-    files = _write(kind, out or Path(f"{hexapod.name}{SUFFIXES[kind]}"), hexapod, where, joint)
+    files = _write(kind, out or Path(f"{common.file_name(hexapod.name)}{SUFFIXES[kind]}"), hexapod, where, joint)
     omega, before = (natural_modes(machine, where, joint).omega for machine in (hexapod, given))
     written = [str(file) for file in files]
     found = {

@@ -63,7 +63,8 @@ def standing(hexapod: Hexapod, pose: Pose | None = None) -> Machine:
     rest = hold(hexapod, where)
     platform = Body(hexapod.platform_mass, hexapod.platform_mass_center, hexapod.platform_inertia)
     legs = tuple(_leg(hexapod, where, i, float(rest.leg_force[i])) for i in range(6))
-    return Machine(hexapod.name, hexapod.gravity, where, platform, legs)
+    name = "".join(filter(str.isprintable, hexapod.name)) or "hexapod"  # XML takes no control characters
+    return Machine(name, hexapod.gravity, where, platform, legs)
 
 
 def pose_or_home(hexapod: Hexapod, pose: Pose | None) -> Pose:
