@@ -31,7 +31,17 @@ def machines(draw) -> fx.Hexapod:
     """A general machine: no symmetry, every leg its own, bodies that could be cast, all frictions on."""
     size, mass = 10.0 ** draw(st.floats(-1.5, 0.5)), 10.0 ** draw(st.floats(-1, 3))
     height, ratio = draw(st.floats(0.5, 2)), draw(st.floats(0.3, 1.2))
-    rng = np.random.default_rng(draw(seeds))
+    return _machine(np.random.default_rng(draw(seeds)), size, mass, height, ratio)
+
+
+def machine(seed: int) -> fx.Hexapod:
+    """One such machine, always the same for a seed."""
+    rng = np.random.default_rng(seed)
+    size, mass = 10.0 ** rng.uniform(-1.5, 0.5), 10.0 ** rng.uniform(-1, 3)
+    return _machine(rng, size, mass, rng.uniform(0.5, 2), rng.uniform(0.3, 1.2))
+
+
+def _machine(rng, size, mass, height, ratio) -> fx.Hexapod:
     base_angle = np.radians(rng.uniform(-8, 8, 6) + np.array([-15, 15, 105, 135, 225, 255]))
     platform_angle = np.radians(rng.uniform(-8, 8, 6) + np.array([-50, 50, 70, 170, 190, 290]))
     values = {

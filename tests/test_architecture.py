@@ -14,6 +14,7 @@ STUDIES = "studies"
 FLOORS = [
     ["_core", "errors", "units"],
     ["pose", "schema"],
+    ["jointfile"],
     ["shorthands"],
     ["designfile"],
     ["hexapod"],
@@ -27,7 +28,7 @@ FLOORS = [
     ["laws", "sweeps"],
     ["optimal"],
     [STUDIES],
-    ["plots"],
+    ["plots", "interchange"],
     [
         "plots_response",
         "plots_sweep",

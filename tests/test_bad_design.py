@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from flexapod.errors import DesignError
 from flexapod.hexapod import Damping, Hexapod, Home, LegPart, Legs, Limits, load, parse_assignments
-from flexapod.schema import KEYS, TABLES
+from flexapod.schema import KEYS, TABLES, TEXT_KEYS
 
 GOOD = """
 name = "good"
@@ -480,7 +480,7 @@ shaped = st.sampled_from([(), (3,), (6,), (3, 3), (6, 3)]).flatmap(
 )
 
 
-@given(st.sampled_from([*KEYS, *TABLES, "name"]), anything | shaped)
+@given(st.sampled_from([*KEYS, *TABLES, *TEXT_KEYS]), anything | shaped)
 @settings(max_examples=120, deadline=None)
 def test_whatever_is_given_it_is_a_design_or_a_design_error(key, value):
     hexapod = Hexapod.from_toml(GOOD)

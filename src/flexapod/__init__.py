@@ -25,6 +25,7 @@ _HOMES = {
     ],
     "hexapod": ["Damping", "Hexapod", "LegPart", "Legs", "Limits", "load", "packaged_designs", "template"],
     "pose": ["Motion", "Pose"],
+    "jointfile": ["read_joints"],
     "kinematics": [
         "JointAngles",
         "LegRates",
@@ -115,6 +116,11 @@ _HOMES = {
     "optimal.optimise": ["OptimalDesign", "optimise"],
     "optimal.pareto": ["ParetoFront", "pareto_front"],
     "robust": ["Payload", "Robustness", "Uncertain", "robustness"],
+    "interchange.bodies": ["nearest_physical"],
+    "interchange.mjcf": ["write_mjcf"],
+    "interchange.sdf": ["write_sdf"],
+    "interchange.statespace": ["write_mat"],
+    "interchange.urdf": ["write_urdf"],
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 __all__ = sorted([*_HOME_OF, "__version__"])
@@ -174,9 +180,15 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.hexapod import load as load
     from flexapod.hexapod import packaged_designs as packaged_designs
     from flexapod.hexapod import template as template
+    from flexapod.interchange.bodies import nearest_physical as nearest_physical
+    from flexapod.interchange.mjcf import write_mjcf as write_mjcf
+    from flexapod.interchange.sdf import write_sdf as write_sdf
+    from flexapod.interchange.statespace import write_mat as write_mat
+    from flexapod.interchange.urdf import write_urdf as write_urdf
     from flexapod.isolators import controlled_transmissibility as controlled_transmissibility
     from flexapod.isolators import h_infinity as h_infinity
     from flexapod.isolators import lqg as lqg
+    from flexapod.jointfile import read_joints as read_joints
     from flexapod.kinematics import JointAngles as JointAngles
     from flexapod.kinematics import LegRates as LegRates
     from flexapod.kinematics import LimitsCheck as LimitsCheck

@@ -21,7 +21,10 @@ _DESIGNS = Path(__file__).parent / "designs"
 _TEMPLATE = "template"
 _START = "`flexapod new my-machine.toml` writes a design to start from."
 _REQUIRED = ("base.joints", "platform.joints", "platform.mass", "platform.mass_center", "platform.inertia")
-_SHORT_FORMS = {"base.joints": "[base.circle] or [cubic]", "platform.joints": "[platform.circle] or [cubic]"}
+_SHORT_FORMS = {
+    "base.joints": "[base.circle], [cubic] or [joints] with csv",
+    "platform.joints": "[platform.circle], [cubic] or [joints] with csv",
+}
 
 
 def packaged_designs() -> list[str]:
@@ -71,22 +74,32 @@ def read_file(path: Path) -> Values:
     except OSError as error:
         raise DesignError(f"{path} cannot be read: {error.strerror}. Check the file's permissions.") from error
     try:
-        values = read_text(text)
+        values = read_text(text, path.parent)
     except DesignError as error:
         raise DesignError(f"{path}: {error}") from error
     values.setdefault("name", path.stem)
     return values
 
 
-def read_text(text: str) -> Values:
-    """Values of a design given as TOML text, short forms expanded."""
+def self_contained(path: Path) -> str:
+    """The text of a design file, with the numbers in place of another file that it names, where that can be read."""
+    text = path.read_text("utf-8-sig", "replace")
+    try:
+        joints = tomllib.loads(text).get("joints")
+        return write_text(read_file(path)) if isinstance(joints, dict) and "csv" in joints else text
+    except (ValueError, RecursionError):  # no TOML, or no design
+        return text
+
+
+def read_text(text: str, directory: Path | None = None) -> Values:
+    """Values of a design given as TOML text, short forms expanded. directory: where the files that it names are."""
     try:
         tables = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # ValueError: wrong TOML, or an integer of thousands of digits
         raise DesignError(f"this is not TOML: {error}. Correct that line; {_START}") from None
     if not tables:
         raise DesignError(f"the design is empty; it must have [base], [platform] and [legs]. {_START}")
-    return complete(expand(flatten(tables)))
+    return complete(expand(flatten(tables), directory))
 
 
 def flatten(tables: Mapping[str, Any], table: str = "") -> Values:
@@ -112,7 +125,8 @@ def _check(name: str, canonical: str, value: Any, unit: str) -> Any:
     if canonical not in TEXT_KEYS:
         return check_value(name, value, KEYS[canonical], unit)
     if not isinstance(value, str) or not value.strip():
-        raise DesignError(f'{name} is {value!r}; it must be text. Write {name} = "my hexapod".')
+        example = "my hexapod" if canonical == "name" else "joints.csv"
+        raise DesignError(f'{name} is {value!r}; it must be text. Write {name} = "{example}".')
     return value
 
 

@@ -197,8 +197,8 @@ KEYS: dict[str, Key] = {
     "cubic.center_in_platform": Key("cube's centre, platform frame, at home", "length", _VECTOR),
 }
 
-TEXT_KEYS = frozenset({"name"})
-TABLES = frozenset(key.rsplit(".", depth)[0] for key in KEYS for depth in range(1, key.count(".") + 1))
+TEXT_KEYS = frozenset({"name", "joints.csv"})
+TABLES = frozenset(key.rsplit(".", depth)[0] for key in {*KEYS, *TEXT_KEYS} for depth in range(1, key.count(".") + 1))
 
 
 def children(table: str) -> list[str]:

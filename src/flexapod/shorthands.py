@@ -1,18 +1,26 @@
-"""What the short forms of a design file stand for: joint circles, the cubic configuration, rods, tangent axes."""
+"""What the short forms of a design file stand for: tables of joints, circles, the cubic configuration, rods, axes."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from flexapod.errors import DesignError
+from flexapod.jointfile import read_joints
+from flexapod.pose import Pose, rpy_matrix
 from flexapod.schema import KEYS, FloatArray, check_value
 
 Values = dict[str, Any]  # dotted key -> array in SI units, or text
 
 
-def expand(values: Values) -> Values:
-    """The same design in plain keys only. Raises DesignError where a short form and its plain keys are both given."""
+def expand(values: Values, directory: Path | None = None) -> Values:
+    """The same design in plain keys only. Raises DesignError where a short form and its plain keys are both given.
+
+    directory: where files that the design names are looked for; without it none is read, so that a text from elsewhere
+    cannot make this computer read files.
+    """
     values = dict(values)
+    _expand_table(values, directory)
     for plate in ("base", "platform"):
         _expand_circle(values, plate)
     _expand_cubic(values)
@@ -86,6 +94,29 @@ def _refuse_both(values: Values, table: str, *keys: str) -> None:
     for key in keys:
         if key in values:
             raise DesignError(f"{key} and [{table}] are both given, and both set {key}. Leave one of them out.")
+
+
+def _expand_table(values: Values, directory: Path | None) -> None:
+    given = values.pop("joints.csv", None)
+    if given is None:
+        return
+    if directory is None:
+        raise DesignError(
+            f"joints.csv is {given!r}: a file is read only for a design file that names it, opened with flexapod.load "
+            "or by a command. Elsewhere use hexapod.replace(flexapod.read_joints(...)), or give base.joints and "
+            "platform.joints."
+        )
+    for short in ("base.circle", "platform.circle", "cubic"):
+        if any(key.startswith(f"{short}.") for key in values):
+            raise DesignError(f"[{short}] and [joints] are both given, and both set joints. Leave one of them out.")
+    _refuse_both(values, "joints", "base.joints", "platform.joints")
+    home = None
+    if "home.position" in values:
+        home = Pose(values["home.position"], rpy_matrix(values.get("home.orientation", np.zeros(3))))
+    for key, value in read_joints(directory / given, home).items():
+        if value is not None:
+            _refuse_both(values, "joints", key)
+            values[key] = check_value(key, value, KEYS[key])
 
 
 def _expand_circle(values: Values, plate: str) -> None:

@@ -15,6 +15,7 @@ COMMANDS = (
     "check",
     "control",
     "designs",
+    "export",
     "modes",
     "new",
     "optimise",

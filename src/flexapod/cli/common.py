@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -161,6 +162,11 @@ def write_file(path: Path, text: str) -> None:
         path.write_text(text, encoding="utf-8", newline="\n")
     except OSError as error:
         raise click.UsageError(f"{path} cannot be written: {error.strerror}. Choose another place.") from error
+
+
+def file_name(name: str) -> str:
+    """A design's name as a file's: nothing in it that a file system or a shell could take amiss."""
+    return re.sub(r"[^\w.-]+", "-", name).strip("-.") or "hexapod"
 
 
 def save_figure(figure: Figure, path: Path) -> None:

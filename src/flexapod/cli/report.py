@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,7 +42,7 @@ def command(
     file = None
     if out is not None or not as_json:
         directory = common.output_directory(Path() if out is None else out)
-        file = directory / f"{_file_name(hexapod.name)}.html"
+        file = directory / f"{common.file_name(hexapod.name)}.html"
     if not as_json:
         from flexapod.report.terminal import summary
 
@@ -56,8 +55,3 @@ def command(
         common.print_json({**findings.as_dict(found), "html": None if file is None else str(file)})
     else:
         click.echo(f"Report: {file}")
-
-
-def _file_name(name: str) -> str:
-    """A design's name as a file's: nothing in it that a file system or a shell could take amiss."""
-    return re.sub(r"[^\w.-]+", "-", name).strip("-.") or "hexapod"

@@ -84,7 +84,7 @@ def _beginning(start: Path | None) -> dict[str, Any]:
     return {
         "version": __version__,
         "presets": presets,
-        "start": None if start is None else {"name": start.stem, "text": start.read_text("utf-8-sig", "replace")},
+        "start": None if start is None else {"name": start.stem, "text": designfile.self_contained(start)},
         "fields": designs.fields(),
     }
 

@@ -1,0 +1,47 @@
+"""XML and text files: numbers that read back bit for bit, and errors that say what to do."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flexapod.errors import OutputError
+
+
+def add(parent: ET.Element, tag: str, **attributes: Any) -> ET.Element:
+    """A child element; numbers and arrays become text, None is left out."""
+    given = {key: text(value) for key, value in attributes.items() if value is not None}
+    return ET.SubElement(parent, tag, given)
+
+
+def say(parent: ET.Element, tag: str, value: Any) -> ET.Element:
+    """A child element with text."""
+    element = ET.SubElement(parent, tag)
+    element.text = text(value)
+    return element
+
+
+def text(value: Any) -> str:
+    """A number or an array as text, with as many digits as it needs."""
+    if isinstance(value, str):
+        return value
+    return " ".join(repr(float(number) + 0.0) for number in np.ravel(value))
+
+
+def document(root: ET.Element) -> str:
+    """The whole XML file."""
+    ET.indent(root)
+    return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
+
+
+def write(path: str | Path, content: str) -> Path:
+    """Write a text file. Raises OutputError where that cannot be."""
+    file = Path(path)
+    try:
+        file.write_text(content, encoding="utf-8", newline="\n")
+    except OSError as error:
+        raise OutputError(f"{file} cannot be written: {error.strerror}. Choose another place.") from error
+    return file

@@ -1,0 +1,168 @@
+"""MuJoCo's MJCF: a free platform, six legs of two hinges and a slide, closed by equality constraints."""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+
+from flexapod import __version__
+from flexapod.errors import ArgumentError
+from flexapod.hexapod import Hexapod
+from flexapod.interchange.files import add, document, write
+from flexapod.interchange.machine import Body, Leg, Machine, standing
+from flexapod.modal import natural_modes
+from flexapod.pose import Array, Pose
+
+STEPS = 50  # of a simulation for each period of the fastest mode
+SOCKET = 1e-3  # part of the platform that goes to each spherical joint with friction, where it has so much to give
+LEFT = 0.9  # of the platform's mass and moments must stay with it
+THICK = 0.02  # radius of a drawn leg, of its length
+
+
+def write_mjcf(path: str | Path, hexapod: Hexapod, pose: Pose | None = None, *, timestep: float | None = None) -> Path:
+    """Write a machine at rest at a pose (default: home) as a MuJoCo model, SI units; returns the file.
+
+    At joint positions zero the machine stands at the pose with springs that hold it there. Motors `leg1` to `leg6` push
+    beside the springs, N. timestep: s, by default a fiftieth of the shortest natural period, and less for legs with
+    little mass, which could swing on their springs before MuJoCo closes the loops. The loops are closed by
+    `connect`, or, where a spherical joint has friction, by a ball joint with this friction on a small piece cut out of
+    the platform and a `weld` of this piece to the rest: together they are the platform. Base joints are those of the
+    exact model ("universal").
+
+    Raises DesignError for bodies that MuJoCo refuses (see `nearest_physical`), PoseError, SingularPoseError,
+    OutputError.
+    """
+    return write(path, mjcf(hexapod, pose, timestep))
+
+
+def mjcf(hexapod: Hexapod, pose: Pose | None = None, timestep: float | None = None) -> str:
+    """The text of `write_mjcf`'s file."""
+    machine = standing(hexapod, pose)
+    if timestep is None:
+        timestep = _timestep(hexapod, machine)
+    if not 0 < timestep < math.inf:
+        raise ArgumentError(f"timestep is {timestep!r} s; it must be > 0. Leave it out for one that suits the machine.")
+    root = ET.Element("mujoco", model=machine.name)
+    root.append(ET.Comment(f" Written by Flexapod {__version__} for {machine.pose!r}; SI units, base frame. "))
+    add(root, "compiler", angle="radian", autolimits="true")
+    option = add(
+        root,
+        "option",
+        timestep=timestep,
+        gravity=machine.gravity,
+        integrator="RK4",  # implicit ones damp the joints but not the forces that close the loops, which then part
+        solver="Newton",
+        iterations="100",
+        tolerance=1e-14,
+    )
+    add(option, "flag", contact="disable")
+    defaults = add(root, "default")
+    add(defaults, "geom", contype="0", conaffinity="0", rgba=[0.6, 0.65, 0.7, 1.0])
+    add(defaults, "equality", solref=[2 * timestep, 1.0], solimp=[0.9999, 0.9999, 0.001])
+    rest, sockets = _divided(machine)
+    _bodies(add(root, "worldbody"), machine, rest, sockets)
+    equality, actuator = add(root, "equality"), add(root, "actuator")
+    for leg in machine.legs:
+        _close(equality, leg)
+        add(actuator, "motor", name=leg.name, joint=f"{leg.name}_slide")
+    return document(root)
+
+
+def _timestep(hexapod: Hexapod, machine: Machine) -> float:
+    fastest = float(natural_modes(hexapod, machine.pose).omega[-1])
+    lightest = min(math.sqrt(leg.upper.mass / leg.stiffness) for leg in machine.legs)
+    return min(2 * math.pi / fastest / STEPS, lightest / 2)
+
+
+def _divided(machine: Machine) -> tuple[Body, list[Body | None]]:
+    """What is left of the platform, and the piece of it at each spherical joint, about that joint; None: no friction.
+
+    Pieces are balls of equal mass. Moments are those of second order about the platform's reference point, 4 x 4 with
+    the first moments and the mass, so that bodies add up; a solid body's are positive definite.
+    """
+    whole = _moments(machine.platform)
+    size = float(np.linalg.eigvalsh(machine.platform.inertia)[0])
+    ball = Body(machine.platform.mass, np.zeros(3), size * np.eye(3))
+    pieces = [ball._replace(center=leg.platform_joint) for leg in machine.legs if leg.spherical]
+    if not pieces:
+        return machine.platform, [None] * 6
+    taken = np.sum([_moments(piece) for piece in pieces], axis=0)
+    root = np.linalg.inv(np.linalg.cholesky(whole))
+    share = min(SOCKET, (1 - LEFT) / float(np.linalg.eigvalsh(root @ taken @ root.T)[-1]))
+    piece = ball._replace(mass=share * ball.mass, inertia=share * ball.inertia)
+    return _of_moments(whole - share * taken), [piece if leg.spherical else None for leg in machine.legs]
+
+
+def _moments(body: Body) -> Array:
+    moments = np.empty((4, 4))
+    moments[:3, :3] = (
+        np.trace(body.inertia) / 2 * np.eye(3) - body.inertia + body.mass * np.outer(body.center, body.center)
+    )
+    moments[:3, 3] = moments[3, :3] = body.mass * body.center
+    moments[3, 3] = body.mass
+    return moments
+
+
+def _of_moments(moments: Array) -> Body:
+    mass, center = float(moments[3, 3]), moments[:3, 3] / moments[3, 3]
+    about = moments[:3, :3] - mass * np.outer(center, center)
+    return Body(mass, center, np.trace(about) * np.eye(3) - about)
+
+
+def _bodies(world: ET.Element, machine: Machine, rest: Body, sockets: list[Body | None]) -> None:
+    reach = float(np.ptp([leg.base_joint for leg in machine.legs], axis=0).max())
+    height = float(machine.pose.position[2])
+    add(world, "light", pos=[0.0, -reach, height + 2 * reach], dir=[0.0, 0.3, -1.0])
+    base = add(world, "body", name="base")
+    for leg, socket in zip(machine.legs, sockets, strict=True):
+        _leg(base, leg, socket)
+    platform = add(world, "body", name="platform", pos=machine.pose.position, xyaxes=machine.pose.matrix.T[:2])
+    add(platform, "freejoint", name="platform")
+    _inertial(platform, rest)
+    middle = np.mean([leg.platform_joint for leg in machine.legs], axis=0)
+    for leg in machine.legs:
+        ends = np.concatenate([middle, leg.platform_joint])
+        add(platform, "geom", type="capsule", fromto=ends, size=THICK * leg.length, rgba=[0.0, 0.45, 0.7, 1.0])
+
+
+def _leg(base: ET.Element, leg: Leg, socket: Body | None) -> None:
+    lower = add(base, "body", name=f"{leg.name}_lower", pos=leg.base_joint, xyaxes=leg.axes.T[:2])
+    add(lower, "joint", name=f"{leg.name}_universal_k", type="hinge", axis=leg.axis, damping=leg.universal)
+    add(lower, "joint", name=f"{leg.name}_universal_y", type="hinge", axis=[0.0, 1.0, 0.0], damping=leg.universal)
+    _inertial(lower, leg.lower)
+    half = leg.length / 2
+    add(lower, "geom", type="capsule", fromto=[0.0, 0.0, 0.0, half, 0.0, 0.0], size=THICK * leg.length)
+    upper = add(lower, "body", name=f"{leg.name}_upper", pos=[leg.length, 0.0, 0.0])
+    add(
+        upper,
+        "joint",
+        name=f"{leg.name}_slide",
+        type="slide",
+        axis=[1.0, 0.0, 0.0],
+        stiffness=leg.stiffness,
+        springref=leg.force / leg.stiffness,
+        damping=leg.prismatic,
+        range=leg.travel,
+    )
+    _inertial(upper, leg.upper)
+    add(upper, "geom", type="capsule", fromto=[-half, 0.0, 0.0, 0.0, 0.0, 0.0], size=0.6 * THICK * leg.length)
+    if socket is not None:
+        piece = add(upper, "body", name=f"{leg.name}_socket")
+        add(piece, "joint", name=f"{leg.name}_spherical", type="ball", damping=leg.spherical)
+        _inertial(piece, socket)
+
+
+def _close(equality: ET.Element, leg: Leg) -> None:
+    name, anchor = f"{leg.name}_closed", [0.0, 0.0, 0.0]
+    if leg.spherical:
+        add(equality, "weld", name=name, body1="platform", body2=f"{leg.name}_socket", anchor=anchor)
+    else:
+        add(equality, "connect", name=name, body1=f"{leg.name}_upper", body2="platform", anchor=anchor)
+
+
+def _inertial(body: ET.Element, of: Body) -> None:
+    six = of.inertia[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    add(body, "inertial", mass=of.mass, pos=of.center, fullinertia=six)

@@ -1,0 +1,93 @@
+"""SDF, which has universal and ball joints, springs and loops: the machine as a world that a simulator can open."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+
+from flexapod import __version__
+from flexapod.hexapod import Hexapod
+from flexapod.interchange.files import add, document, say, write
+from flexapod.interchange.machine import Body, Leg, Machine, standing
+from flexapod.pose import Array, Pose
+
+VERSION = "1.9"
+UNLIMITED = 1e16  # SDF's own value for no limit
+
+
+def write_sdf(path: str | Path, hexapod: Hexapod, pose: Pose | None = None) -> Path:
+    """Write a machine at rest at a pose (default: home) as an SDF world with one model, SI units; returns the file.
+
+    Links stand where they are at the pose, in the base frame; legs are universal, prismatic (with spring, rest position
+    and damping) and ball joints, the loops closed. The ball joints are without friction, for which SDF has no word.
+    Base joints are those of the exact model ("universal").
+
+    Raises DesignError for bodies that are none (see `nearest_physical`), PoseError, SingularPoseError, OutputError.
+    """
+    return write(path, sdf(standing(hexapod, pose)))
+
+
+def sdf(machine: Machine) -> str:
+    """The text of the SDF file."""
+    root = ET.Element("sdf", version=VERSION)
+    root.append(ET.Comment(f" Written by Flexapod {__version__} for {machine.pose!r}; SI units, base frame. "))
+    world = add(root, "world", name="hexapod")
+    say(world, "gravity", machine.gravity)
+    model = add(world, "model", name=machine.name)
+    add(model, "link", name="base")
+    _joint(model, "fixed", "base_fixed", "world", "base")
+    _link(model, "platform", machine.pose.position, machine.pose.matrix, machine.platform)
+    for leg in machine.legs:
+        _leg(model, leg)
+    return document(root)
+
+
+def _leg(model: ET.Element, leg: Leg) -> None:
+    lower, upper = f"{leg.name}_lower", f"{leg.name}_upper"
+    end = leg.base_joint + leg.length * leg.axes[:, 0]
+    _link(model, lower, leg.base_joint, leg.axes, leg.lower)
+    _link(model, upper, end, leg.axes, leg.upper)
+    universal = _joint(model, "universal", f"{leg.name}_universal", "base", lower)
+    for tag, axis in (("axis", leg.axis), ("axis2", np.array([0.0, 1.0, 0.0]))):
+        _axis(universal, tag, axis, leg.universal)
+    slide = _joint(model, "prismatic", f"{leg.name}_slide", lower, upper)
+    dynamics = _axis(slide, "axis", np.array([1.0, 0.0, 0.0]), leg.prismatic, leg.travel)
+    say(dynamics, "spring_reference", leg.force / leg.stiffness)
+    say(dynamics, "spring_stiffness", leg.stiffness)
+    ball = _joint(model, "ball", f"{leg.name}_spherical", upper, "platform")
+    say(ball, "pose", np.concatenate([leg.platform_joint, np.zeros(3)]))
+
+
+def _link(model: ET.Element, name: str, position: Array, rotation: Array, body: Body) -> None:
+    link = add(model, "link", name=name)
+    say(link, "pose", np.concatenate([position, Pose(position, rotation).rpy]))
+    inertial = add(link, "inertial")
+    say(inertial, "pose", np.concatenate([body.center, np.zeros(3)]))
+    say(inertial, "mass", body.mass)
+    inertia = add(inertial, "inertia")
+    for name, (i, j) in {"xx": (0, 0), "xy": (0, 1), "xz": (0, 2), "yy": (1, 1), "yz": (1, 2), "zz": (2, 2)}.items():
+        say(inertia, f"i{name}", body.inertia[i, j])
+
+
+def _joint(model: ET.Element, kind: str, name: str, parent: str, child: str) -> ET.Element:
+    joint = add(model, "joint", name=name, type=kind)
+    say(joint, "parent", parent)
+    say(joint, "child", child)
+    return joint
+
+
+def _axis(
+    joint: ET.Element, tag: str, along: Array, damping: float, travel: tuple[float, float] | None = None
+) -> ET.Element:
+    """An axis in the child's frame; returns its `dynamics`."""
+    axis = add(joint, tag)
+    say(axis, "xyz", along)
+    limit = add(axis, "limit")
+    low, high = travel or (-UNLIMITED, UNLIMITED)
+    say(limit, "lower", low)
+    say(limit, "upper", high)
+    dynamics = add(axis, "dynamics")
+    say(dynamics, "damping", damping)
+    return dynamics

@@ -1,0 +1,140 @@
+"""URDF, which is a tree and has no springs, with a file beside it that closes the loops and adds what is missing."""
+
+from __future__ import annotations
+
+import json
+import xml.etree.ElementTree as ET
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from flexapod import __version__
+from flexapod.hexapod import Hexapod
+from flexapod.interchange.files import add, document, write
+from flexapod.interchange.machine import Body, Leg, Machine, standing
+from flexapod.pose import Array, Pose
+
+UNLIMITED = 1e9  # URDF wants a number for every limit of a sliding joint
+AXES = {"x": [1.0, 0.0, 0.0], "y": [0.0, 1.0, 0.0], "z": [0.0, 0.0, 1.0]}
+
+
+def write_urdf(path: str | Path, hexapod: Hexapod, pose: Pose | None = None) -> tuple[Path, Path]:
+    """Write a machine at rest at a pose (default: home) as URDF and NAME.loops.json; returns both files. SI units.
+
+    The platform hangs on leg 1 by three hinges through its spherical joint; the JSON file names the five point
+    constraints that close the other legs, the six springs with their rest positions, the friction of the spherical
+    joints and gravity. At joint positions zero the machine stands at the pose, at rest. Base joints are those of the
+    exact model ("universal").
+
+    Raises DesignError for bodies that are none (see `nearest_physical`), PoseError, SingularPoseError, OutputError.
+    """
+    machine = standing(hexapod, pose)
+    file = write(path, urdf(machine))
+    beside = json.dumps(loops(machine, file.name), indent=2)
+    return file, write(file.with_suffix(".loops.json"), beside + "\n")
+
+
+def urdf(machine: Machine) -> str:
+    """The text of the URDF file."""
+    robot = ET.Element("robot", name=machine.name)
+    robot.append(
+        ET.Comment(f" Written by Flexapod {__version__} for {machine.pose!r}; loops, springs: .loops.json beside it. ")
+    )
+    add(robot, "link", name="base")
+    for leg in machine.legs:
+        _leg(robot, leg)
+    _platform(robot, machine)
+    return document(robot)
+
+
+def loops(machine: Machine, name: str) -> dict[str, Any]:
+    """What URDF cannot say, for JSON: m, N, N/m, N m s/rad, m/s2."""
+    first, *others = machine.legs
+    return {
+        "format": "flexapod loops 1",
+        "urdf": name,
+        "design": machine.name,
+        "gravity": machine.gravity.tolist(),
+        "platform_position": machine.pose.position.tolist(),
+        "platform_rotation": machine.pose.matrix.tolist(),
+        "closures": [
+            {
+                "type": "point",
+                "link_a": f"{leg.name}_upper",
+                "point_a": [0.0, 0.0, 0.0],
+                "link_b": "platform",
+                "point_b": leg.platform_joint.tolist(),
+                "spherical_damping": leg.spherical,
+            }
+            for leg in others
+        ],
+        "springs": [
+            {
+                "joint": f"{leg.name}_slide",
+                "stiffness": leg.stiffness,
+                "rest_position": leg.force / leg.stiffness,
+                "force_here": leg.force,
+            }
+            for leg in machine.legs
+        ],
+        "platform_joints": [f"{first.name}_spherical_{axis}" for axis in AXES],
+    }
+
+
+def _leg(robot: ET.Element, leg: Leg) -> None:
+    for part in ("cross", "lower", "upper"):
+        link = add(robot, "link", name=f"{leg.name}_{part}")
+        if part != "cross":
+            _inertial(link, getattr(leg, part))
+    names = [f"{leg.name}_{joint}" for joint in ("universal_k", "universal_y", "slide")]
+    links = ["base", f"{leg.name}_cross", f"{leg.name}_lower", f"{leg.name}_upper"]
+    _joint(robot, "continuous", names[0], links[0:2], leg.base_joint, leg.axes, leg.axis, leg.universal)
+    _joint(robot, "continuous", names[1], links[1:3], np.zeros(3), np.eye(3), AXES["y"], leg.universal)
+    end = np.array([leg.length, 0.0, 0.0])
+    slide = _joint(robot, "prismatic", names[2], links[2:4], end, np.eye(3), AXES["x"], leg.prismatic)
+    low, high = leg.travel or (-leg.length, leg.length)
+    add(slide, "limit", lower=low, upper=high, effort=UNLIMITED, velocity=UNLIMITED)
+
+
+def _platform(robot: ET.Element, machine: Machine) -> None:
+    """Three hinges through the first leg's end, along the platform's axes, and the platform fixed to the last."""
+    first = machine.legs[0]
+    turn = first.axes.T @ machine.pose.matrix
+    parent = f"{first.name}_upper"
+    for axis, along in AXES.items():
+        child = f"socket_{axis}"
+        add(robot, "link", name=child)
+        name = f"{first.name}_spherical_{axis}"
+        _joint(robot, "continuous", name, [parent, child], np.zeros(3), turn, along, first.spherical)
+        parent, turn = child, np.eye(3)
+    _inertial(add(robot, "link", name="platform"), machine.platform)
+    _joint(robot, "fixed", "platform_fixed", [parent, "platform"], -first.platform_joint, np.eye(3))
+
+
+def _joint(
+    robot: ET.Element,
+    kind: str,
+    name: str,
+    links: list[str],
+    position: Array,
+    rotation: Array,
+    axis: Array | list[float] | None = None,
+    damping: float = 0.0,
+) -> ET.Element:
+    joint = add(robot, "joint", name=name, type=kind)
+    add(joint, "parent", link=links[0])
+    add(joint, "child", link=links[1])
+    add(joint, "origin", xyz=position, rpy=Pose(position, rotation).rpy)
+    if axis is not None:
+        add(joint, "axis", xyz=axis)
+        add(joint, "dynamics", damping=damping, friction=0.0)
+    return joint
+
+
+def _inertial(link: ET.Element, of: Body) -> None:
+    inertial = add(link, "inertial")
+    add(inertial, "origin", xyz=of.center, rpy=np.zeros(3))
+    add(inertial, "mass", value=of.mass)
+    I = of.inertia
+    add(inertial, "inertia", ixx=I[0, 0], ixy=I[0, 1], ixz=I[0, 2], iyy=I[1, 1], iyz=I[1, 2], izz=I[2, 2])
