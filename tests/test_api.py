@@ -15,7 +15,6 @@ year, a standard, or "own".
 
 import builtins
 import dataclasses
-import functools
 import inspect
 import re
 import subprocess
@@ -25,19 +24,8 @@ import pytest
 
 import flexapod as fx
 import raising
+from docstrings import FUNCTIONS, KINDS, METHODS, NAMES, doc_of, errors_in, names, part, place_of, prose_of
 
-NAMES = [name for name in fx.__all__ if name != "__version__"]
-FUNCTIONS = [name for name in NAMES if inspect.isfunction(getattr(fx, name))]
-CLASSES = [name for name in NAMES if inspect.isclass(getattr(fx, name))]
-CONDITIONS = [name for name in CLASSES if issubclass(getattr(fx, name), Exception)]  # errors and warnings
-KINDS = [name for name in CLASSES if name not in CONDITIONS]
-METHODS = [
-    f"{name}.{member}"
-    for name in KINDS
-    for member, value in vars(getattr(fx, name)).items()
-    if not member.startswith("_")
-    and (isinstance(value, property | functools.cached_property | classmethod) or inspect.isfunction(value))
-]
 WITHOUT_NUMBERS = {"packaged_designs"}
 UNIT_OR_SHAPE = re.compile(
     r"(?<!['\w.])(m|rad|kg|N|J|W|s|Hz|m/s2?|N/m|rad/s2?|N s/m|N m|SI)\b|\bunits?\b|\bmetres\b|\(\.\.\.|\(\d|\([mn][,)]"
@@ -48,39 +36,6 @@ SOURCE = re.compile(
     r"\bEqs?\.? \d|\bSection \d|\bFigs? \d|\bFig\. \d|\bAppendix A|\bconclusion [123]\b|\bE[1-8]\b|\bpart [A-D]\b"
     r"|[A-Z]\w+.*\((18|19|20)\d\d\)|, (18|19|20)\d\d\)|\b(ISO|IEC|IEST)[ -]|^own\b"
 )
-
-
-def thing_of(name):
-    return functools.reduce(inspect.getattr_static, name.split("."), fx) if "." in name else getattr(fx, name)
-
-
-def doc_of(name):
-    thing = thing_of(name)
-    return inspect.getdoc(thing.__func__ if isinstance(thing, classmethod) else thing) or ""
-
-
-def place_of(name):
-    first, _, member = name.partition(".")
-    thing = getattr(fx, first)
-    return thing.__module__.removeprefix("flexapod."), f"{thing.__qualname__}.{member}".removesuffix(".")
-
-
-def part(doc, name):
-    """What stands behind "Raises:" or "Source:", on one line; None where there is no such line."""
-    found = re.search(rf"^{name}: (.*?)(?=^Source: |\Z)", doc, re.M | re.S)
-    return " ".join(found[1].split()) if found else None
-
-
-def prose_of(name):
-    return doc_of(name).partition("\nRaises:")[0].partition("\nSource:")[0]
-
-
-def names(text, word):
-    return re.search(rf"(?<![\w.]){word}(?!\w)", text)
-
-
-def errors_in(text):
-    return set(re.findall(r"\b[A-Z]\w*Error\b", text or ""))
 
 
 @pytest.mark.parametrize("name", NAMES)
