@@ -26,7 +26,7 @@ def main() -> float:
     worst = fx.worst_pose(machine, box, points=2**10)
     print(f"the least is {worst.omega_1:.3f} rad/s at {fx.Pose.from_rpy(*worst.pose)}")
     print(f"found by {worst.agreed} of {worst.starts} searches; on the bounds of {', '.join(worst.at_bounds)}")
-    print("answer:", "stable everywhere" if worst.omega_1 > 0 else "there is a singular pose in it")
+    print("answer:", "there is a singular pose in it" if worst.singular else "stable everywhere")
     return worst.omega_1
 
 
