@@ -1,4 +1,4 @@
-"""Both test manipulators of the paper made dynamically better, each within the footprint and leg stroke it has.
+"""How much better can the paper's two manipulators be within the footprint and leg stroke they have?
 
 Every base and platform joint may move by a little in its plane. The index is the least over a workspace about home, and
 the best-conditioned design within the same limits is found as well: the paper's point is that it is not the best one.

@@ -1,4 +1,4 @@
-"""A precision positioner that is stiffer against vibration on the same plates, within its own limits.
+"""Which joint circles and height make my positioner stiffest against vibration, on the same plates?
 
 The joint circles keep their symmetry, the height may change, and the search may be stopped and run again: its trials
 are in a file. Then the index is traded against the footprint; the better design is judged with uncertain legs and load.

@@ -43,10 +43,15 @@ def animate_mode(
     amplitude: float = 1e-6,
     exaggeration: float | None = None,
 ) -> float:
-    """Write one period of mode `number` (1 to 6) to a .gif or .mp4 that loops; returns the factor of enlargement.
+    """Write one period of mode `number` (1 to 6) to a file that loops; returns the factor of enlargement.
 
-    amplitude: motion of the platform joint that moves most, m; a mode has no size of its own. exaggeration: how many
-    times larger it is shown; by default so that it is an eighth of the machine. Both stand in the picture.
+    path: ends in .gif or .mp4. amplitude: motion of the platform joint that moves most, m; a mode has no size of its
+    own. exaggeration: how many times larger it is shown; by default so that it is an eighth of the machine. Both stand
+    in the picture.
+
+    Raises: ArgumentError for a mode, an amplitude or an enlargement that cannot be shown, or another ending; PoseError
+    for a batch of poses; ImportError for .mp4 without the extra "video".
+    Source: own.
     """
     _check_pose(pose)
     if number not in range(1, 7):
@@ -77,11 +82,16 @@ def animate_simulation(
     frames: int = 96,
     progress: Callable[[float], object] | None = None,
 ) -> float:
-    """Write a simulation (`fx.simulate`'s result) to a .gif or .mp4; returns the factor of enlargement.
+    """Write a simulation to a file that moves; returns the factor of enlargement.
 
-    The displacements of platform and base from rest are enlarged by `exaggeration` (by default so that the largest is
-    an eighth of the machine), which stands in the picture. base: the base's pose at rest, as it was simulated. window:
-    first and last time, s; by default the last part in which the main oscillation has 16 frames a period.
+    dataset: `fx.simulate`'s result. path: ends in .gif or .mp4. The displacements of platform and base from rest are
+    enlarged by `exaggeration` (by default so that the largest is an eighth of the machine), which stands in the
+    picture. base: the base's pose at rest, as it was simulated. window: first and last time, s; by default the last
+    part in which the main oscillation has 16 frames a period. frames: how many.
+
+    Raises: ArgumentError for a dataset, window or enlargement that cannot be shown, or another ending; ImportError for
+    .mp4 without the extra "video".
+    Source: own.
     """
     if frames < 2:
         raise ArgumentError(f"frames is {frames!r}; at least 2 are needed")

@@ -15,6 +15,8 @@ class ClosedLoop(NamedTuple):
 
     distance: (n,) |pole - i omega|/omega to the nearest natural frequency. near: indices of vibrating poles nearer than
     the bound. worst_damping: the least damping ratio of all poles. stable: whether all decay. controller: as used.
+
+    Source: conclusion 2.
     """
 
     pole: Complex

@@ -21,10 +21,14 @@ from flexapod.pose import Array, Pose
 
 
 def open_zeros(linear: Linearisation, feedback: Feedback, legs: Sequence[int] = ALL) -> Array:
-    """Frequencies, rad/s, to which the loops' poles go at high gain: with friction left out, the natural frequencies of
-    the machine without the controlled legs' stiffness (force feedback), or with these legs locked (velocity feedback).
+    """Frequencies, rad/s, to which the loops' poles go at high gain.
 
-    Zeros of a force loop at which the machine would topple are NaN. A velocity loop on all legs leaves none.
+    With friction left out, these are the natural frequencies of the machine (linear) without the stiffness of the
+    `legs` that have a loop (feedback "force"), or with these legs locked ("velocity"). Zeros of a force loop at which
+    the machine would topple are NaN. A velocity loop on all legs leaves none.
+
+    Raises: nothing of its own.
+    Source: A. Preumont, Vibration Control of Active Structures (2011).
     """
     chosen = np.array(sorted(legs)) - 1
     K, H = 0.5 * (linear.K + linear.K.T), linear.H[:, chosen]
@@ -52,16 +56,17 @@ def root_locus(
 ) -> xr.Dataset:
     """Poles over the gain of decentralised feedback ("force": integral, rad/s; "velocity": N s/m), and the best gain.
 
-    gains: (n,) > 0; default: 400 that span the modes. Dataset over `gain`: `pole` (gain, branch), rad/s, each branch
-    followed from gain to gain; `damping_ratio`; `least_damping`, of the vibrating poles. Over `zero_number`: `zero`,
-    rad/s (see `open_zeros`). Attributes: best_gain, best_damping: the gain, refined between samples, with the largest
-    least damping.
+    gains: (n,) > 0; default: 400 that span the modes. legs, leak: as in `ForceFeedback`. Dataset over `gain`: `pole`
+    (gain, branch), rad/s, each branch followed from gain to gain; `damping_ratio`; `least_damping`, of the vibrating
+    poles. Over `zero_number`: `zero`, rad/s (see `open_zeros`). Attributes: best_gain, best_damping: the gain, refined
+    between samples, with the largest least damping.
+
+    Raises: ArgumentError for gains that are no row of numbers > 0, wrong legs or another feedback; PoseError and
+    SingularPoseError as `linearise`.
+    Source: A. Preumont, Vibration Control of Active Structures (2011).
     """
     plant = Plant(linearise(hexapod, pose, **rest))
-    row = default_gains(plant, feedback) if gains is None else np.asarray(gains, dtype=np.float64)
-    if row.ndim != 1 or row.size < 2 or not np.isfinite(row).all() or not (row > 0).all():
-        raise ArgumentError(f"gains has shape {row.shape}; give a row of at least two finite gains > 0")
-    row = np.sort(row)
+    row = np.sort(default_gains(plant, feedback) if gains is None else _row(gains))
     legs = tuple(legs)
     pole = _followed(np.stack([poles(plant, make(feedback, g, leak, legs).on(plant.linear)) for g in row]))
     least = np.array([least_damping(p) for p in pole])
@@ -87,6 +92,13 @@ def root_locus(
             "best_damping": damping,
         },
     )
+
+
+def _row(gains: ArrayLike) -> Array:
+    row = np.asarray(gains, dtype=np.float64)
+    if row.ndim != 1 or row.size < 2 or not np.isfinite(row).all() or not (row > 0).all():
+        raise ArgumentError(f"gains has shape {row.shape}; give a row of at least two finite gains > 0")
+    return row
 
 
 def _followed(pole: Complex) -> Complex:

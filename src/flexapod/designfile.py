@@ -28,7 +28,11 @@ _SHORT_FORMS = {
 
 
 def packaged_designs() -> list[str]:
-    """Names of the designs that come with Flexapod."""
+    """Names of the designs that come with Flexapod.
+
+    Raises: nothing of its own.
+    Source: own.
+    """
     return sorted(path.stem for path in _DESIGNS.glob("*.toml") if path.stem != _TEMPLATE)
 
 
@@ -58,7 +62,11 @@ def find(name_or_path: str | Path) -> Path:
 
 
 def template(name: str) -> str:
-    """A complete, commented design file for a new machine of this name."""
+    """A complete, commented design file (TOML text, SI units) for a new machine called `name`.
+
+    Raises: nothing of its own.
+    Source: own.
+    """
     import tomlkit  # slow to import, and only writing needs it
 
     text = (_DESIGNS / f"{_TEMPLATE}.toml").read_text(encoding="utf-8")

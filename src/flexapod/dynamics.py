@@ -15,10 +15,12 @@ from flexapod.states import NO_LEGS, ZERO, JointModel, is_universal, per_leg, st
 
 
 class EquationsOfMotion(NamedTuple):
-    """J_p [a; alpha] - J_b [a_b; alpha_b] + eta = H F + [R F_ext; R M_ext] (Eq. 34), inertial axes.
+    """J_p [a; alpha] - J_b [a_b; alpha_b] + eta = H F + [R F_ext; R M_ext], in inertial axes.
 
     J_p, J_b, H: (..., 6, 6); eta: (..., 6). Rows 1-3 are forces in N, rows 4-6 moments in N m about the platform's
     reference point.
+
+    Source: Eq. 34; E1 to E5, part B.
     """
 
     J_p: Array
@@ -28,7 +30,13 @@ class EquationsOfMotion(NamedTuple):
 
 
 class Reactions(NamedTuple):
-    """Forces (N) and moments (N m) in the joints, inertial axes; see `joint_reactions` for what acts on what."""
+    """Forces (N) and moments (N m) in the joints, inertial axes; see `joint_reactions` for what acts on what.
+
+    spherical_force, spherical_moment, prismatic_force, prismatic_moment, universal_force, universal_moment:
+    (..., 6, 3), leg by leg. base_force, base_moment: (..., 3).
+
+    Source: Section 4.1; E1 to E5, part B.
+    """
 
     spherical_force: Array
     spherical_moment: Array
@@ -41,7 +49,10 @@ class Reactions(NamedTuple):
 
 
 class Energy(NamedTuple):
-    """Energies in J and the power lost to friction in W, each (...)."""
+    """kinetic, gravitational, elastic: energies, J. dissipation: the power lost to friction, W. Each (...).
+
+    Source: own.
+    """
 
     kinetic: Array | float
     gravitational: Array | float
@@ -55,10 +66,13 @@ def equations_of_motion(
     base: Pose | Motion | None = None,
     joint: JointModel = "universal",
 ) -> EquationsOfMotion:
-    """The terms of Eq. 34 for motions of platform and base (default: base fixed at the origin).
+    """The terms of Eq. 34 for motions of platform and base (default: base fixed at the origin), in SI units.
 
-    eta holds gravity, velocity terms and joint friction, and no leg forces. Corrections E1-E5 and part B apply;
-    joint="spin_free" gives the paper's model W.s = 0. Raises PoseError at a pose that no leg can take.
+    eta holds gravity, velocity terms and joint friction, and no leg forces. joint="spin_free" gives the paper's model
+    W.s = 0.
+
+    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for an unknown joint model.
+    Source: Eq. 34; E1 to E5, part B.
     """
     s = states(hexapod, platform, base)
     J_p, J_b, eta, H = _core.equations_of_motion(hexapod.packed, is_universal(joint), s.platform, s.base)
@@ -75,11 +89,15 @@ def forward_dynamics(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> tuple[Array, Array]:
-    """Acceleration of the platform's reference point (m/s2) and its angular acceleration (rad/s2) (Eq. 35).
+    """Acceleration of the platform's reference point (m/s2) and its angular acceleration (rad/s2).
 
     leg_force: (..., 6) N, positive pushes the platform from the base. force (N), moment (N m): on the platform, in its
     own frame, at its reference point. The accelerations in `platform` play no part; those of `base` do. Returns
     vectors (..., 3) in inertial axes.
+
+    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), for forces of a shape that does not fit,
+    or an unknown joint model.
+    Source: Eq. 35; E1 to E5, part B.
     """
     s = states(hexapod, platform, base)
     result = _core.forward_dynamics(
@@ -101,9 +119,13 @@ def inverse_dynamics(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> Array:
-    """Leg forces (..., 6) in N that give the platform the accelerations in `platform` (Eq. 34 solved for F).
+    """Leg forces (..., 6) in N that give the platform the accelerations in `platform`.
 
-    Raises SingularPoseError where H is singular; in a batch such a pose gives NaN.
+    force (N), moment (N m): on the platform, in its own frame, at its reference point.
+
+    Raises: SingularPoseError where H is singular, and PoseError at a pose that no leg can take; in a batch such poses
+    give NaN. PoseError for loads of a shape that does not fit.
+    Source: Eq. 34, solved for F.
     """
     s = states(hexapod, platform, base)
     loads = wrench(force, moment, s.shape)
@@ -123,13 +145,17 @@ def joint_reactions(
     section: float = 0.5,
     joint: JointModel = "universal",
 ) -> Reactions:
-    """What every joint carries for the motions given and the leg forces (..., 6) that go with them.
+    """What every joint carries for the motions given and the leg forces that go with them, N and N m.
 
-    Per leg, (..., 6, 3): `spherical_*` on the platform by the leg at the platform joint; `prismatic_*` on the upper
-    part by the lower part, the moment (bending and torsion) at the fraction `section` of the leg's length from the base
-    joint; `universal_*` on the base by the leg at the base joint. `base_force`, `base_moment` (..., 3): the total on
-    the base, about its reference point. In the model "spin_free" the universal joint also holds the leg about its own
-    axis, a moment that no real universal joint has.
+    leg_force: (..., 6) N. Per leg, (..., 6, 3): `spherical_force` and `spherical_moment` on the platform by the leg at
+    the platform joint; `prismatic_` on the upper part by the lower part, the moment (bending and torsion) at the
+    fraction `section` of the leg's length from the base joint; `universal_` on the base by the leg at the base joint.
+    `base_force`, `base_moment` (..., 3): the total on the base, about its reference point. In the model "spin_free" the
+    universal joint also holds the leg about its own axis, a moment that no real universal joint has.
+
+    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for leg forces of a shape that does
+    not fit.
+    Source: Section 4.1, forces and moments on a leg; E1 to E5, part B.
     """
     s = states(hexapod, platform, base)
     forces = per_leg(leg_force, "leg_force", s.shape)
@@ -146,9 +172,13 @@ def energy(
     unstretched_length: ArrayLike | None = None,
     joint: JointModel = "universal",
 ) -> Energy:
-    """Kinetic, gravitational (zero at the inertial origin) and elastic energy, and power lost to friction.
+    """Kinetic, gravitational (zero at the inertial origin) and elastic energy, J, and power lost to friction, W.
 
-    Elastic energy is that of leg springs with the unstretched lengths given, (..., 6) m; without them it is zero.
+    unstretched_length: of the leg springs, (..., 6) m; without it the elastic energy is zero.
+
+    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for lengths of a shape that does not
+    fit.
+    Source: own.
     """
     s = states(hexapod, platform, base)
     L_0 = per_leg(NO_LEGS if unstretched_length is None else unstretched_length, "unstretched_length", s.shape)

@@ -41,10 +41,14 @@ class Term:
 
 @dataclass(frozen=True, eq=False)
 class Excitation:
-    """A sum of terms. Excitations add; a number times one scales it. Made by the functions of this module.
+    """A sum of terms. Excitations add; a number times one scales it. Made by `harmonic` and its like.
 
-    rotation: how roll, pitch and yaw of a base motion turn the base, "rpy" (about the fixed axes x, y, z in this order)
-    or "vector" (a rotation vector).
+    A base motion has the channels x, y, z (m) and roll, pitch, yaw (rad); a force (N) or moment (N m) has x, y, z; a
+    leg command (m) has legs "1" to "6". terms: the functions of time. rotation: how roll, pitch and yaw of a base
+    motion turn the base, "rpy" (about the fixed axes x, y, z in this order) or "vector" (a rotation vector);
+    excitations that turn it in different ways have no sum (ArgumentError).
+
+    Source: own.
     """
 
     terms: tuple[Term, ...] = ()
@@ -69,19 +73,28 @@ class Excitation:
         return any(term.channel in AXES[3:] for term in self.terms)
 
     def ramped(self, duration: float) -> Excitation:
-        """Every term rises smoothly (three derivatives continuous) from nothing over `duration` s from its start."""
+        """Every term rises smoothly (three derivatives continuous) from nothing over `duration` s from its start.
+
+        Raises: ArgumentError for a time that is not > 0.
+        """
         rise = _positive(duration, "ramp duration", "s")
         return replace(self, terms=tuple(replace(term, rise=rise) for term in self.terms))
 
     def stopped(self, time: float, fall: float) -> Excitation:
-        """Every term falls smoothly to nothing over `fall` s from `time`."""
+        """Every term falls smoothly to nothing over `fall` s from `time`.
+
+        Raises: ArgumentError for times that are not > 0, or that end before a term has risen.
+        """
         stop, fall = _positive(time, "stop time", "s"), _positive(fall, "fall", "s")
         if any(term.start + term.rise > stop for term in self.terms):
             raise ArgumentError(f"stop time is {stop:.6g} s, before a term has risen; stop later or shorten the ramp.")
         return replace(self, terms=tuple(replace(term, stop=stop, fall=fall) for term in self.terms))
 
     def delayed(self, delay: float) -> Excitation:
-        """Every term later by `delay` s, and nothing before its start."""
+        """Every term later by `delay` s, and nothing before its start.
+
+        Raises: ArgumentError for a delay below zero.
+        """
         if not (np.isfinite(delay) and delay >= 0):
             raise ArgumentError(f"delay is {delay} s; it must be >= 0 and finite.")
         moved = (
@@ -105,7 +118,7 @@ class Excitation:
 
     @property
     def packed(self) -> Array:
-        """The terms as the core takes them, one after another."""
+        """The terms as the core takes them, one after another, (n,)."""
         if not self.terms:
             return np.zeros(0)
         return np.concatenate([_packed(term) for term in self.terms])
@@ -118,7 +131,12 @@ class Excitation:
         return value, rate, acceleration
 
     def motion(self, times: ArrayLike, base: Pose | None = None) -> Motion:
-        """How a base driven by this moves in the inertial frame; `base` is its pose at rest (default: the origin)."""
+        """How a base driven by this moves in the inertial frame, at `times` (...), s.
+
+        base: its pose at rest; default: the origin.
+
+        Raises: ArgumentError for channels that no base has.
+        """
         check_channels(self, "base_motion", AXES)
         t = np.asarray(times, dtype=float)
         rest = Motion.fixed(base).packed
@@ -132,7 +150,13 @@ class Excitation:
 
 
 def harmonic(channel: str, amplitude: ArrayLike, omega: ArrayLike, phase: ArrayLike = 0.0) -> Excitation:
-    """Sum of A sin(omega t + phase); amplitude in the channel's unit, omega rad/s, phase rad, each one or many."""
+    """Sum of A sin(omega t + phase) on a channel (x to yaw, or a leg "1" to "6"; see `Excitation`).
+
+    amplitude in the channel's unit, m, rad, N or N m; omega rad/s; phase rad; each one or many.
+
+    Raises: ArgumentError for an unknown channel, numbers that are not finite, or omega below zero.
+    Source: own.
+    """
     parts = np.broadcast_arrays(*(np.atleast_1d(np.asarray(v, dtype=float)) for v in (amplitude, omega, phase)))
     triples = np.stack([part.ravel() for part in parts], axis=1)
     _finite(triples, "amplitude, omega or phase")
@@ -150,10 +174,14 @@ def sine_sweep(
     law: Literal["log", "linear"] = "log",
     hold: Literal["displacement", "velocity", "acceleration"] = "displacement",
 ) -> Excitation:
-    """A sine whose frequency goes from omega_start to omega_end (rad/s) in `duration` s, and then stays there.
+    """A sine on a channel whose frequency goes from omega_start to omega_end (rad/s) in `duration` s, and stays there.
 
-    amplitude: of the displacement at omega_start. hold: what keeps its amplitude while the frequency changes; with
-    "acceleration" the displacement's amplitude goes with 1/omega^2, as shaker tests do.
+    amplitude: of the displacement at omega_start, m or rad. law: how the frequency goes, "log" or "linear". hold: what
+    keeps its amplitude while the frequency changes; with "acceleration" the displacement's amplitude goes with
+    1/omega^2, as shaker tests do.
+
+    Raises: ArgumentError for an unknown channel, law or hold, and for frequencies or a duration not > 0.
+    Source: own; logarithmic sweeps as in IEC 60068-2-6.
     """
     powers = {"displacement": 0.0, "velocity": 1.0, "acceleration": 2.0}
     if law not in ("log", "linear"):
@@ -167,10 +195,13 @@ def sine_sweep(
 
 
 def half_sine_shock(channel: str, acceleration: float, duration: float, recovery: float | None = None) -> Excitation:
-    """A base's half-sine pulse of acceleration (peak m/s2 or rad/s2, `duration` s), from rest.
+    """A base's half-sine pulse of acceleration (peak m/s2 or rad/s2, `duration` s), from rest, on a channel x to yaw.
 
     The pulse leaves the velocity 2 acceleration duration / pi. With `recovery` a second half sine of that duration (s),
     opposite and as strong as needed, brings it to rest again; without, the motion goes on at this speed.
+
+    Raises: ArgumentError for an unknown channel, a peak that is not finite, or durations not > 0.
+    Source: own; the pulse of IEC 60068-2-27.
     """
     _finite(np.array([acceleration]), "acceleration")
     T = _positive(duration, "duration", "s")
@@ -187,14 +218,26 @@ def half_sine_shock(channel: str, acceleration: float, duration: float, recovery
 
 
 def half_sine_pulse(channel: str, peak: float, duration: float) -> Excitation:
-    """A half-sine pulse of the value itself, as of a force: peak in the channel's unit, `duration` s, nothing after."""
+    """A half-sine pulse of a channel's value itself, as of a force.
+
+    peak: in the channel's unit, such as N. duration: s; nothing after.
+
+    Raises: ArgumentError for an unknown channel, a peak that is not finite, or a duration not > 0.
+    Source: own.
+    """
     _finite(np.array([peak]), "peak")
     T = _positive(duration, "duration", "s")
     return _one(channel, PIECES, _pieces([_piece(0.0, [0.0], peak, np.pi / T), _piece(T, [0.0])], corners=True))
 
 
 def polynomial(channel: str, coefficients: ArrayLike) -> Excitation:
-    """c0 + c1 t + c2 t^2 + ... with t in s, up to eight coefficients: ("yaw", [0, rate]) spins the base (rad/s)."""
+    """c0 + c1 t + c2 t^2 + ... on a channel, with t in s, up to eight coefficients.
+
+    In the channel's unit, such as m and rad: `("yaw", [0, rate])` spins the base at a rate in rad/s.
+
+    Raises: ArgumentError for an unknown channel, or coefficients that are not one to eight finite numbers.
+    Source: own.
+    """
     c = np.atleast_1d(np.asarray(coefficients, dtype=float))
     _finite(c, "coefficients")
     if c.ndim != 1 or not 1 <= c.size <= 8:
@@ -203,7 +246,13 @@ def polynomial(channel: str, coefficients: ArrayLike) -> Excitation:
 
 
 def smooth_step(channel: str, change: float, duration: float) -> Excitation:
-    """From 0 to `change` in `duration` s with three continuous derivatives, and then at rest there."""
+    """A channel goes from 0 to `change` in `duration` s with three continuous derivatives, and then rests there.
+
+    change: in the channel's unit, such as m or rad.
+
+    Raises: ArgumentError for an unknown channel, a change that is not finite, or a duration not > 0.
+    Source: own.
+    """
     _finite(np.array([change]), "change")
     T = _positive(duration, "duration", "s")
     rise = np.array([0, 0, 0, 0, 35, -84, 70, -20]) * change / T ** np.arange(8)

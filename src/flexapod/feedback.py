@@ -72,7 +72,9 @@ class Controller:
     """x_c' = A x_c + B y, f = C x_c + D y: from measurements (changes from rest) to six leg forces, N.
 
     With a sampling time dt (s) instead x_c[k+1] = A x_c[k] + B y[k], and f is held from one sample to the next.
-    measures: the kinds of y, six numbers each, in this order.
+    A: (n, n). B: (n, m). C: (6, n). D: (6, m). measures: the kinds of y, six numbers each, in this order. name: text.
+
+    Source: own.
     """
 
     A: Array
@@ -89,12 +91,16 @@ class Controller:
 
     @property
     def order(self) -> int:
+        """How many states it has."""
         return len(self.A)
 
     def sampled(self, dt: float, method: str = "tustin", delay: int = 0) -> Controller:
         """This controller run at a sampling time dt, s, discretised by python-control's method ("tustin", "zoh", ...).
 
         delay: whole samples by which the computed force comes late (0 or more).
+
+        Raises: ArgumentError for a time that is not > 0, a delay that is no whole number, or a controller that is
+        sampled already.
         """
         import control
 

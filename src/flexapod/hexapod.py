@@ -64,7 +64,14 @@ def _bytes(value: Any) -> bytes:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class LegPart(_Value):
-    """Lower or upper part of the legs. One value given for all six legs is spread over them."""
+    """Lower or upper part of the legs. One value given for all six legs is spread over them.
+
+    mass: (6,) kg. mass_center: (6, 3) m, leg axes, from the base joint (lower) or the platform joint (upper). inertia:
+    (6, 3, 3) kg m2 about the part's own mass centre, leg axes.
+
+    Raises: DesignError for numbers of another shape, that are not finite, or that no part can have.
+    Source: Appendix A, as part D reads it.
+    """
 
     mass: FloatArray  #: (6,) kg
     mass_center: FloatArray  #: (6, 3) m, leg axes, from the base joint (lower) or the platform joint (upper)
@@ -83,7 +90,13 @@ class LegPart(_Value):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Damping(_Value):
-    """Viscous friction in the joints of the legs."""
+    """Viscous friction in the joints of the legs, zero where left out.
+
+    prismatic: (6,) N s/m. universal, spherical: (6,) N m s/rad.
+
+    Raises: DesignError for numbers of another shape, below zero, or not finite.
+    Source: Section 4.1; E4.
+    """
 
     prismatic: FloatArray = field(default_factory=lambda: np.zeros(6))  #: (6,) N s/m
     universal: FloatArray = field(default_factory=lambda: np.zeros(6))  #: (6,) N m s/rad
@@ -96,7 +109,13 @@ class Damping(_Value):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Legs(_Value):
-    """The six legs. Leg axes: x from base to platform joint, y = k x s normalised, z = x cross y."""
+    """The six legs. Leg axes: x from base to platform joint, y = k x s normalised, z = x cross y.
+
+    stiffness: (6,) N/m. damping: `Damping`. lower, upper: `LegPart`; legs without mass where left out.
+
+    Raises: DesignError for a stiffness of another shape, or not > 0.
+    Source: Eqs 2 to 4 and Section 4.1; E6.
+    """
 
     stiffness: FloatArray  #: (6,) N/m
     damping: Damping = field(default_factory=Damping)
@@ -109,7 +128,14 @@ class Legs(_Value):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Limits(_Value):
-    """What the joints and legs allow; None is no limit."""
+    """What the joints and legs allow; None is no limit.
+
+    leg_length: (2,) or (6, 2) m, shortest and longest. universal_angle, spherical_angle: rad, cone half angle from the
+    direction at home. leg_distance: m, least distance between leg axes.
+
+    Raises: DesignError for numbers that no limit can have, or a shortest length above the longest.
+    Source: own; the paper's machines have no limits.
+    """
 
     leg_length: FloatArray | None = None  #: (2,) or (6, 2), shortest and longest, m
     universal_angle: float | None = None  #: cone half angle from the direction at home, rad
@@ -154,7 +180,15 @@ class Home(_Value):
 class Hexapod(_Value):
     """A 6-UPS Stewart platform. Make one with `flexapod.load` or from its parts; change one with `replace`.
 
-    Raises DesignError, which says what is wrong and what to do, for anything that is not a hexapod.
+    gravity: (3,) m/s2, inertial frame. base_joints: (6, 3) m, and universal_axes: (6, 3), made unit vectors, both in
+    the base frame. platform_joints: (6, 3) m, platform frame. platform_mass: kg, with payload; platform_mass_center:
+    (3,) m, platform frame; platform_inertia: (3, 3) kg m2 about the mass centre, platform axes. legs: `Legs`. limits:
+    `Limits`. home: position (3,) m and roll, pitch, yaw (3,) rad of the platform in the base frame, or None. name:
+    text. warnings: in words, what is odd about the design but can be computed.
+
+    Raises: DesignError, which says what is wrong and what to do, for anything that is not a hexapod. So does every
+    function for a `hexapod` that is not one of these.
+    Source: Section 4 and Appendix A, as part D reads it.
     """
 
     name: str
@@ -193,7 +227,10 @@ class Hexapod(_Value):
 
     @classmethod
     def from_values(cls, values: Mapping[str, Any]) -> "Hexapod":
-        """A design from checked values by file key, as `values` gives them."""
+        """A design from checked values by file key, as `values` gives them.
+
+        Raises: DesignError for values that make no hexapod.
+        """
 
         def part(name: str) -> LegPart:
             return LegPart(*(values[f"legs.{name}.{key}"] for key in ("mass", "mass_center", "inertia")))
@@ -215,7 +252,10 @@ class Hexapod(_Value):
 
     @classmethod
     def from_toml(cls, text: str) -> "Hexapod":
-        """A design from the text of a design file."""
+        """A design from the text of a design file.
+
+        Raises: DesignError for text that is no design, with the key and the remedy.
+        """
         return cls.from_values(designfile.read_text(text))
 
     def values(self) -> dict[str, Any]:
@@ -248,6 +288,8 @@ class Hexapod(_Value):
 
         Text is read as TOML; None takes an optional key or table out. Universal joint axes stay as they are when
         joints are moved one by one, and become tangent again with a new `base.circle` or `cubic`.
+
+        Raises: DesignError for a key that is none, or a value that it cannot have.
         """
         return self.from_values(designfile.changed(self.values(), changes))
 
@@ -263,7 +305,10 @@ class Hexapod(_Value):
         return designfile.write_text(values)
 
     def save(self, path: str | Path) -> None:
-        """Write the design to a TOML file without loss."""
+        """Write the design to a TOML file without loss.
+
+        Raises: OSError where the file cannot be written.
+        """
         Path(path).write_text(self.to_toml(), encoding="utf-8", newline="\n")
 
     @cached_property
@@ -302,7 +347,11 @@ class Hexapod(_Value):
 
 
 def load(name_or_path: str | Path) -> Hexapod:
-    """A packaged design by name, or a design file by path. Raises DesignError with the reason and the remedy."""
+    """A packaged design by its name, or a design file (.toml) by its path: name_or_path. In SI units.
+
+    Raises: DesignError for a name or file that is no design, with the reason and the remedy.
+    Source: own; what a packaged design is taken from stands in its file.
+    """
     path = designfile.find(name_or_path)
     values = designfile.read_file(path)
     try:

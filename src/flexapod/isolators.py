@@ -36,6 +36,10 @@ def lqg(
     "velocity". effort: weight of leg forces against acceleration (1: as dear as the acceleration they cause).
     stroke: weight of relative displacement times omega_1^2, which holds the platform over a base that drifts. noise:
     sensor noise relative to the shaken base's signal. Small weights ask for more of the machine. rest: `linearise`'s.
+
+    Raises: ArgumentError for a measure that is none or a weight that is not > 0; UnstableError where no controller
+    exists; PoseError and SingularPoseError as `linearise`; ImportError without python-control.
+    Source: H. Kwakernaak and R. Sivan, Linear Optimal Control Systems (1972); the weights are our own.
     """
     task = _Task(Plant(linearise(hexapod, pose, **rest)), _measures(measure))
     _positive(effort=effort, stroke=stroke, noise=noise)
@@ -72,6 +76,11 @@ def h_infinity(
     highest natural frequency), beyond which the controller does nothing. noise, measure: as for `lqg`. Needs slycot
     (extra "control"). The bound reached, gamma, is in the controller's name: transmissibility is at most gamma over
     the weight at every frequency.
+
+    Raises: ArgumentError for a measure that is none or a weight that is not > 0; UnstableError where no controller is
+    found; PoseError and SingularPoseError as `linearise`; ImportError without slycot.
+    Source: J. C. Doyle, K. Glover, P. P. Khargonekar and B. A. Francis (1989), by SLICOT's SB10AD; the weights are our
+    own.
     """
     task = _Task(Plant(linearise(hexapod, pose, **rest)), _measures(measure))
     omega = task.plant.omega
@@ -93,9 +102,13 @@ def controlled_transmissibility(
 ) -> xr.Dataset:
     """Transmissibility of base motion to the platform with and without control, on the tangent.
 
-    omega: (n,) rad/s, > 0. Complex `controlled` and `passive` over (omega, output, base): absolute displacement of the
-    platform (m, rad) per displacement of the base. A sampled controller acts with its hold; frequencies must then be
-    below pi/dt. `leg_force`: N per base displacement, (omega, leg, base).
+    law: as for `closed_loop`. omega: (n,) rad/s, > 0. Complex `controlled` and `passive` over (omega, output, base):
+    absolute displacement of the platform (m, rad) per displacement of the base. A sampled controller acts with its
+    hold; frequencies must then be below pi/dt. `leg_force`: N per base displacement, (omega, leg, base).
+
+    Raises: ArgumentError for frequencies that are not > 0, or beyond what a sampled controller has; PoseError and
+    SingularPoseError as `linearise`.
+    Source: own, on the tangent of part C.
     """
     w = np.atleast_1d(np.asarray(omega, dtype=np.float64))
     if w.ndim != 1 or not w.size or not np.isfinite(w).all() or w.min() <= 0:

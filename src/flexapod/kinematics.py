@@ -15,7 +15,10 @@ from flexapod.states import states
 
 
 class LegRates(NamedTuple):
-    """Leg lengths (..., 6) m, and their rates m/s and accelerations m/s2."""
+    """length: leg lengths, m. rate: m/s. acceleration: m/s2. Each (..., 6).
+
+    Source: Eqs 6 to 8.
+    """
 
     length: Array
     rate: Array
@@ -23,7 +26,10 @@ class LegRates(NamedTuple):
 
 
 class JointAngles(NamedTuple):
-    """Joint angles (..., 6) in rad; see `joint_angles`."""
+    """universal_first, universal_second, universal, spherical: joint angles, rad, (..., 6) each; see `joint_angles`.
+
+    Source: own.
+    """
 
     universal_first: Array
     universal_second: Array
@@ -32,28 +38,42 @@ class JointAngles(NamedTuple):
 
 
 class LimitsCheck(NamedTuple):
-    """Outcome of `check_limits`: `ok` (...) bool, and for a single pose what is exceeded, in words."""
+    """Outcome of `check_limits`. ok: (...) bool. exceeded: for a single pose what is exceeded, in words, else empty.
+
+    Source: own.
+    """
 
     ok: np.ndarray
     exceeded: tuple[str, ...]
 
 
 def inverse_kinematics(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> Array:
-    """Leg lengths (..., 6) in m at a pose (Eq. 6). Raises PoseError at a pose that no leg can take."""
+    """Leg lengths (..., 6) in m at a pose.
+
+    Raises: PoseError at a pose that no leg can take; in a batch such a pose gives NaN.
+    Source: Eq. 6.
+    """
     return leg_rates(hexapod, pose, base).length
 
 
 def leg_rates(hexapod: Hexapod, platform: Pose | Motion, base: Pose | Motion | None = None) -> LegRates:
-    """Leg lengths, rates and accelerations, (..., 6) m, m/s, m/s2, for motions of platform and base (Eqs 6-8)."""
+    """Leg lengths, rates and accelerations, (..., 6) m, m/s, m/s2, for motions of platform and base.
+
+    Raises: PoseError at a pose that no leg can take; in a batch such a pose gives NaN.
+    Source: Eqs 6 to 8.
+    """
     s = states(hexapod, platform, base)
     return LegRates(*(x.reshape(*s.shape, 6) for x in _core.leg_rates(hexapod.packed, s.platform, s.base)))
 
 
 def force_transformation(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> Array:
-    """H of Eq. 34, (..., 6, 6): leg forces (N) to the wrench on the platform at its reference point, inertial axes.
+    """The force transformation H, (..., 6, 6): leg forces (N) to the wrench on the platform at its reference point.
 
-    Column i is [s_i; q_i x s_i]; rows 1-3 have no unit, rows 4-6 are in m. Its transpose maps the platform's twist
-    to leg rates.
+    Inertial axes. Column i is [s_i; q_i x s_i]; rows 1-3 have no unit, rows 4-6 are in m. Its transpose maps the
+    platform's twist to leg rates.
+
+    Raises: PoseError at a pose that no leg can take; in a batch such a pose gives NaN.
+    Source: Eq. 34.
     """
     s = states(hexapod, pose, base)
     return _core.force_transformation(hexapod.packed, s.platform, s.base).reshape(*s.shape, 6, 6)
@@ -64,6 +84,10 @@ def condition_number(hexapod: Hexapod, pose: Pose, characteristic_length: float 
 
     H mixes units (rows of forces, rows of moments in m), so the number depends on the unit of length: in metres it is
     the paper's. With a `characteristic_length` (m) the moment rows are divided by it, which removes the unit.
+
+    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for a characteristic length that is
+    not > 0.
+    Source: Section 3; the characteristic length is our own.
     """
     H = force_transformation(hexapod, pose)
     if characteristic_length is not None:
@@ -82,7 +106,11 @@ def _singular_values(H: Array) -> Array:
 
 
 def home_pose(hexapod: Hexapod) -> Pose | None:
-    """The design's home pose, or None where the design names none."""
+    """The design's home pose, m and rad, in the base frame; None where the design names none.
+
+    Raises: nothing of its own.
+    Source: own.
+    """
     if hexapod.home is None:
         return None
     position, rpy = hexapod.home
@@ -94,8 +122,11 @@ def forward_kinematics(hexapod: Hexapod, lengths: ArrayLike, start: Pose | None 
 
     From `start`, one pose for all or one for each, the nearest assembly is found by Newton's method (damped far from
     it). Without a start the search begins at the design's home pose, or above the base, and then from poses turned and
-    tilted about it; among several assemblies the first found in this order is returned. Raises KinematicsError, with
-    the misfit, where none is found.
+    tilted about it; among several assemblies the first found in this order is returned.
+
+    Raises: KinematicsError, with the misfit, where no pose is found, and for a length that is not > 0; PoseError for
+    lengths that are not six numbers each, or a start that does not fit them.
+    Source: own: Newton's method on Eq. 6.
     """
     wanted = vectors(lengths, "lengths", 6)
     if (wanted <= 0).any():
@@ -158,6 +189,9 @@ def joint_angles(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> Join
     `universal_first`: turn of the universal joint about its axis in the base; `universal_second`: tilt of the leg out
     of the plane normal to that axis. `universal`, `spherical`: angle between the leg and the joint's neutral direction
     in the base and in the platform. Neutral is the leg's direction at the home pose; without one, the frame's z axis.
+
+    Raises: PoseError at a pose that no leg can take; in a batch such a pose gives NaN.
+    Source: own.
     """
     s = states(hexapod, pose, base)
     angles = _core.joint_angles(hexapod.packed, s.platform, s.base, neutral_directions(hexapod))
@@ -177,13 +211,23 @@ def neutral_directions(hexapod: Hexapod) -> Array:
 
 
 def leg_distance(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> Array | float:
-    """Least distance between any two leg axes, as segments between their joints, (...) m."""
+    """Least distance between any two leg axes, as segments between their joints, (...) m.
+
+    Raises: PoseError at a pose that no leg can take; in a batch such a pose gives NaN.
+    Source: own: the closest points of two segments.
+    """
     s = states(hexapod, pose, base)
     return _core.leg_distance(hexapod.packed, s.platform, s.base).reshape(s.shape)[()]
 
 
 def check_limits(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> LimitsCheck:
-    """Whether leg lengths, joint angles and leg distance are within the design's limits; absent limits always hold."""
+    """Whether leg lengths (m), joint angles (rad) and leg distance (m) are within the design's limits.
+
+    A limit that the design does not give always holds.
+
+    Raises: PoseError at a single pose that no leg can take, where something is limited.
+    Source: own.
+    """
     if not isinstance(pose, Pose):
         raise PoseError(f"pose is {type(pose).__name__}; it must be a flexapod Pose")
     excess = limit_excess(hexapod, pose, base)

@@ -35,14 +35,16 @@ class PID:
     the platform's displacement and rotation vector. actuator="force": leg forces beside the springs.
     actuator="command": changes of the legs' unstretched lengths d, which act as forces K d.
 
-    Units of kp, kd, ki, each a number, six, or a 6 x 6 matrix:
-    joint, force: N/m, N s/m, N/(m s) of leg length. Command (either space): 1, s, 1/s, since a length answers a
-    length; in task space the platform's error is turned into leg lengths by H^T. Task, force: a wrench, N/m and N m/rad
-    and so on, which the legs produce through H^-1; there a single number is per unit of inertia (1/s2, 1/s, 1/s3), so
-    that it means the same for translations and rotations.
+    Units of kp, kd, ki, each a number, six, or a 6 x 6 matrix: joint, force: N/m, N s/m, N/(m s) of leg length. Command
+    (either space): 1, s, 1/s, since a length answers a length; in task space the platform's error is turned into leg
+    lengths by H^T. Task, force: a wrench, N/m and N m/rad and so on, which the legs produce through H^-1; there a
+    single number is per unit of inertia (1/s2, 1/s, 1/s3), so that it means the same for translations and rotations.
 
     bandwidth: rad/s of the filter through which the derivative is taken from the measured position; None: the rate
     itself is measured.
+
+    Raises: ArgumentError for gains of another shape, an unknown space or actuator, or a bandwidth that is not > 0.
+    Source: own; conclusion 2 says how to choose the gains.
     """
 
     kp: ArrayLike = 0.0
@@ -97,6 +99,9 @@ class ForceFeedback:
     gain, leak: rad/s. A loop takes its leg's stiffness away below about `gain`: without a leak even at rest, so that a
     machine that carries weight creeps away; a leak well below the lowest natural frequency (such as a tenth) keeps it.
     legs: numbers, from 1, of the legs that have a loop.
+
+    Raises: ArgumentError for gains below zero, or legs that are no numbers from 1 to 6.
+    Source: A. Preumont, Vibration Control of Active Structures (2011).
     """
 
     gain: float
@@ -120,6 +125,9 @@ class VelocityFeedback:
     """Direct velocity feedback: in each leg f = -gain L', a force against the rate of its length. gain: N s/m.
 
     legs: numbers, from 1, of the legs that have a loop.
+
+    Raises: ArgumentError for a gain below zero, or legs that are no numbers from 1 to 6.
+    Source: A. Preumont, Vibration Control of Active Structures (2011).
     """
 
     gain: float

@@ -41,6 +41,8 @@ class DampedModes(NamedTuple):
 
     damping_ratio: (6,), negative if the mode grows. shape: (6, 6) complex twists of the platform as columns, scaled so
     that shape^T M shape = 1 with a real largest part.
+
+    Source: part C.
     """
 
     pole: Array
@@ -50,7 +52,12 @@ class DampedModes(NamedTuple):
 
 
 class StateSpace(NamedTuple):
-    """x' = A x + B u, y = C x + D u with names for the states, inputs and outputs."""
+    """x' = A x + B u, y = C x + D u with names for the states, inputs and outputs; see `Linearisation.state_space`.
+
+    A: (12, 12). B: (12, 24). C: (24, 12). D: (24, 24), SI. states, inputs, outputs: a name for each.
+
+    Source: part C.
+    """
 
     A: Array
     B: Array
@@ -69,7 +76,10 @@ class Linearisation:
     f: change of the leg forces (N) beside their springs; w: change of the wrench on the platform (N, N m), which, like
     the static one, turns with the platform. A command that lengthens leg i's unstretched length by d acts as f = K_i d.
     K holds leg stiffness, the geometric stiffness of loaded legs, gravity and the turning external wrench: it need not
-    be symmetric when there is an external wrench.
+    be symmetric when there is an external wrench. leg_stiffness: (6,) N/m. carry: a platform that moves rigidly with
+    the base has x = carry x_b. gravity: (3,) m/s2. rest: the `Equilibrium`.
+
+    Source: Eq. 34 about rest; part C.
     """
 
     M: Array
@@ -125,7 +135,10 @@ class Linearisation:
         return StateSpace(A, B, C, D, _labels(STATES), _labels(INPUTS), _labels(OUTPUTS))
 
     def to_control(self) -> control.StateSpace:
-        """The state space as a `control.StateSpace` with named signals. Needs python-control (extra "control")."""
+        """The state space as a `control.StateSpace` with named signals. Needs python-control (extra "control").
+
+        Raises: ImportError without python-control.
+        """
         try:
             import control
         except ImportError as error:
@@ -159,10 +172,14 @@ def linearise(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> Linearisation:
-    """The tangent of Eq. 34 at a pose held at rest under gravity and a wrench (platform frame), by exact derivatives.
+    """The tangent of the equations of motion at a pose held at rest under gravity and a wrench, by exact derivatives.
 
-    Its frequencies approach Eq. 5's as legs stiffen (corrections C). Raises SingularPoseError where no leg forces hold
-    the pose, PoseError for a batch of poses.
+    force (N), moment (N m): on the platform, in its frame, at its reference point. The frequencies approach those of
+    `natural_modes` (Eq. 5) as legs stiffen.
+
+    Raises: SingularPoseError where no leg forces hold the pose; PoseError for a batch of poses, or at a pose that no
+    leg can take.
+    Source: Eq. 34; part C.
     """
     if pose.shape:
         raise PoseError(f"linearise takes one pose; this one has batch axes {pose.shape}. Index it first.")

@@ -21,6 +21,8 @@ class NaturalModes(NamedTuple):
 
     A twist is the translation of the reference point (rows 1-3) and the rotation vector (rows 4-6), inertial axes;
     shape^T J_p shape is the identity, so its units are kg^-1/2 and rad kg^-1/2 m^-1.
+
+    Source: Eq. 5.
     """
 
     omega: Array
@@ -32,6 +34,8 @@ class EnergyShares(NamedTuple):
 
     strain: (..., 6 legs, 6 modes). kinetic: (..., 7, 6 modes): platform, then the legs. A leg whose printed inertia no
     rigid body can have may have a negative part.
+
+    Source: own.
     """
 
     strain: Array
@@ -41,9 +45,12 @@ class EnergyShares(NamedTuple):
 class ModeDescription(NamedTuple):
     """A mode in words, with the numbers behind them.
 
-    share: (6,) part of the kinetic energy in x, y, z of the mass centre and in roll, pitch, yaw about it.
-    center: (3,) m, the point of the mode's axis nearest to the mass centre (NaN for a pure translation);
-    axis: (3,) unit vector of that axis. pitch: m of travel along the axis per radian.
+    text: the words. dominant: one of x, y, z, roll, pitch, yaw. share: (6,) part of the kinetic energy in x, y, z of
+    the mass centre and in roll, pitch, yaw about it. center: (3,) m, the point of the mode's axis nearest to the mass
+    centre (NaN for a pure translation); axis: (3,) unit vector of that axis. pitch: m of travel along the axis per
+    radian.
+
+    Source: own.
     """
 
     text: str
@@ -60,6 +67,8 @@ class Sensitivity(NamedTuple):
     platform_mass (6,), platform_mass_center (6, 3), platform_inertia (6, 3, 3; a change of both off-diagonal twins),
     stiffness (6, 6 legs), base_joints and platform_joints (6, 6 joints, 3), lower_mass and upper_mass (6, 6 legs),
     pose (6, 6): by translation (m) and rotation vector (rad) of the platform.
+
+    Source: R. L. Fox and M. P. Kapoor, AIAA Journal 6 (1968).
     """
 
     platform_mass: Array
@@ -76,11 +85,13 @@ class Sensitivity(NamedTuple):
 def natural_modes(
     hexapod: Hexapod, pose: Pose, joint: JointModel = "universal", base: Pose | None = None
 ) -> NaturalModes:
-    """Six natural frequencies and mode shapes at a pose, undamped, without preload or gravity (Eq. 5; corrections C).
+    """Six natural frequencies (rad/s) and mode shapes at a pose, undamped, without preload or gravity.
 
     They are singular values of L^-1 H K^1/2 with J_p = L L^T, which keeps the low ones accurate near a singular pose;
     at one, the lowest is zero to rounding. joint: "universal" (exact) or "spin_free" (the paper's W.s = 0).
-    Raises PoseError at a pose that no leg can take; in a batch such a pose gives NaN.
+
+    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for an unknown joint model.
+    Source: Eq. 5; part C says what it leaves out.
     """
     s = states(hexapod, pose, base)
     omega, shape = _core.natural_modes(hexapod.packed, is_universal(joint), s.platform, s.base)
@@ -90,14 +101,24 @@ def natural_modes(
 def stability_index(
     hexapod: Hexapod, pose: Pose, joint: JointModel = "universal", base: Pose | None = None
 ) -> Array | float:
-    """The dynamic stability index (...): the lowest natural frequency, rad/s; zero at a singular pose (Section 2)."""
+    """The dynamic stability index (...): the lowest natural frequency, rad/s; zero at a singular pose.
+
+    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for an unknown joint model.
+    Source: Section 2.
+    """
     return natural_modes(hexapod, pose, joint, base).omega[..., 0][()]
 
 
 def energy_shares(
     hexapod: Hexapod, pose: Pose, joint: JointModel = "universal", base: Pose | None = None
 ) -> EnergyShares:
-    """Which legs store each mode's strain energy and which bodies carry its kinetic energy (NaN at frequency zero)."""
+    """Which legs store each mode's strain energy, (..., 6, 6), and which bodies carry its kinetic energy, (..., 7, 6).
+
+    Shares of 1; NaN at frequency zero.
+
+    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for an unknown joint model.
+    Source: own.
+    """
     s = states(hexapod, pose, base)
     shape = natural_modes(hexapod, pose, joint, base).shape
     stretch = np.swapaxes(force_transformation(hexapod, pose, base), -1, -2) @ shape
@@ -113,7 +134,11 @@ def energy_shares(
 def describe_modes(
     hexapod: Hexapod, pose: Pose, joint: JointModel = "universal", base: Pose | None = None
 ) -> list[ModeDescription]:
-    """Each mode of one pose in words: what dominates (x, y, z, roll, pitch, yaw) and about which point it turns."""
+    """Each mode of one pose in words: what dominates (x, y, z, roll, pitch, yaw) and about which point (m) it turns.
+
+    Raises: PoseError for a batch of poses, or at a pose that no leg can take.
+    Source: own.
+    """
     if pose.shape:
         raise PoseError(f"describe_modes takes one pose; this one has batch axes {pose.shape}. Index it first.")
     s = states(hexapod, pose, base)
@@ -152,7 +177,13 @@ def _rounded(point: Array) -> str:
 
 
 def near_repeated(omega: Array, gap: float = 0.01) -> list[tuple[int, int]]:
-    """Neighbouring modes (numbered from 0) whose frequencies differ by less than `gap` of the higher one."""
+    """Neighbouring modes (numbered from 0) whose frequencies differ by less than `gap` of the higher one.
+
+    omega: (6,) rad/s, ascending.
+
+    Raises: nothing of its own.
+    Source: own.
+    """
     return [(i, i + 1) for i in range(5) if omega[i + 1] - omega[i] < gap * omega[i + 1]]
 
 
@@ -163,6 +194,9 @@ def frequency_sensitivity(
 
     From v^T (dK - omega^2 dJ) v. Universal axes are held. Modes that are exactly repeated have only directional
     derivatives, which single entries do not give (see `near_repeated`); a zero frequency gives NaN.
+
+    Raises: PoseError for a batch of poses, or at a pose that no leg can take.
+    Source: R. L. Fox and M. P. Kapoor, AIAA Journal 6 (1968), with exact derivatives of J_p and H K H^T.
     """
     if pose.shape:
         raise PoseError(f"frequency_sensitivity takes one pose; this one has batch axes {pose.shape}. Index it first.")

@@ -34,6 +34,8 @@ class PathIndex:
     minimum, minimum_time, minimum_pose: the least index, rad/s, refined between samples, and where. bound: rad/s or
     None. below: (start, end) times, s, between which the index lies below the bound. weighted_mean: rad/s.
     crossings: times, s, at which the path passes through a singular pose (only with singular="keep").
+
+    Source: conclusion 1.
     """
 
     samples: xr.Dataset
@@ -63,9 +65,11 @@ def path_index(
     """The lowest natural frequency along a path, against a bound (rad/s), and its weighted cumulative value.
 
     The minimum and the times at which the bound is crossed are refined between samples. The path's weights are joined
-    by straight lines in time; weighted_mean = integral of w omega dt / integral of w dt. Raises SingularPoseError where
-    the path passes through a singular pose (with singular="keep" it is recorded instead), PathError for a bound that
-    is not > 0 or too few samples, PoseError at a pose that no leg can take.
+    by straight lines in time; weighted_mean = integral of w omega dt / integral of w dt.
+
+    Raises: SingularPoseError where the path passes through a singular pose (with singular="keep" it is recorded
+    instead); PathError for a bound that is not > 0 or too few samples; PoseError at a pose that no leg can take.
+    Source: conclusion 1.
     """
     _check(path, bound, samples, singular)
     times = path.grid(samples)
@@ -103,12 +107,14 @@ def path_loads(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> xr.Dataset:
-    """Leg forces and leg travel along a path under the full dynamics (Eq. 34 solved for F).
+    """Leg forces and leg travel along a path under the full dynamics.
 
     force (N), moment (N m): on the platform, in its frame, (3,) or (samples, 3). Dataset over (time, leg): `leg_force`
     N (positive pushes), `static_force` N (the same at rest), `leg_length` m, `leg_rate` m/s, `leg_acceleration` m/s2,
-    `power` W of each actuator; over leg: `stroke` m, `peak_force` N; over time: `within_limits`. Raises
-    SingularPoseError where no leg forces can drive the path.
+    `power` W of each actuator; over leg: `stroke` m, `peak_force` N; over time: `within_limits`.
+
+    Raises: SingularPoseError where no leg forces can drive the path; PathError for too few samples.
+    Source: Eq. 34, solved for F.
     """
     _check(path, None, samples, "raise")
     times = path.grid(samples)

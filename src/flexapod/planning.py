@@ -29,7 +29,11 @@ _MARGINS = (0.005, 0.02, 0.04)  # kept at the samples of the smoothing, so that 
 
 @dataclass(frozen=True)
 class LegSpeed:
-    """What the actuators can do: rate m/s, acceleration m/s2. A path timed with it takes the least time they allow."""
+    """What the actuators can do: rate m/s, acceleration m/s2. A path timed with it takes the least time they allow.
+
+    Raises: PathError for numbers that are not > 0, or no bound at all.
+    Source: own.
+    """
 
     rate: float = np.inf
     acceleration: float = np.inf
@@ -46,9 +50,12 @@ class Plan:
     """A planned path; see `plan_path`.
 
     path: smooth, at rest at both ends. straight: the straight line between the same poses in the same manner. rough:
-    corners of the sampling planner's line (None where the straight line was good enough). length, straight_length: m,
-    one radian counted as `size`, the radius of the platform's joints, m. least_index, straight_least_index: rad/s.
-    margin: the least relative margin to any requirement on the path. batches: of samples that the search drew.
+    corners of the sampling planner's line (None where the straight line was good enough). requirements: as kept.
+    length, straight_length: m, one radian counted as `size`, the radius of the platform's joints, m. least_index,
+    straight_least_index: rad/s. margin: the least relative margin to any requirement on the path. batches: of samples
+    that the search drew.
+
+    Source: conclusion 1.
     """
 
     path: Path
@@ -75,15 +82,18 @@ def plan_path(
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Plan:
-    """A path between two poses that keeps the requirements (or just a bound on the index, rad/s) all along.
+    """A path from `start` to `goal` that keeps the requirements (or just a bound on the index, rad/s) all along.
 
     objective: least "length", or least "time" for actuators as `timing` says. timing: LegSpeed, or the duration in s.
-    A sampling planner (OMPL's BIT*) finds a way; a gradient method then makes it short or quick and smooth, and the
+    A sampling planner (`BIT*`, by OMPL) finds a way; a gradient method then makes it short or quick and smooth, and the
     result is checked on points four times as dense. The same seed gives the same path. progress: called with a stage
     and its share done.
 
-    Raises PathError where an end breaks a requirement or no path is found, and says which requirement;
-    SingularPoseError where singular poses lie between start and goal on any path.
+    Raises: PathError where an end breaks a requirement or no path is found, and says which requirement;
+    SingularPoseError where singular poses lie between start and goal on any path; PoseError for ends that are not one
+    Pose.
+    Source: conclusion 1; `BIT*` after J. D. Gammell, S. S. Srinivasa and T. D. Barfoot (2015), SLSQP after D. Kraft
+    (1988).
     """
     task = _Task(hexapod, start, goal, requirements, objective, timing)
     report = progress or (lambda stage, share: None)
@@ -101,9 +111,12 @@ def plan_path(
 def plan_slice(hexapod: Hexapod, plan: Plan, points: int = 81) -> xr.Dataset:
     """The index on the plane through a plan's start, goal and the point of its path farthest from the straight line.
 
-    Dataset over (aside, along), m, one radian counted as the plan's `size`: `index`, rad/s; `met`, whether all
-    requirements are. `path_along`, `path_aside` over `step`: the path projected on the plane. Attribute straight: where
-    the goal lies on `along`. Raises PathError for a plan that is straight.
+    Dataset over (aside, along), `points` each, m, one radian counted as the plan's `size`: `index`, rad/s; `met`,
+    whether all requirements are. `path_along`, `path_aside` over `step`: the path projected on the plane. Attribute
+    straight: where the goal lies on `along`.
+
+    Raises: PathError for a plan that is straight.
+    Source: own.
     """
     scale = np.repeat([1.0, plan.size], 3)
     chart = plan.path.chart

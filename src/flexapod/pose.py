@@ -46,7 +46,10 @@ class Pose:
     """Position of a body's reference point and its orientation.
 
     position: (..., 3) m. rotation: a scipy `Rotation` (one or many), or matrices (..., 3, 3) that take vectors from
-    body axes to the outer frame; default: none. Raises PoseError for wrong shapes, NaN, or matrices that do not rotate.
+    body axes to the outer frame; default: none.
+
+    Raises: PoseError for wrong shapes, NaN, or matrices that do not rotate.
+    Source: Section 4.2; E7: an orientation is a rotation, not three angles.
     """
 
     __slots__ = ("matrix", "position")
@@ -70,7 +73,10 @@ class Pose:
     def from_rpy(
         cls, x: ArrayLike, y: ArrayLike, z: ArrayLike, roll: ArrayLike = 0, pitch: ArrayLike = 0, yaw: ArrayLike = 0
     ) -> Pose:
-        """Pose from metres and radians: turned about the fixed axes x (roll), then y (pitch), then z (yaw)."""
+        """Pose from metres and radians, each (...): turned about the fixed axes x (roll), then y (pitch), then z (yaw).
+
+        Raises: PoseError for what are no finite numbers, or shapes that do not fit.
+        """
         try:
             numbers = np.broadcast_arrays(*(np.asarray(v, dtype=np.float64) for v in (x, y, z, roll, pitch, yaw)))
         except (TypeError, ValueError) as error:
@@ -133,8 +139,11 @@ def orthonormal(matrix: Array) -> Array:
 class Motion:
     """Pose, velocity and acceleration of a body, in the inertial frame, at its reference point.
 
-    velocity m/s, angular_velocity rad/s, acceleration m/s2, angular_acceleration rad/s2: (..., 3), default zero.
-    Raises PoseError for wrong shapes or numbers that are not finite.
+    pose: `Pose`. velocity m/s, angular_velocity rad/s, acceleration m/s2, angular_acceleration rad/s2: (..., 3),
+    default zero.
+
+    Raises: PoseError for wrong shapes or numbers that are not finite.
+    Source: Section 4.2.
     """
 
     __slots__ = ("acceleration", "angular_acceleration", "angular_velocity", "pose", "velocity")

@@ -26,7 +26,10 @@ _SOBOL_BITS = 32  # the most with which scipy.stats.qmc.Sobol can be wound forwa
 class Box:
     """Ranges of the six pose coordinates: a pair (least, largest), or one number for a coordinate that is held.
 
-    x, y, z in m; roll, pitch, yaw in rad about the fixed axes x, y, z. Raises PoseError where least > largest.
+    x, y, z in m; roll, pitch, yaw in rad about the fixed axes x, y, z.
+
+    Raises: PoseError where least > largest, or numbers are not finite.
+    Source: own.
     """
 
     def __init__(
@@ -45,7 +48,10 @@ class Box:
 
     @classmethod
     def about(cls, pose: Pose, position: float, angle: float) -> Box:
-        """All six coordinates of one pose, plus and minus `position` (m) and `angle` (rad)."""
+        """All six coordinates of one pose, plus and minus `position` (m) and `angle` (rad).
+
+        Raises: PoseError for a batch of poses.
+        """
         if pose.shape:
             raise PoseError(f"a box lies about one pose; this one has batch axes {pose.shape}. Index it first.")
         six = np.concatenate([pose.position, pose.rpy])
@@ -100,7 +106,12 @@ def _range(name: str, value: ArrayLike) -> tuple[float, float]:
 
 
 class PoseSet:
-    """Poses by number. `shape` and `dims` are the axes of results; `box` is what they fill, where they fill one."""
+    """Poses by number: x, y, z m, roll, pitch, yaw rad, or positions and rotation matrices.
+
+    `shape` and `dims` are the axes of results; `box` is what they fill, where they fill one.
+
+    Source: own.
+    """
 
     shape: tuple[int, ...]
     dims: tuple[str, ...] = ("pose",)
@@ -108,6 +119,7 @@ class PoseSet:
 
     @property
     def count(self) -> int:
+        """How many poses."""
         return prod(self.shape)
 
     def rows(self, start: int, stop: int) -> Array:
@@ -259,10 +271,13 @@ class GivenPoses(PoseSet):
 
 
 def random_poses(box: Box, count: int, seed: int = 0) -> PoseSet:
-    """`count` poses spread evenly by chance over a box, each coordinate on its own.
+    """`count` poses (m, rad) spread evenly by chance over a box, each coordinate on its own.
 
     Pose i is made of draws 6 i to 6 i + 5 of NumPy's PCG64DXSM generator with this seed, so it does not depend on how
     many are drawn, or in which pieces.
+
+    Raises: PoseError for what is no Box, no count or no seed.
+    Source: own, with NumPy's PCG64DXSM.
     """
     return RandomPoses(_box(box), count, seed)
 
@@ -272,6 +287,9 @@ def low_discrepancy(box: Box, count: int, seed: int = 0) -> PoseSet:
 
     Rows are x, y, z in m and roll, pitch, yaw in rad. Best with a power of two. For other sequences give `fx.sweep` the
     array `box.scale(sampler.random(n))`.
+
+    Raises: PoseError for what is no Box, no count or no seed, or more poses than the sequence has.
+    Source: I. M. Sobol (1967), scrambled as scipy.stats.qmc does.
     """
     return SobolPoses(_box(box), count, seed)
 
@@ -284,8 +302,13 @@ def pose_grid(
     pitch: ArrayLike = 0.0,
     yaw: ArrayLike = 0.0,
 ) -> PoseSet:
-    """All combinations of the given values (m; rad): each a number or a list. Axes with several values name the
-    dimensions of the result."""
+    """All combinations of the given values of x, y, z (m), roll, pitch, yaw (rad): each a number or a list.
+
+    Axes with several values name the dimensions of the result.
+
+    Raises: PoseError for values that are no finite numbers or lists of them.
+    Source: own.
+    """
     axes: dict[str, Array] = {}
     for name, value, unit in zip(COORDINATES, (x, y, z, roll, pitch, yaw), UNITS, strict=True):
         try:
@@ -305,6 +328,9 @@ def pose_path(waypoints: Pose | ArrayLike, count: int) -> PoseSet:
 
     Rows are x, y, z in m and roll, pitch, yaw in rad. Positions follow straight lines; orientations turn at a steady
     rate about a fixed axis from one to the next.
+
+    Raises: PoseError for fewer than two waypoints.
+    Source: own.
     """
     from scipy.spatial.transform import Rotation, Slerp
 

@@ -21,7 +21,10 @@ from flexapod.pose import Array, Pose
 
 
 class GainWarning(UserWarning):
-    """Gains that put poles of the closed loop near natural frequencies of the machine."""
+    """Gains that put poles of the closed loop near natural frequencies of the machine.
+
+    Source: conclusion 2.
+    """
 
 
 def closed_loop(
@@ -36,8 +39,11 @@ def closed_loop(
     """Poles (rad/s) of the machine at a pose under a control law, on the exact tangent.
 
     law: a PID, a ForceFeedback or VelocityFeedback, or any Controller, sampled ones included. Warns (GainWarning) when
-    a pole lies within `nearness` of a natural frequency, as the paper demands. Raises UnstableError for gains that make
-    the machine unstable, unless unstable="keep". rest: as for `linearise`.
+    a pole lies within `nearness` of a natural frequency, as the paper demands. rest: as for `linearise`.
+
+    Raises: UnstableError for gains that make the machine unstable, unless unstable="keep"; PoseError and
+    SingularPoseError as `linearise`.
+    Source: conclusion 2.
     """
     plant = Plant(linearise(hexapod, pose, **rest))
     controller = law.on(plant.linear)
@@ -71,7 +77,10 @@ def gain_map(
     law: what else the loop is (space, actuator, ki, bandwidth); default: PD on the legs by forces. Dataset over
     (kp, kd): `distance`, the least relative distance of a vibrating pole to a natural frequency (infinite when none
     vibrates); `worst_damping`; `stable`; `near` (bool); `pole` (kp, kd, pole), rad/s. Warns (GainWarning) where gains
-    put poles within `nearness` of a natural frequency. Raises ArgumentError for gains that are no rows of numbers.
+    put poles within `nearness` of a natural frequency.
+
+    Raises: ArgumentError for gains that are no rows of numbers; PoseError and SingularPoseError as `linearise`.
+    Source: conclusion 2.
     """
     rows = {"kp": _row(kp, "kp"), "kd": _row(kd, "kd")}
     base = law or PID()

@@ -33,8 +33,10 @@ def time_series(
 
     times: (n,) s, ascending; values: (n,) or (n, k) for k channels. recorded: "value" (the channel's own unit), or its
     "velocity" or "acceleration", integrated from rest at zero. Values are splined by quintics, derivatives by cubics,
-    so that acceleration is smooth. Raises ArgumentError, which names the sample, for NaN, times that do not ascend,
-    gaps, and less than six samples.
+    so that acceleration is smooth.
+
+    Raises: ArgumentError, which names the sample, for NaN, times that do not ascend, gaps, and less than six samples.
+    Source: own, with SciPy's splines.
     """
     names = [channels] if isinstance(channels, str) else list(channels)
     if recorded not in INTEGRATIONS:
@@ -53,11 +55,14 @@ def time_series(
 
 
 def read_time_series(path: str | Path, recorded: Recorded | None = None) -> Excitation:
-    """A recording from a CSV file: a header with `time` and channels, then numbers.
+    """A recording from the CSV file at `path`: a header with `time` and channels, then numbers.
 
     Channels are x, y, z, roll, pitch, yaw or leg1 to leg6, with their unit behind them if it is not SI, as `z_um`,
     `roll_deg`, `x_mm_per_s2` or `time_ms`. recorded: as in `time_series`; by default what the units say. Lines that
-    begin with # are left out. Raises ArgumentError as `time_series` does, and for what cannot be read.
+    begin with # are left out.
+
+    Raises: ArgumentError as `time_series`, and for what cannot be read.
+    Source: own.
     """
     file = Path(path)
     try:

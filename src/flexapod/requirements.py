@@ -23,7 +23,10 @@ class PathRequirements:
     index: least natural frequency, rad/s. condition_number: most that H's (in metres) may have; None: no bound but the
     index, which is zero at a singular pose. clearance: least distance between leg axes, m, in place of the design's.
     limits: whether the design's limits hold. reach: how far the search may leave the box around start and goal, m;
-    default: half the mean leg length. turn: the same for rotations, rad.
+    default: half the mean leg length. turn: the same for rotations, rad. joint: the joint model of the index.
+
+    Raises: PathError for a bound that nothing could keep.
+    Source: conclusion 1; limits and clearance are our own.
     """
 
     index: float

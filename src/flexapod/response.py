@@ -50,8 +50,10 @@ def transmissibility(
     - leg_force (omega, leg, base): change of the force of a leg's spring (positive: compression) per base motion
 
     Units stand beside the axes, in `output_unit`, `base_unit`, `wrench_unit`. At an undamped resonance: infinite.
-    Raises PoseError for a batch of poses, SingularPoseError where no leg forces hold the pose, ArgumentError for
-    frequencies or loss factors that are negative or not finite.
+
+    Raises: PoseError for a batch of poses or more than one point; SingularPoseError where no leg forces hold the pose;
+    ArgumentError for frequencies or loss factors that are negative or not finite.
+    Source: own, on the tangent of part C.
     """
     w, eta = frequencies(omega), loss_factors(loss_factor)
     linear = linearise(hexapod, pose, **rest)
@@ -143,15 +145,16 @@ def random_response(
       for six independent axes; (n, 6, 6) for the Hermitian cross-spectral matrix S_jk of E[X_j conj(X_k)].
 
     Between the frequencies a table is a power law (straight in log-log axes; linear where it touches zero), a matrix
-    linear. Resonances are resolved whatever their damping: panels shrink geometrically towards every pole, each with
-    eight Gauss points. `omega` of the result holds the frequencies given, the panels' other edges and those points.
+    linear. Resonances are resolved whatever their damping: panels shrink geometrically towards every pole, with eight
+    Gauss points each. `omega` of the result holds the frequencies given, the panels' other edges and those points.
+    point, loss_factor, rest: as in `transmissibility`.
 
     Quantities: displacement and acceleration of the output point (absolute), relative (displacement less the rigid
-    motion with the base), leg_force. For each: psd_<quantity> (omega, ...), rms_<quantity> (...), and
-    cumulative_<quantity> (omega, ...), the RMS of what lies below omega.
+    motion with the base), leg_force: each behind `psd_`, `rms_` and `cumulative_` (RMS of what lies below omega).
 
-    Raises ArgumentError for a spectrum that none can be, and where a mode in the band has no damping or grows: its
-    response never becomes stationary.
+    Raises: ArgumentError for a spectrum that none can be, and for a mode in the band that has no damping or grows;
+    PoseError for more than one point; SingularPoseError where no leg forces hold the pose.
+    Source: own, on the tangent of part C.
     """
     eta = loss_factors(loss_factor)
     linear = linearise(hexapod, pose, **rest)

@@ -34,9 +34,12 @@ _QUANTILES = (0.001, 0.01, 0.05, 0.5, 0.95, 0.99)
 class Uncertain:
     """A number of the design (or several that stray together) that is only known to lie about its value.
 
-    target: a key as for `Variable`; with several entries, such as legs.stiffness, each strays on its own (each=True) or
-    all together. spread: half the width of a uniform or triangular distribution, the standard deviation of a normal or
-    lognormal one. relative: the spread is a share of the design's value, else an amount in the key's unit.
+    target: a key as for `Variable`. spread: half the width of a uniform or triangular distribution, the standard
+    deviation of a normal or lognormal one. distribution: which of these. relative: the spread is a share of the
+    design's value, else an amount in the key's unit. each: with several entries, such as legs.stiffness, each strays on
+    its own, else all together.
+
+    Source: own.
     """
 
     target: str
@@ -46,7 +49,10 @@ class Uncertain:
     each: bool = True
 
     def parameters(self, hexapod: Hexapod) -> list[Stray]:
-        """One for each number that strays on its own. Raises ArgumentError for ranges that a design cannot have."""
+        """One for each number that strays on its own.
+
+        Raises: ArgumentError for ranges that a design cannot have.
+        """
         _check(self.target, self.spread, self.distribution)
         index, rule, unit = entries(self.target)
         if self.target.startswith("home"):
@@ -76,13 +82,18 @@ class Payload:
     """A load on the platform beyond what the design has: a point mass (kg) at a position (m, platform frame).
 
     mass: (least, most); position: three pairs (least, most), or numbers where it is known. All uniform.
+
+    Source: own.
     """
 
     mass: tuple[float, float]
     position: tuple[ArrayLike, ArrayLike, ArrayLike] = (0.0, 0.0, 0.0)
 
     def parameters(self, hexapod: Hexapod) -> list[Stray]:
-        """The payload's mass and its three coordinates."""
+        """The payload's mass and its three coordinates.
+
+        Raises: ArgumentError for a mass below zero, or ranges that do not ascend.
+        """
         low, high = self.mass
         if not 0 <= low <= high < np.inf:
             raise ArgumentError(f"the payload's mass is from {low} to {high} kg; it must be >= 0, the least first.")
@@ -134,6 +145,8 @@ class Robustness:
     deviation: of the samples, rad/s; quantiles: {share: index}. worst: least index over the ranges of the parameters,
     found from the worst samples downhill (normal ones are taken to four standard deviations); worst_at: the parameters
     there. sensitivity: Dataset over `parameter` of Sobol indices, or None.
+
+    Source: A. Saltelli (2002) for the indices.
     """
 
     samples: xr.Dataset
@@ -236,8 +249,11 @@ def robustness(
     `Workspace`, of which `poses` poses are looked at; the index of a sample is the least over them. samples: designs
     drawn (a scrambled Sobol sequence). sensitivity: base samples of a Sobol analysis (SALib), a power of two such as
     1024, which takes sensitivity * (parameters + 2) designs more; 0: none. Options: joint, seed=0, threads, progress
-    (called with a stage and its share done). Raises ArgumentError for ranges that a design cannot have, and where SALib
-    is missing.
+    (called with a stage and its share done).
+
+    Raises: ArgumentError for ranges that a design cannot have, and where SALib is missing; PoseError for what names no
+    poses.
+    Source: own; I. M. Sobol (2001) and A. Saltelli (2002) for the sensitivity.
     """
     settings = _Settings(**options)
     ensemble = Ensemble(hexapod, uncertain)

@@ -33,8 +33,10 @@ class Hardware:
     """What actuators and sensors leave of a controller.
 
     force_limit: N, largest force of each leg's actuator, a number or six. noise: root mean square of the white noise on
-    each kind of measurement (see Controller.measures), in its unit, a number or six, as {"acceleration": 1e-3}. seed:
-    of the noise.
+    each kind of measurement (see `Controller`), in its unit, a number or six, as `{"acceleration": 1e-3}`. seed: of the
+    noise.
+
+    Source: own.
     """
 
     force_limit: ArrayLike = np.inf
@@ -42,7 +44,10 @@ class Hardware:
     seed: int = 0
 
     def limits(self) -> Array:
-        """(6,) N."""
+        """Largest force of each leg's actuator, (6,) N.
+
+        Raises: ArgumentError for limits that are not > 0, or neither one nor six.
+        """
         try:
             limit = np.broadcast_to(np.asarray(self.force_limit, dtype=np.float64), (6,)).copy()
         except (TypeError, ValueError):
@@ -52,7 +57,10 @@ class Hardware:
         return limit
 
     def drawn(self, samples: int) -> Array:
-        """(samples, 36) noise on every measurement."""
+        """(samples, 36) noise on every measurement.
+
+        Raises: ArgumentError for a measurement that is none, or noise below zero.
+        """
         rms = np.zeros(_SIGNALS)
         for name, value in self.noise.items():
             if name not in MEASURES:
@@ -79,9 +87,9 @@ def simulate_control(
 ) -> xr.Dataset:
     """The non-linear machine on a moving base, with a sampled controller and without.
 
-    controller: sampled (see Controller.sampled); its forces are held between samples. base_motion: of the base from its
-    pose at rest; at t = 0 the platform moves with it. duration: s. after: root mean squares are taken from this time
-    on. rest: as for `linearise`.
+    controller: sampled (see `Controller.sampled`); its forces are held between samples. base_motion: of the base from
+    its pose at rest; at t = 0 the platform moves with it. duration: s. hardware: what actuators and sensors leave of
+    the controller. after: root mean squares are taken from this time on, s. rest: as for `linearise`.
 
     Dataset over (case, time, axis), cases "controlled" and "passive": `acceleration`, absolute, m/s2 and rad/s2;
     `displacement` from rest, inertial axes, m and rad; `relative`, the same seen from the base; over (sample_time,
@@ -89,8 +97,10 @@ def simulate_control(
     both for the same base motion, sampling and noise but without force limits, `predicted_...`. Attributes: saturated,
     the share of samples at which a force was limited; steps, of the integrator in each sample.
 
-    Raises UnstableError where the tangent shows the sampled loop to be unstable, SimulationError where the machine
-    passes a singular pose or the motion grows without bound.
+    Raises: UnstableError where the tangent shows the sampled loop to be unstable; SimulationError where the machine
+    passes a singular pose or the motion grows without bound; ArgumentError for a controller that is not sampled, or
+    wrong times; PoseError and SingularPoseError as `linearise`.
+    Source: own; the machine is that of Eq. 35.
     """
     plant = Plant(linearise(hexapod, pose, **rest))
     dt = _checked(plant, controller, duration, after)

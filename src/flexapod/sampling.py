@@ -24,11 +24,13 @@ _STARTS = 4
 def sampling_time(
     source: Hexapod | float, where: Pose | Path | Box | None = None, joint: JointModel = "universal"
 ) -> float:
-    """Largest sensible sampling time of a controller, s: 2 pi/(20 omega_max) (paper, conclusion 3).
+    """Largest sensible sampling time of a controller, s: 2 pi/(20 omega_max).
 
     source: a highest natural frequency omega_max, rad/s; or a Hexapod, of which omega_max is found `where`: at a Pose
     (one or many), along a Path, or over a Box of poses, refined between samples and from the best of a Sobol sweep.
-    Raises PoseError where no pose can be computed.
+
+    Raises: PoseError where no pose can be computed; ArgumentError for a frequency that is not > 0, or what is no place.
+    Source: conclusion 3.
     """
     if not isinstance(source, Hexapod):
         if where is not None:

@@ -36,14 +36,18 @@ def gain_schedule(
 ) -> xr.Dataset:
     """The gain of a feedback at every pose of a set, such as `pose_grid(x=..., yaw=...)`.
 
-    law: "force" or "velocity" (decentralised damping), or a function from a gain to a law, as
+    law: "force" or "velocity" (decentralised damping, gain in rad/s or N s/m), or a function from a gain to a law, as
     `lambda g: PID(kp=1e5, kd=g)`; gains: ascending row to search, needed for a function. damping: the least gain that
-    gives every mode this damping ratio; None: the gain with the most damping.
+    gives every mode this damping ratio; None: the gain with the most damping. leak: rad/s, of "force".
 
     Dataset over the set's axes: `gain`; `least_damping` with it; `fixed_damping`, with the one gain that suits the
     median pose; `status`: "ok", "no_rest" (no leg forces hold the pose), "no_gain" (none is stable, or gives the
     damping asked for); other values are NaN there. On a grid, `schedule.gain.interp(x=..., yaw=...)` reads it between
     poses. Attributes: fixed_gain.
+
+    Raises: ArgumentError for gains that do not ascend or a damping ratio not between 0 and 1; PoseError for a wrong or
+    empty set of poses.
+    Source: own; A. Preumont (2011) for the laws.
     """
     points = pose_set(poses)
     if damping is not None and not 0 < damping < 1:

@@ -79,11 +79,12 @@ def simulate(
     duration: float | None = None,
     **settings: Unpack[Settings],
 ) -> xr.Dataset:
-    """Motion of the complete machine (Eq. 35) from rest at a pose, driven by its base, loads and leg commands.
+    """Motion of the complete machine from rest at a pose, driven by its base, loads and leg commands.
 
-    The legs hold `pose` under gravity and constant loads before t = 0; leg forces are F = -K (L - L0(t)) (corrections
-    E6), the orientation is integrated on SO(3) (E7). Excitations come from `fx.harmonic` and its like; force (N) and
-    moment (N m) in the platform's axes are three constants or an Excitation. duration in s. More arguments: `Settings`.
+    The legs hold `pose` under gravity and constant loads before t = 0; leg forces are F = -K (L - L0(t)), the
+    orientation is integrated on SO(3). base_motion, leg_command: Excitations, from `fx.harmonic` and its like; force
+    (N) and moment (N m) in the platform's axes: three constants or an Excitation. duration in s. More arguments:
+    `Settings`.
 
     Dataset over time, in SI units with units in attrs: displacement from equilibrium (inertial axes) and
     relative_displacement (seen from the base) of `output` x, y, z, roll, pitch, yaw (rotation vector); the platform's
@@ -92,9 +93,11 @@ def simulate(
     source, energy_error; with `reactions`, the forces and moments of `fx.joint_reactions`. attrs: the largest
     energy_error over the largest of kinetic energy and works as `energy_error`, steps and evaluations.
 
-    Raises SimulationError, with the time, the pose and the Dataset so far, where the platform passes through a singular
-    pose, a leg through zero length, or the steps collapse; ArgumentError for excitations or settings that are wrong;
-    SingularPoseError where no leg forces hold the pose. Warns where a recording is too coarse for the machine.
+    Raises: SimulationError, with the time, the pose and the Dataset so far, where the platform passes through a
+    singular pose, a leg through zero length, or the steps collapse; ArgumentError for excitations or settings that are
+    wrong; PoseError for a batch of poses; SingularPoseError where no leg forces hold the pose. Warns where a recording
+    is too coarse for the machine.
+    Source: Eq. 35; E6, E7; E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential Equations I (1993).
     """
     own = {name: settings.pop(name) for name in RUN_SETTINGS if name in settings}  # type: ignore[misc]
     run = Run(hexapod, pose, base_motion, force, moment, leg_command, **own)
@@ -116,10 +119,14 @@ def simulate(
 
 
 def simulate_many(runs: Sequence[Run], duration: float | None = None, **settings: Unpack[Settings]) -> xr.Dataset:
-    """As `simulate` for many `Run`s on all threads at once: the same Dataset with a first dimension `run`.
+    """As `simulate` for many runs, each a `Run`, on all threads at once: the same Dataset with a first dimension `run`.
 
-    A run that ends early is data: its `status`, `end_time` (s), and NaN from there on. All are sampled at the same
-    times. start, base and unstretched_length belong to each Run.
+    duration: s. A run that ends early is data: its `status`, `end_time` (s), and NaN from there on. All are sampled at
+    the same times. start, base and unstretched_length belong to each Run.
+
+    Raises: ArgumentError for excitations or settings that are wrong, or no runs; SingularPoseError where no leg forces
+    hold a pose.
+    Source: Eq. 35, as `simulate`.
     """
     options = _options(settings, RUN_SETTINGS)
     method = Method(**{name: options[name] for name in METHOD_SETTINGS if name in options})

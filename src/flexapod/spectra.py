@@ -52,9 +52,12 @@ HIGH_NOISE = (
 
 
 class Spectrum(NamedTuple):
-    """A one-sided power spectral density of a `quantity`, per rad/s, between two frequencies in rad/s.
+    """A one-sided power spectral density per rad/s.
 
-    density(omega) takes and gives arrays; it is zero outside the range.
+    density(omega): takes and gives arrays; zero outside the range. quantity: "displacement", "velocity" or
+    "acceleration". omega_min, omega_max: the range, rad/s.
+
+    Source: own.
     """
 
     density: Callable[[Array], Array]
@@ -69,18 +72,26 @@ class Spectrum(NamedTuple):
 
 
 def flat_spectrum(rms: float, omega_min: float, omega_max: float, quantity: Quantity = "acceleration") -> Spectrum:
-    """The same density from omega_min to omega_max (rad/s), with the RMS value given (m, m/s or m/s2; rad)."""
+    """The same density from omega_min to omega_max (rad/s).
+
+    rms: root mean square of the quantity ("displacement", "velocity", "acceleration"), m, m/s or m/s2; rad and so on.
+
+    Raises: ArgumentError for a value or a range that is not > 0.
+    Source: own.
+    """
     _range(omega_min, omega_max)
     level = _positive(rms, "rms") ** 2 / (omega_max - omega_min)
     return _limited(lambda omega: np.full(np.shape(omega), level), quantity, omega_min, omega_max)
 
 
 def vc_curve(name: str) -> Spectrum:
-    """A floor that just meets a vibration criterion, VC-A to VC-G: RMS velocity (m/s) in every one-third octave band.
+    """A floor that just meets a vibration criterion: RMS velocity (m/s) in every one-third octave band.
 
-    VC-A and VC-B: constant acceleration from 4 Hz, constant velocity from 8 to 80 Hz; the others: constant velocity
-    from 1 to 80 Hz (C. G. Gordon, Generic criteria for vibration-sensitive equipment, Proc. SPIE 1619, 1991; IEST-RP
-    CC012). Spread over each band evenly, so that the density goes with 1/omega.
+    name: "VC-A" to "VC-G". VC-A and VC-B: constant acceleration from 4 Hz, constant velocity from 8 to 80 Hz; the
+    others: constant velocity from 1 to 80 Hz. Spread over each band evenly, so that the density goes with 1/omega.
+
+    Raises: ArgumentError for a criterion that is none.
+    Source: C. G. Gordon, Generic criteria for vibration-sensitive equipment, Proc. SPIE 1619 (1991); IEST-RP-CC012.
     """
     if name not in VC_SPEED:
         raise ArgumentError(f"criterion is {name!r}; it must be one of {', '.join(VC_SPEED)}.")
@@ -96,9 +107,12 @@ def vc_curve(name: str) -> Spectrum:
 
 
 def ground_noise(model: Literal["low", "high"] = "high") -> Spectrum:
-    """Quiet or noisy ground between 0.01 and 10 Hz: acceleration by Peterson's low and high noise models.
+    """Ground between 0.01 and 10 Hz: acceleration (m/s2) by Peterson's low and high noise models.
 
-    J. Peterson, Observations and modeling of seismic background noise, USGS Open-File Report 93-322, 1993.
+    model: "low" for quiet ground, "high" for noisy ground.
+
+    Raises: ArgumentError for a model that is neither "low" nor "high".
+    Source: J. Peterson, Observations and modeling of seismic background noise, USGS Open-File Report 93-322 (1993).
     """
     tables = {"low": LOW_NOISE, "high": HIGH_NOISE}
     if model not in tables:
@@ -116,7 +130,10 @@ def ground_noise(model: Literal["low", "high"] = "high") -> Spectrum:
 def sea_spectrum(height: float, period: float, gamma: float = 1.0) -> Spectrum:
     """Elevation of a sea of significant wave height (m) and peak period (s): JONSWAP, or Pierson-Moskowitz at gamma 1.
 
-    K. Hasselmann and others, Dtsch. Hydrogr. Z. A8(12), 1973, with the level set so that 4 RMS is the height.
+    The level is set so that 4 RMS is the height.
+
+    Raises: ArgumentError for a height or period that is not > 0, or gamma not from 1 to 10.
+    Source: K. Hasselmann and others, Dtsch. Hydrogr. Z. A8(12) (1973); W. J. Pierson and L. Moskowitz (1964).
     """
     H, T = _positive(height, "wave height"), _positive(period, "peak period")
     if not 1 <= gamma <= 10:
@@ -135,9 +152,13 @@ def sea_spectrum(height: float, period: float, gamma: float = 1.0) -> Spectrum:
 
 
 def random_motion(channel: str, spectrum: Spectrum, *, seed: int, lines: int = 400) -> Excitation:
-    """A sum of `lines` sinusoids with random phases that has a spectrum (of displacement, velocity or acceleration).
+    """A sum of `lines` sinusoids on a channel (x to yaw) with random phases that has a spectrum.
 
-    One frequency (rad/s) is drawn in each of `lines` bands of equal width, so that the motion does not repeat.
+    The spectrum is of displacement, velocity or acceleration (m, rad). One frequency (rad/s) is drawn in each of
+    `lines` bands of equal width, so that the motion does not repeat.
+
+    Raises: ArgumentError for an unknown channel, no lines, or a density that none can be.
+    Source: M. Shinozuka and G. Deodatis, Appl. Mech. Rev. 44 (1991).
     """
     omega, amplitude, phase = _lines(spectrum, seed, lines)
     return harmonic(channel, amplitude, omega, phase)
@@ -148,7 +169,11 @@ def sea_motion(
 ) -> Excitation:
     """Motions of a ship in one sea: `response` gives each channel's complex motion per elevation at omega (rad/s).
 
-    All channels follow the same waves, with the phases that their responses give them (m/m, rad/m).
+    spectrum: of the sea's elevation, by `sea_spectrum`. All channels follow the same waves, with the phases that their
+    responses give them (m/m, rad/m). lines: how many sinusoids, as in `random_motion`.
+
+    Raises: ArgumentError for an unknown channel, no lines, or a response that is not finite.
+    Source: M. St. Denis and W. J. Pierson, Trans. SNAME 61 (1953).
     """
     omega, amplitude, phase = _lines(spectrum, seed, lines)
     total = Excitation()

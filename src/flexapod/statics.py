@@ -16,7 +16,12 @@ from flexapod.states import ZERO, JointModel, is_universal, states, wrench
 
 
 class Equilibrium(NamedTuple):
-    """A pose at rest, its leg forces (..., 6) N (positive: compression), lengths and unstretched lengths (..., 6) m."""
+    """A pose at rest and what its legs carry.
+
+    pose: `Pose`. leg_force: (..., 6) N, positive: compression. leg_length, unstretched_length: (..., 6) m.
+
+    Source: Eqs 2 to 4; E6.
+    """
 
     pose: Pose
     leg_force: Array
@@ -33,10 +38,14 @@ def hold(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> Equilibrium:
-    """Leg forces and unstretched lengths that hold a pose at rest under gravity and a wrench (platform frame).
+    """Leg forces (N) and unstretched lengths (m) that hold a pose at rest under gravity and a wrench (platform frame).
 
-    From F = -K (L - L0) (corrections E6). joint: legs whose mass is off their axis weigh a little differently in the
-    paper's model "spin_free". Raises SingularPoseError where no leg forces hold the pose.
+    From F = -K (L - L0). force (N), moment (N m): at the platform's reference point. joint: legs whose mass is off
+    their axis weigh a little differently in the paper's model "spin_free".
+
+    Raises: SingularPoseError where no leg forces hold the pose, and PoseError at a pose that no leg can take; in a
+    batch such poses give NaN.
+    Source: Eqs 2 to 4; E6.
     """
     leg_force = inverse_dynamics(hexapod, pose, base, force, moment, joint)
     length = inverse_kinematics(hexapod, pose, base)
@@ -53,11 +62,15 @@ def static_equilibrium(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> Equilibrium:
-    """Where the platform is at rest under gravity and a wrench (platform frame) for unstretched leg lengths (6,) m.
+    """Where the platform is at rest under gravity and a wrench for unstretched leg lengths.
 
-    Newton's method with the exact tangent, from `start` or from the pose at which the legs have these lengths. The
-    equilibrium found may be unstable: poles of `linearise` with a positive real part tell.
-    Raises KinematicsError where no equilibrium is found, SingularPoseError where the tangent becomes singular.
+    unstretched_length: (6,) m. force (N), moment (N m): on the platform, in its frame, at its reference point. Newton's
+    method with the exact tangent, from `start` or from the pose at which the legs have these lengths. The equilibrium
+    found may be unstable: poles of `linearise` with a positive real part tell.
+
+    Raises: KinematicsError where no equilibrium is found, and for lengths that are not six numbers > 0;
+    SingularPoseError where the tangent becomes singular.
+    Source: own; E6, part C.
     """
     L_0 = vectors(unstretched_length, "unstretched_length", 6)
     if L_0.shape != (6,):

@@ -43,7 +43,7 @@ def stepped_sine(
     tolerance: float = 1e-7,
     progress: Callable[[float], object] | None = None,
 ) -> xr.Dataset:
-    """Steady response of the non-linear machine to a base moved by amplitude * sin(omega t) along one axis.
+    """Steady response of the non-linear machine to a base moved by `amplitude * sin(omega t)` along one axis.
 
     omega: (n,) rad/s, > 0. amplitude: m, or rad for "roll", "pitch", "yaw". At every frequency the periodic motion is
     found by shooting: a start on the tangent's steady state, one period of the full equations of motion (Eq. 35), then
@@ -52,13 +52,14 @@ def stepped_sine(
     where). So there is no transient that friction would have to end. All frequencies run at once on all threads.
 
     Dataset over omega and output (inertial axes, from the equilibrium): response, complex fundamental per base
-    amplitude (x = Re(response * amplitude e^{i omega t}) for a base at Re(amplitude e^{i omega t})); ratio, its modulus
-    (Fig. 9); linear, the tangent's response; peak, largest displacement per base amplitude; harmonics, moduli of the
+    amplitude (`x = Re(response * amplitude * e^{i omega t})` for a base at `Re(amplitude * e^{i omega t})`); ratio, its
+    modulus; linear, the tangent's response; peak, largest displacement per base amplitude; harmonics, moduli of the
     first six (the first is ratio). status (omega): "found"; "not_found" where shooting ends without a periodic motion;
     "too_large" where the tangent moves a joint by more than a tenth of a leg's length. Other values are NaN there.
 
-    Raises ArgumentError for frequencies that are not positive, an unknown axis or a wrong amplitude, PoseError for a
-    batch of poses, SingularPoseError where no leg forces hold the pose.
+    Raises: ArgumentError for frequencies that are not positive, an unknown axis or a wrong amplitude; PoseError for a
+    batch of poses; SingularPoseError where no leg forces hold the pose.
+    Source: Section 5, Fig. 9; C. G. Broyden, Math. Comp. 19 (1965), for the updates.
     """
     w = frequencies(omega)
     if (w == 0).any():

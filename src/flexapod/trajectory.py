@@ -38,13 +38,16 @@ Start = Literal["rest", "carried"] | Pose | Motion
 class Run:
     """One simulation: a machine at rest in `pose` on its base, and what drives it from t = 0.
 
-    pose: the equilibrium, inertial frame; the legs' unstretched lengths are those that hold it there under gravity and
-    the constant loads, unless `unstretched_length` (6,) m gives others (the lengths at the pose let gravity ring).
-    base_motion: `Excitation` of x, y, z, roll, pitch, yaw from the base's pose at rest, `base` (default: the origin).
-    force (N), moment (N m): on the platform, in its axes, at its reference point; constant (3,), or an Excitation,
-    which comes on top of rest. leg_command: Excitation of legs "1" to "6", change of unstretched length, m.
-    start: "rest" (at the equilibrium, with no velocity in the inertial frame), "carried" (moving rigidly with the base
-    as it is at t = 0), or a Pose or Motion of the platform in the inertial frame.
+    hexapod: the design. pose: the equilibrium, inertial frame; the legs' unstretched lengths are those that hold it
+    there under gravity and the constant loads, unless `unstretched_length` (6,) m gives others (the lengths at the pose
+    let gravity ring). base_motion: `Excitation` of x, y, z, roll, pitch, yaw from the base's pose at rest, `base`
+    (default: the origin). force (N), moment (N m): on the platform, in its axes, at its reference point; constant (3,),
+    or an Excitation, which comes on top of rest. leg_command: Excitation of legs "1" to "6", change of unstretched
+    length, m. start: "rest" (at the equilibrium, with no velocity in the inertial frame), "carried" (moving rigidly
+    with the base as it is at t = 0), or a Pose or Motion of the platform in the inertial frame.
+
+    Raises: PoseError for a pose or base that is not one Pose; the rest is checked when it is simulated.
+    Source: Eq. 35; E6.
     """
 
     hexapod: Hexapod

@@ -99,7 +99,9 @@ class Path:
 
     Positions and rotation vectors about the mean orientation are splines: quintic, or cubic with free ends; velocity
     and acceleration are continuous throughout. weights: (n,) >= 0, how much each waypoint matters, for `path_index`.
-    Raises PathError for waypoints, times or weights that make no path.
+
+    Raises: PathError for waypoints, times or weights that make no path.
+    Source: own: B-splines of rotation vectors.
     """
 
     def __init__(
@@ -152,7 +154,10 @@ class Path:
         return float((np.sqrt(speed2) * weights * (b - a) / 2).sum())
 
     def retimed(self, duration: float) -> Path:
-        """The same curve in space, run in another time, s."""
+        """The same curve in space, run in another time, s.
+
+        Raises: PathError for a duration that is not > 0.
+        """
         if not (np.isfinite(duration) and duration > 0):
             raise PathError(f"duration is {duration} s; it must be > 0")
         times = self.times[0] + (self.times - self.times[0]) * (duration / self.duration)

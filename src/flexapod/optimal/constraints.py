@@ -87,13 +87,21 @@ def _one(
 
 @dataclass(frozen=True)
 class Footprint(Constraint):
-    """The plate's joints stay within a circle of radius `most` (m) about the middle of what they fill now."""
+    """The plate's joints stay within a circle about the middle of what they fill now.
+
+    most: its radius, m; default: what the design has. plate: "base" or "platform".
+
+    Source: own.
+    """
 
     most: float | None = None
     plate: Plate = "base"
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
-        """See `Constraint`."""
+        """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
+
+        Raises: ArgumentError for a bound that none can keep.
+        """
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints
         (x, y), radius = kinds.enclosing_circle(joints[:, :2])
         kind = kinds.Radius(self.plate, float(x), float(y))
@@ -104,12 +112,18 @@ class Footprint(Constraint):
 
 @dataclass(frozen=True)
 class TotalMass(Constraint):
-    """Platform with payload and all legs, kg."""
+    """Platform with payload and all legs weigh at most `most`, kg; default: what the design has.
+
+    Source: own.
+    """
 
     most: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
-        """See `Constraint`."""
+        """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
+
+        Raises: ArgumentError for a bound that none can keep.
+        """
         return _one("total mass", kinds.Mass(), "most", self.most, None, measure)
 
 
@@ -123,24 +137,40 @@ class _Everywhere(Constraint):
 
 @dataclass(frozen=True)
 class Stroke(_Everywhere):
-    """No leg is longer than at its shortest by more than `most` (m), over the workspace."""
+    """No leg is longer than at its shortest by more than a stroke.
+
+    most: m; default: what the design has. over: poses; default: those of the objective.
+
+    Source: own.
+    """
 
     most: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
-        """See `Constraint`."""
+        """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
+
+        Raises: ArgumentError for a bound that none can keep.
+        """
         return _one("leg stroke", kinds.LegStroke(), "most", self.most, self._over(over), measure)
 
 
 @dataclass(frozen=True)
 class LegLength(_Everywhere):
-    """Every leg is between `least` and `most` (m) long."""
+    """Every leg is between `least` and `most` (m) long; both left out: what the design has.
+
+    over: poses; default: those of the objective.
+
+    Source: own.
+    """
 
     least: float | None = None
     most: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
-        """See `Constraint`."""
+        """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
+
+        Raises: ArgumentError for a bound that none can keep.
+        """
         if self.least is not None and self.most is not None and not self.least < self.most:
             raise ArgumentError(
                 f"leg length: the bounds are {self.least:.6g} and {self.most:.6g} m, which contradict each other; the "
@@ -158,13 +188,22 @@ class LegLength(_Everywhere):
 
 @dataclass(frozen=True)
 class JointAngle(_Everywhere):
-    """No joint of the kind turns by more than `most` (rad) from where it is at home."""
+    """No joint of the kind turns by more than an angle from where it is at home.
+
+    joint: "universal" or "spherical". most: rad; default: what the design has. over: poses; default: those of the
+    objective.
+
+    Source: own.
+    """
 
     joint: Literal["universal", "spherical"]
     most: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
-        """See `Constraint`."""
+        """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
+
+        Raises: ArgumentError for a bound that none can keep.
+        """
         return _one(
             f"{self.joint} joint angle", kinds.JointAngles(self.joint), "most", self.most, self._over(over), measure
         )
@@ -172,23 +211,39 @@ class JointAngle(_Everywhere):
 
 @dataclass(frozen=True)
 class LegClearance(_Everywhere):
-    """The axes of any two legs stay apart by `least` (m)."""
+    """The axes of any two legs stay apart.
+
+    least: m; default: what the design has. over: poses; default: those of the objective.
+
+    Source: own.
+    """
 
     least: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
-        """See `Constraint`."""
+        """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
+
+        Raises: ArgumentError for a bound that none can keep.
+        """
         return _one("leg clearance", kinds.LegDistance(), "least", self.least, self._over(over), measure)
 
 
 @dataclass(frozen=True)
 class ConditionNumber(_Everywhere):
-    """cond(H), in metres, is at most `most`."""
+    """cond(H), in metres, is bounded.
+
+    most: a number > 1; default: what the design has. over: poses; default: those of the objective.
+
+    Source: Section 3.
+    """
 
     most: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
-        """See `Constraint`."""
+        """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
+
+        Raises: ArgumentError for a bound that none can keep.
+        """
         if self.most is not None and self.most <= 1:
             raise ArgumentError(f"condition number: the bound is {self.most}; no H has less than 1.")
         return _one("condition number", kinds.Conditioning(), "most", self.most, self._over(over), measure)
@@ -196,16 +251,22 @@ class ConditionNumber(_Everywhere):
 
 @dataclass(frozen=True)
 class Deflection(_Everywhere):
-    """A static force (N; default: the platform's weight) in any direction moves the platform by at most `most` (m).
+    """A static force in any direction moves the platform by at most `most`, m.
 
-    From the stiffness H K H^T of the legs at the reference point, without moment.
+    From the stiffness H K H^T of the legs at the reference point, without moment. most: default what the design has.
+    force: N; default: the platform's weight. over: poses; default: those of the objective.
+
+    Source: own.
     """
 
     most: float | None = None
     force: float | None = None
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
-        """See `Constraint`."""
+        """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
+
+        Raises: ArgumentError for a bound that none can keep.
+        """
         if self.force is not None and not self.force > 0:
             raise ArgumentError(f"static deflection: the force is {self.force} N; it must be > 0.")
         if self.force is None and not hexapod.gravity.any():
@@ -215,10 +276,18 @@ class Deflection(_Everywhere):
 
 @dataclass(frozen=True)
 class DesignLimits(_Everywhere):
-    """The limits of the design itself: leg lengths, joint angles, clearance."""
+    """The limits of the design itself: leg lengths (m), joint angles (rad), clearance (m).
+
+    over: poses; default: those of the objective.
+
+    Source: own.
+    """
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
-        """See `Constraint`."""
+        """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
+
+        Raises: ArgumentError for a design without limits.
+        """
         limits, where = hexapod.limits, self._over(over)
         found: list[Requirement] = []
         if limits.leg_length is not None:

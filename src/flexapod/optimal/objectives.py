@@ -51,21 +51,25 @@ class _Index:
 
 
 class LeastIndex(_Index):
-    """The least stability index over a workspace, a box, or poses; at one pose, the index there. None: at home."""
+    """The least stability index (rad/s) over a workspace, a box, or poses; at one pose, the index there. None: at home.
+
+    Raises: PoseError for what names no poses.
+    Source: conclusion 1.
+    """
 
     def __init__(self, over: Places | Box | Pose | ArrayLike | None = None) -> None:
         self.over = places(over)
 
     def index(self, found: Array) -> float:
-        """See `Objective`."""
+        """The objective from the quantity at every pose swept, (n,); 0 where a pose has none."""
         return float(found.min()) if np.isfinite(found).all() else 0.0
 
     def held(self, found: Array) -> Numbers:
-        """See `Objective`."""
+        """Numbers of the poses that decide it, of (n,) values."""
         return np.argsort(found)[:_HELD]
 
     def slopes(self, at: Slopes, sharpness: float) -> tuple[Array, Array]:
-        """See `Objective`."""
+        """Logarithms of what must be raised together, (k,), and their derivatives by the variables, (k, n)."""
         return index_slopes(at, sharpness)
 
     def describe(self) -> dict[str, Any]:
@@ -77,7 +81,13 @@ class LeastIndex(_Index):
 
 
 class MeanIndex(_Index):
-    """The weighted mean of the stability index over the poses of a path. weights: one a pose, >= 0; default equal."""
+    """The weighted mean of the stability index (rad/s) over the poses of a path.
+
+    weights: one a pose, >= 0; default equal.
+
+    Raises: ArgumentError for a box, or weights that do not fit; PoseError for what names no poses.
+    Source: conclusion 1.
+    """
 
     def __init__(self, poses: Pose | ArrayLike, weights: ArrayLike | None = None) -> None:
         over = places(poses)
@@ -93,15 +103,15 @@ class MeanIndex(_Index):
         self.weights: Array = given / given.sum()
 
     def index(self, found: Array) -> float:
-        """See `Objective`."""
+        """The objective from the quantity at every pose swept, (n,); 0 where a pose has none."""
         return float(self.weights @ found) if np.isfinite(found).all() else 0.0
 
     def held(self, found: Array) -> Numbers:
-        """See `Objective`."""
+        """Numbers of the poses that decide it, of (n,) values."""
         return np.arange(len(found))
 
     def slopes(self, at: Slopes, sharpness: float) -> tuple[Array, Array]:
-        """See `Objective`."""
+        """Logarithms of what must be raised together, (k,), and their derivatives by the variables, (k, n)."""
         logarithm, slope = index_slopes(at, sharpness)
         part = self.weights * np.exp(logarithm)
         return np.log(part.sum(keepdims=True)), (part @ slope)[None] / part.sum()
@@ -118,6 +128,9 @@ class Dexterity:
     """1/cond(H), H in metres, at its least over a workspace, a box, or poses: what "best conditioned" designs maximise.
 
     It knows nothing of mass and stiffness, and its optimum is not that of the stability index.
+
+    Raises: PoseError for what names no poses.
+    Source: own; Section 3 sets cond(H) beside the index.
     """
 
     quantity = "cond_H"
@@ -128,15 +141,15 @@ class Dexterity:
         self.over = places(over)
 
     def index(self, found: Array) -> float:
-        """See `Objective`."""
+        """The objective from the quantity at every pose swept, (n,); 0 where a pose has none."""
         return float(1 / found.max()) if np.isfinite(found).all() else 0.0
 
     def held(self, found: Array) -> Numbers:
-        """See `Objective`."""
+        """Numbers of the poses that decide it, of (n,) values."""
         return np.argsort(-found)[:_HELD]
 
     def slopes(self, at: Slopes, sharpness: float) -> tuple[Array, Array]:
-        """See `Objective`."""
+        """Logarithms of what must be raised together, (k,), and their derivatives by the variables, (k, n)."""
         value, slope, _ = Conditioning().slopes(at)
         return -np.log(value), -slope / value[:, None]
 

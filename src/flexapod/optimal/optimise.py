@@ -65,9 +65,13 @@ class OptimalDesign:
     """What `optimise` found.
 
     hexapod: the design; variables: its values by name, in their keys' units; at_bounds: those on a bound. index: rad/s,
-    as verified (for Dexterity: 1/cond(H)); start_index: of the design one began with, verified alike. searched_index:
-    best of the trials, before the gradient (NaN without trials). coincident: frequencies within 0.1 % of the lowest at
-    the worst pose: where more than one, the optimum lies where modes meet. history: Dataset of the finished trials.
+    as verified (for Dexterity: 1/cond(H)); start: the design one began with; start_index: its index, verified alike.
+    searched_index: best of the trials, before the gradient (NaN without trials). coincident: frequencies within 0.1 %
+    of the lowest at the worst pose: where more than one, the optimum lies where modes meet. verification, start_checks:
+    every constraint with its value, bound and margin. history: Dataset of the finished trials. evaluations: of designs.
+    seconds: of the search, s.
+
+    Source: conclusion 1.
     """
 
     hexapod: Hexapod
@@ -101,16 +105,18 @@ def optimise(
     study: str | Path | None = None,
     **options: Any,
 ) -> OptimalDesign:
-    """The design with the highest objective: `LeastIndex` at a pose (default: home) or over a workspace, `MeanIndex`
-    over a path, or, for comparison, `Dexterity`.
+    """The design with the highest objective (rad/s), within bounds and constraints.
 
-    variables: `Variable` and `JointCircle`. constraints: such as `Footprint` or `Stroke`. trials: of the global search
-    (0: gradients from the start only). start: values by name, in the keys' units; default: the design's own. study: an
-    SQLite file; the search goes on from what is in it, and other processes may work on it at once.
-    Options: joint, seed=0, sampler="tpe" or "sobol", points=4096 poses a trial, verify=131072 poses of the last sweep,
-    threads, progress, stop.
-    Raises ArgumentError for contradictory bounds, InfeasibleError for a given start that breaks a constraint and where
-    no design that keeps them all was found, OutputError for a study file of another design or problem.
+    variables: `Variable` and `JointCircle`. objective: `LeastIndex` at a pose (default: home) or over a workspace,
+    `MeanIndex` over a path, or, for comparison, `Dexterity`. constraints: such as `Footprint` or `Stroke`. trials: of
+    the global search (0: gradients from the start only). start: values by name, in the keys' units; default: the
+    design's own. study: an SQLite file; the search goes on from what is in it, and other processes may work on it at
+    once. Options: joint, seed=0, sampler="tpe" or "sobol", points=4096 poses a trial, verify=131072 poses of the last
+    sweep, threads, progress, stop.
+
+    Raises: ArgumentError for contradictory bounds; InfeasibleError for a given start that breaks a constraint and where
+    no design that keeps them all was found; OutputError for a study file of another design or problem.
+    Source: conclusion 1; J. Bergstra and others (2011) for the trials, D. Kraft (1988) for the gradients.
     """
     began = perf_counter()
     settings = Settings(**options)

@@ -29,10 +29,13 @@ _HOPELESS = 1e12  # of what is made small, where a design has none
 
 @dataclass(frozen=True, eq=False)
 class ParetoFront:
-    """Designs from the least of `against` to the highest index. index: (m,) rad/s, verified; against: (m,) SI.
+    """Designs from the least of `against` to the highest index.
 
-    variables: (m, n), SI; names: of the variables. start: (index, against) of the design one began with. name, unit: of
-    `against`. history: Dataset of all finished trials.
+    designs: m hexapods. index: (m,) rad/s, verified. against: (m,), SI. variables: (m, n), SI; names: of the variables.
+    start: (index, against) of the design one began with. name, unit: of `against`. history: Dataset of all finished
+    trials.
+
+    Source: conclusion 1.
     """
 
     designs: tuple[Hexapod, ...]
@@ -62,14 +65,16 @@ def pareto_front(
 
     What `against` measures is made small (its bound, if it has one, is kept as well). trials: of a genetic search
     (NSGA-II) that may be stopped, resumed and shared as that of `optimise`. refine: so many points along its front are
-    then improved by gradients, each with its own value of `against` as a bound. Options and errors as for `optimise`.
+    then improved by gradients, each with its own value of `against` as a bound. variables, objective, constraints,
+    study and options: as for `optimise`.
+
+    Raises: ArgumentError, InfeasibleError and OutputError as `optimise`.
+    Source: conclusion 1; NSGA-II after K. Deb and others (2002).
     """
     settings = Settings(**options)
     aim = LeastIndex() if objective is None else objective
     if not isinstance(against, Constraint) or not hasattr(against, "most"):
-        raise ArgumentError(
-            f"against is {against!r}; it must be a constraint with an upper bound, such as TotalMass()."
-        )
+        raise ArgumentError(f"against is {against!r}; it must be a constraint with an upper bound, as TotalMass().")
     problem = Problem(hexapod, variables, aim, [*constraints, against], settings.joint, settings.threads)
     traded = problem.requirements[-1]
     if against.most is None:

@@ -35,7 +35,11 @@ class Places(Protocol):
 
 
 class Workspace:
-    """All poses of a box, in the base frame, or (from_home) measured from the design's home pose."""
+    """All poses of a box (m, rad), in the base frame, or (from_home) measured from the design's home pose.
+
+    Raises: ArgumentError for what is no Box; PoseError for a box without extent.
+    Source: own.
+    """
 
     def __init__(self, box: Box, from_home: bool = False) -> None:
         if not isinstance(box, Box):
@@ -56,7 +60,7 @@ class Workspace:
         return Box(*zip(self._box.low + origin, self._box.high + origin, strict=True))
 
     def rows(self, home: Array, count: int, seed: int = 0) -> Array:
-        """The corners and the middle of the box, where extremes often are, then a Sobol sequence."""
+        """The corners and the middle of the box, where extremes often are, then a Sobol sequence: (n, 6) m and rad."""
         box = self.box(home)
         free = np.flatnonzero(box.high > box.low)
         middle = (box.low + box.high) / 2

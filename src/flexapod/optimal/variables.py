@@ -35,7 +35,9 @@ class Variable:
     targets: a key of the design file with indices, counted from 0 (`[:]` is all), in the key's unit; several keys that
     are kept equal; or keys with the factor that each has of the variable (ties). low, high: bounds, in the first key's
     unit; for kind="scale" a ratio. kind: the entries are the variable ("set"), or what they were plus it ("add") or
-    times it ("scale"). log: search its logarithm, for what spans decades.
+    times it ("scale"). name: in results; default: the key. log: search its logarithm, for what spans decades.
+
+    Source: own.
     """
 
     targets: str | Sequence[str] | Mapping[str, float]
@@ -46,7 +48,10 @@ class Variable:
     log: bool = False
 
     def parts(self, hexapod: Hexapod) -> list[Part]:
-        """The map of this variable for a design. Raises ArgumentError for what cannot be one."""
+        """The map of this variable for a design.
+
+        Raises: ArgumentError for what cannot be a variable of the design.
+        """
         if self.kind not in ("set", "add", "scale"):
             raise ArgumentError(f"{self._name}: kind is {self.kind!r}; it must be 'set', 'add' or 'scale'.")
         factors = self._factors()
@@ -104,10 +109,12 @@ class Variable:
 class JointCircle:
     """The six joints of a plate as three mirror-symmetric pairs, 120 degrees apart on a circle about its z axis.
 
-    radius m, half_angle rad (between a joint and the middle of its pair), turn rad (of the first pair's middle from x),
-    height m: a pair (least, most) makes a variable, a number holds it, None holds what the design has (the mean over
-    its joints, if they are not on such a circle). Which legs form a pair is read from the design's joints. On the base,
-    universal joint axes become tangents of the circle unless axes="keep".
+    plate: "base" or "platform". radius m, half_angle rad (between a joint and the middle of its pair), turn rad (of the
+    first pair's middle from x), height m: a pair (least, most) makes a variable, a number holds it, None holds what the
+    design has (the mean over its joints, if they are not on such a circle). Which legs form a pair is read from the
+    design's joints. On the base, universal joint axes become tangents of the circle unless axes="keep".
+
+    Source: own.
     """
 
     plate: Literal["base", "platform"]
@@ -118,7 +125,10 @@ class JointCircle:
     axes: Literal["tangent", "keep"] = "tangent"
 
     def parts(self, hexapod: Hexapod) -> list[Part]:
-        """The map of this circle for a design. Raises ArgumentError for what cannot be one."""
+        """The map of this circle for a design.
+
+        Raises: ArgumentError for what cannot be a circle of the design.
+        """
         if self.plate not in ("base", "platform"):
             raise ArgumentError(f"a joint circle is on {self.plate!r}; it must be on 'base' or 'platform'.")
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints

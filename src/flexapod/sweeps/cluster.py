@@ -96,7 +96,10 @@ def _knock(address: str, timeout: float) -> None:
 def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
     """The cluster of the Dask scheduler at an address such as tcp://host:8786; "local" starts one on this machine.
 
-    Raises ClusterError where no scheduler answers within `timeout` seconds, or where it has no worker.
+    timeout: s. To be used in a `with` statement.
+
+    Raises: ClusterError where no scheduler answers within `timeout` seconds, or where it has no worker.
+    Source: own, with Dask.
     """
     try:
         from distributed import Client, LocalCluster

@@ -27,14 +27,17 @@ def sweep(
     joint: JointModel = "universal",
     threads: int | None = None,
 ) -> xr.Dataset:
-    """Quantities at every pose of a set: `random_poses`, `low_discrepancy`, `pose_grid`, `pose_path`, a batch `Pose`,
-    or rows (..., 6) of x, y, z (m), roll, pitch, yaw (rad).
+    """Quantities at every pose of a set, as a Dataset in SI units with a status for each pose.
 
-    quantities: of `omega_1`, `omega`, `cond_H`, `leg_length`, `universal_angle`, `spherical_angle`, `leg_distance`,
-    `leg_force`, `lowest_stiffness`, `within_limits`. threads: default all cores; the numbers do not depend on it.
-    A pose that cannot be computed is NaN, with the reason in `status` (flag_values, flag_meanings); a singular one has
-    omega_1 zero to rounding. The pose coordinates of an array are views of it, not copies. The axes of a grid are
-    dimensions. Frequencies are in rad/s. Raises PoseError for wrong or empty sets, or when no pose is finite.
+    poses: `random_poses`, `low_discrepancy`, `pose_grid`, `pose_path`, a batch `Pose`, or rows (..., 6) of x, y, z (m),
+    roll, pitch, yaw (rad). quantities: of `omega_1`, `omega`, `cond_H`, `leg_length`, `universal_angle`,
+    `spherical_angle`, `leg_distance`, `leg_force`, `lowest_stiffness`, `within_limits`. threads: default all cores; the
+    numbers do not depend on it. A pose that cannot be computed is NaN, with the reason in `status` (flag_values,
+    flag_meanings); a singular one has omega_1 zero to rounding. The pose coordinates of an array are views of it, not
+    copies. The axes of a grid are dimensions. Frequencies are in rad/s.
+
+    Raises: PoseError for wrong or empty sets, an unknown quantity, or when no pose is finite.
+    Source: Section 3, for any set of poses.
     """
     wanted = chosen(quantities)
     is_universal(joint)

@@ -51,7 +51,10 @@ class Progress(NamedTuple):
 
 
 class SweepStore:
-    """A sweep in a directory `path`, whole or in part. Made by `create` or `resume`; `run` computes what is missing."""
+    """A sweep in a directory `path`, whole or in part. Made by `create` or `resume`; `run` computes what is missing.
+
+    Source: own.
+    """
 
     def __init__(self, job: Job, done: set[int]) -> None:
         self.job, self.done = job, done
@@ -67,10 +70,12 @@ class SweepStore:
         chunk: int | None = None,
         keep_poses: bool = True,
     ) -> SweepStore:
-        """An empty store. Raises OutputError where there is something already, or where nothing can be written.
+        """An empty store.
 
         chunk: poses in a block; default such that a block takes up to 64 MiB. keep_poses=False leaves out the pose
         coordinates of random and low-discrepancy sets, which `pose_of` can make again.
+
+        Raises: OutputError where there is something already, or where nothing can be written; PoseError as `sweep`.
         """
         points, wanted = pose_set(poses), chosen(quantities)
         is_universal(joint)
@@ -94,7 +99,7 @@ class SweepStore:
     ) -> SweepStore:
         """A store that was begun, to be gone on with.
 
-        Raises OutputError where the design, the poses, the quantities, the joint model or the processor's instructions
+        Raises: OutputError where the design, the poses, the quantities, the joint model or the processor's instructions
         are not those it was begun with, and names both.
         """
         points, wanted = pose_set(poses), chosen(quantities)
@@ -107,6 +112,7 @@ class SweepStore:
 
     @property
     def complete(self) -> bool:
+        """Whether every pose has been computed."""
         return len(self.done) == self.job.blocks.count
 
     def run(
@@ -115,9 +121,11 @@ class SweepStore:
         progress: Callable[[Progress], None] | None = None,
         stop: Callable[[], bool] | None = None,
     ) -> Progress:
-        """Compute what is missing, until all is done or `stop()` is true. Raises OutputError when the disk is full.
+        """Compute what is missing, until all is done or `stop()` is true.
 
         workers: how many threads of this process, default one a core; or those of a `flexapod.cluster`.
+
+        Raises: OutputError when the disk is full, or another run is writing; ClusterError when a cluster gives up.
         """
         cut = self.job.blocks
         todo = [number for number in range(cut.count) if number not in self.done]
@@ -343,9 +351,12 @@ def _locked(path: str) -> Iterator[None]:
 
 
 def open_sweep(path: str | Path) -> xr.Dataset:
-    """A stored sweep, whole or in part, as a Dataset; numbers are read from the disk when they are used.
+    """The stored sweep at `path`, whole or in part, as a Dataset in SI units; numbers are read when they are used.
 
-    Poses not computed yet are NaN and have the status `pending`. Raises OutputError where there is no such store.
+    Poses not computed yet are NaN and have the status `pending`.
+
+    Raises: OutputError where there is no such store.
+    Source: own.
     """
     import xarray as xr
 

@@ -50,9 +50,12 @@ class Above(NamedTuple):
 class SweepSummary(NamedTuple):
     """Numbers of a sweep. Poses whose index is NaN count in `statuses` only; cond(H) is NaN where it was not swept.
 
-    worst, best: least and largest omega_1. best_conditioned, worst_conditioned: least and largest cond(H).
-    quantiles: of omega_1, rad/s. correlation: Spearman's, of omega_1 with cond(H). spread: over bands of equal
-    cond(H), the median of the ratio between the 95 % and 5 % quantiles of omega_1.
+    poses: how many. statuses: poses by status. worst, best: least and largest omega_1. best_conditioned,
+    worst_conditioned: least and largest cond(H). quantiles: of omega_1, rad/s. above: the part that has a wanted index,
+    and its volume. correlation: Spearman's, of omega_1 with cond(H). spread: over bands of equal cond(H), the median of
+    the ratio between the 95 % and 5 % quantiles of omega_1.
+
+    Source: Section 3; the rank correlation is Spearman's (1904).
     """
 
     poses: int
@@ -74,7 +77,9 @@ def summarise(sweep: xr.Dataset, at_least: float | None = None) -> SweepSummary:
     least and the largest value, and the correlation and the spread come from ranks in 1024 bands. Standard errors are
     those of random poses; the even ones of grids and low-discrepancy sets do better. Volumes are in the pose
     coordinates, m and rad.
-    Raises PoseError where no pose has an index.
+
+    Raises: PoseError where no pose has an index, or the sweep holds none.
+    Source: Section 3.
     """
     if "omega_1" not in sweep:
         raise PoseError("a summary needs the quantity omega_1. Sweep it.")

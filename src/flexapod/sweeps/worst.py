@@ -24,10 +24,12 @@ class WorstPose(NamedTuple):
     """Where the index is least in a box, and how sure that is.
 
     pose: x, y, z m, roll, pitch, yaw rad (`flexapod.Pose.from_rpy(*pose)`). omega_1: rad/s, there; zero where the box
-    holds a singular pose. gradient: of omega_1 by the six coordinates, rad/s per m and per rad; at the least it is
-    zero but for coordinates in `at_bounds`, where it points out of the box. starts, agreed: how many searches were made
-    and how many ended at this index. minima: index and pose of every distinct local minimum found, least first.
-    sampled: least index of the sweep that gave the starts.
+    holds a singular pose (singular). gradient: of omega_1 by the six coordinates, rad/s per m and per rad; at the least
+    it is zero but for coordinates in `at_bounds`, where it points out of the box. starts, agreed: how many searches
+    were made and how many ended at this index. minima: index and pose of every distinct local minimum found, least
+    first. sampled: least index of the sweep that gave the starts.
+
+    Source: own.
     """
 
     pose: Array
@@ -53,9 +55,11 @@ def worst_pose(
     """The pose of a box with the least stability index (rad/s).
 
     A Sobol sweep of `points` poses gives `starts` low poses apart from one another; from each, L-BFGS-B descends on
-    omega_1^2 with exact derivatives. The lowest of several frequencies that meet is never least where they meet
-    (it has a ridge there), so that the descent passes repeated frequencies; squared, it is smooth at a singular pose.
-    Raises PoseError for a box without extent, or in which no pose can be computed.
+    omega_1^2 with exact derivatives. The lowest of several frequencies that meet is never least where they meet (it has
+    a ridge there), so that the descent passes repeated frequencies; squared, it is smooth at a singular pose.
+
+    Raises: PoseError for a box without extent, or in which no pose can be computed.
+    Source: own, with L-BFGS-B (R. H. Byrd, P. Lu, J. Nocedal and C. Zhu, 1995).
     """
     universal = is_universal(joint)
     free = box.high > box.low
