@@ -39,8 +39,11 @@ def read_joints(path: str | Path, home: Pose | None = None) -> dict[str, Array |
     `bx`), and either `platform_x`, ... (`px`) in the platform frame, or `home_x`, ... (`hx`): the platform joints where
     they stand at home, in the base frame, which needs `home`. `axis_x`, ... (`kx`) are the universal joints' axes; left
     out, they become tangent to the base circle. Lengths are in m unless the column says otherwise: `base_x_mm` or
-    `Base X [mm]`. Semicolons and tabs separate as well, and then numbers may have decimal commas. Lines that begin with
-    # and columns name, note, comment, part are left out. Raises DesignError that names the line, column and value.
+    `Base X [mm]`. Semicolons and tabs separate as well, and then numbers may have decimal commas. Lines that begin
+    with `#` and columns name, note, comment, part are left out. path: of the file.
+
+    Raises: DesignError, with the line, the column and the value, for what is not six legs.
+    Source: own.
     """
     file = Path(path)
     try:

@@ -22,6 +22,9 @@ def nearest_physical(hexapod: Hexapod) -> Hexapod:
     Where it is not, its eigenvalues are raised to a millionth of the largest (a sheet gets a thickness of a thousandth
     of its width, a thin rod a radius), the smallest change in the sum of squares that gives such moments. Leg parts
     without mass get a ten-thousandth of the platform's.
+
+    Raises: nothing of its own.
+    Source: own.
     """
     changes: dict[str, Any] = {}
     reach = float(np.ptp(np.concatenate([hexapod.base_joints, hexapod.platform_joints]), axis=0).max())
