@@ -14,63 +14,66 @@ import mujoco
 import numpy as np
 
 import flexapod as fx
+from benchmarks._vibration import WANTED, Vibration, machine, ring, vibration
 
-PERIODS = 10
-WANTED = 0.01
+INTEGRATORS = ("Euler", "implicitfast", "RK4")
 STEPS = (1e-4, 5e-5, 3e-5, 2e-5, 1e-5, 5e-6)  # s; it is not stable at 2e-4
-
-
-def machine() -> tuple[fx.Hexapod, fx.Pose]:
-    """Manipulator II with leg parts that a rigid body can have."""
-    small = 1e-5 * np.eye(3)
-    hexapod = fx.load("mukherjee-ii").replace({"legs.lower.inertia": small, "legs.upper.inertia": small})
-    return hexapod, fx.home_pose(hexapod)
 
 
 def main() -> None:
     """Print the first step that is good enough, for the lowest and the highest mode."""
     hexapod, pose = machine()
-    for integrator in ("Euler", "implicitfast", "RK4"):
+    for integrator in INTEGRATORS:
         for mode, name in ((0, "lowest"), (5, "highest")):
+            v = vibration(hexapod, pose, mode)
             for step in STEPS:
-                error, seconds = trial(hexapod, pose, integrator, step, mode)
+                error = ring(ringing(v, integrator, step), step)[0] / v.omega - 1
                 if abs(error) < WANTED:
                     break
+            seconds = Simulation(v, integrator, step).cpu_seconds() / v.duration
             print(
                 f"  MuJoCo {integrator:12s} {name:7s} frequency off by {error:+.1%} at {step:g} s: "
                 f"{seconds:.3f} s per simulated second"
             )
 
 
-def trial(hexapod: fx.Hexapod, pose: fx.Pose, integrator: str, step: float, mode: int) -> tuple[float, float]:
-    """Relative error of a natural frequency, and CPU time per simulated second."""
-    modes = fx.linearise(hexapod, pose).modes()
-    omega, shape = float(modes.omega[mode]), modes.shape[:, mode].real
-    J = fx.equations_of_motion(hexapod, pose).J_p
-    model = mujoco.MjModel.from_xml_string(_xml(hexapod, pose, integrator, step))
-    data = mujoco.MjData(model)
-    data.xfrc_applied[model.body("platform").id] = 1e-6 * omega**2 * (J @ shape)
-    weights = J @ shape
-    mujoco.mj_forward(model, data)
-    duration = max(PERIODS * 2 * np.pi / omega, 0.02)
-    seen = np.empty(round(duration / step))
-    began = time.process_time()
+class Simulation:
+    """The experiment in MuJoCo, from rest."""
+
+    def __init__(self, v: Vibration, integrator: str, step: float) -> None:
+        self.model = model(v.hexapod, v.pose, integrator, step)
+        self.data = mujoco.MjData(self.model)
+        self.steps = round(v.duration / step)
+        self.wrench = v.wrench
+
+    def start(self) -> None:
+        """Back to rest, with the wrench."""
+        mujoco.mj_resetData(self.model, self.data)
+        self.data.xfrc_applied[self.model.body("platform").id] = self.wrench
+        mujoco.mj_forward(self.model, self.data)
+
+    def cpu_seconds(self) -> float:
+        """Of the whole experiment, with nothing recorded."""
+        self.start()
+        began = time.process_time()
+        mujoco.mj_step(self.model, self.data, self.steps)
+        return time.process_time() - began
+
+
+def ringing(v: Vibration, integrator: str, step: float) -> Any:
+    """What the mode's weights see after every step."""
+    run = Simulation(v, integrator, step)
+    run.start()
+    seen, qpos = np.empty(run.steps), run.data.qpos
     for i in range(seen.size):
-        mujoco.mj_step(model, data)
-        moved = np.concatenate([data.qpos[:3] - pose.position, 2 * data.qpos[4:7]])  # small angles
-        seen[i] = moved @ weights
-    seconds = (time.process_time() - began) / duration
-    return _frequency(seen, step) / omega - 1, seconds
+        mujoco.mj_step(run.model, run.data)
+        seen[i] = np.concatenate([qpos[:3] - v.pose.position, 2 * qpos[4:7]]) @ v.weights  # small angles
+    return seen
 
 
-def _frequency(seen: Any, step: float) -> float:
-    """Angular frequency from the first to the last upward crossing of the mean."""
-    x = seen - seen.mean()
-    up = np.flatnonzero((x[:-1] < 0) & (x[1:] >= 0))
-    if up.size < 3 or not np.isfinite(x).all():
-        return np.nan
-    at = up - x[up] / (x[up + 1] - x[up])
-    return 2 * np.pi * (up.size - 1) / ((at[-1] - at[0]) * step)
+def model(hexapod: fx.Hexapod, pose: fx.Pose, integrator: str, step: float) -> mujoco.MjModel:
+    """The machine at rest at a pose."""
+    return mujoco.MjModel.from_xml_string(_xml(hexapod, pose, integrator, step))
 
 
 def _xml(hexapod: fx.Hexapod, pose: fx.Pose, integrator: str, step: float) -> str:
