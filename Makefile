@@ -7,7 +7,7 @@ OUT    ?= out
 
 CORE := CMakeLists.txt $(wildcard src/core/*)
 
-.PHONY: report test build lint types bench clean web web-check
+.PHONY: report test build lint types bench bench-readme clean web web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
@@ -24,8 +24,11 @@ lint: build
 types: build
 	$(BIN)/mypy
 
-bench: build ## ratios from one interleaved run
+bench: $(VENV)/.bench ## Flexapod and other tools: one table, one figure, ratios from one interleaved run
 	$(BIN)/python -m benchmarks
+
+bench-readme: bench ## the same into benchmarks/README.md
+	$(BIN)/python -m benchmarks --update --redraw out/benchmarks/results.json
 
 WEB := web/package.json web/package-lock.json web/index.html web/vite.config.ts web/tsconfig.json \
        $(wildcard web/src/* web/public/*)
@@ -53,6 +56,10 @@ $(VENV)/.tools: pyproject.toml constraints.txt
 # An editable install: Python sources are used in place, the core is rebuilt only when it changes.
 $(VENV)/.built: $(VENV)/.tools $(CORE)
 	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[test,lint]'
+	touch $@
+
+$(VENV)/.bench: $(VENV)/.built
+	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[bench]'
 	touch $@
 
 clean:

@@ -1,9 +1,7 @@
 """MuJoCo on manipulator II: the step it needs for natural frequencies to 1 %, and its time then.
 
-The model is that of `fx.write_mjcf` without its drawing, constraints as stiff as the step allows. The appendix's leg
-inertias, which no rigid body has and MuJoCo refuses, are replaced by the nearest ones in both codes, and the spherical
-joints' friction, for which MuJoCo needs six more bodies, is left out. A constant wrench along a mode is put on the
-resting machine; the frequency is that of what follows.
+The model is that of `fx.write_mjcf` without its drawing, constraints as stiff as the step allows. A constant wrench along
+a mode is put on the resting machine; the frequency is that of what follows.
 """
 
 from __future__ import annotations
@@ -15,24 +13,15 @@ import mujoco
 import numpy as np
 
 import flexapod as fx
+from benchmarks._vibration import WANTED, Vibration, machine, ring, vibration
 from flexapod.interchange.mjcf import mjcf
-
-PERIODS = 10
-WANTED = 0.01
-STEPS = (1e-4, 5e-5, 3e-5, 2e-5, 1e-5, 5e-6)  # s; it is not stable at 2e-4
-
 
 INTEGRATORS = {
     "Euler": mujoco.mjtIntegrator.mjINT_EULER,
     "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
     "RK4": mujoco.mjtIntegrator.mjINT_RK4,
 }
-
-
-def machine() -> tuple[fx.Hexapod, fx.Pose]:
-    """Manipulator II with leg parts that a rigid body can have."""
-    hexapod = fx.nearest_physical(fx.load("mukherjee-ii")).replace({"legs.damping.spherical": 0.0})
-    return hexapod, fx.home_pose(hexapod)
+STEPS = (1e-4, 5e-5, 3e-5, 2e-5, 1e-5, 5e-6)  # s; it is not stable at 2e-4
 
 
 def main() -> None:
@@ -40,52 +29,58 @@ def main() -> None:
     hexapod, pose = machine()
     for integrator in INTEGRATORS:
         for mode, name in ((0, "lowest"), (5, "highest")):
+            v = vibration(hexapod, pose, mode)
             for step in STEPS:
-                error, seconds = trial(hexapod, pose, integrator, step, mode)
+                error = ring(ringing(v, integrator, step), step)[0] / v.omega - 1
                 if abs(error) < WANTED:
                     break
+            seconds = Simulation(v, integrator, step).cpu_seconds() / v.duration
             print(
                 f"  MuJoCo {integrator:12s} {name:7s} frequency off by {error:+.1%} at {step:g} s: "
                 f"{seconds:.3f} s per simulated second"
             )
 
 
-def trial(hexapod: fx.Hexapod, pose: fx.Pose, integrator: str, step: float, mode: int) -> tuple[float, float]:
-    """Relative error of a natural frequency, and CPU time per simulated second."""
-    modes = fx.linearise(hexapod, pose).modes()
-    omega, shape = float(modes.omega[mode]), modes.shape[:, mode].real
-    J = fx.equations_of_motion(hexapod, pose).J_p
-    model = _model(mjcf(hexapod, pose, step))
-    model.opt.integrator = INTEGRATORS[integrator]
-    data = mujoco.MjData(model)
-    at = model.joint("platform").qposadr[0]
-    data.xfrc_applied[model.body("platform").id] = 1e-6 * omega**2 * (J @ shape)
-    weights = J @ shape
-    mujoco.mj_forward(model, data)
-    duration = max(PERIODS * 2 * np.pi / omega, 0.02)
-    seen = np.empty(round(duration / step))
-    began = time.process_time()
+class Simulation:
+    """The experiment in MuJoCo, from rest."""
+
+    def __init__(self, v: Vibration, integrator: str, step: float) -> None:
+        self.model = model(v.hexapod, v.pose, integrator, step)
+        self.data = mujoco.MjData(self.model)
+        self.steps = round(v.duration / step)
+        self.wrench = v.wrench
+
+    def start(self) -> None:
+        """Back to rest, with the wrench."""
+        mujoco.mj_resetData(self.model, self.data)
+        self.data.xfrc_applied[self.model.body("platform").id] = self.wrench
+        mujoco.mj_forward(self.model, self.data)
+
+    def cpu_seconds(self) -> float:
+        """Of the whole experiment, with nothing recorded."""
+        self.start()
+        began = time.process_time()
+        mujoco.mj_step(self.model, self.data, self.steps)
+        return time.process_time() - began
+
+
+def ringing(v: Vibration, integrator: str, step: float) -> Any:
+    """What the mode's weights see after every step."""
+    run = Simulation(v, integrator, step)
+    run.start()
+    at = run.model.joint("platform").qposadr[0]
+    seen, qpos = np.empty(run.steps), run.data.qpos[at : at + 7]
     for i in range(seen.size):
-        mujoco.mj_step(model, data)
-        moved = np.concatenate([data.qpos[at : at + 3] - pose.position, 2 * data.qpos[at + 4 : at + 7]])  # small angles
-        seen[i] = moved @ weights
-    seconds = (time.process_time() - began) / duration
-    return _frequency(seen, step) / omega - 1, seconds
+        mujoco.mj_step(run.model, run.data)
+        seen[i] = np.concatenate([qpos[:3] - v.pose.position, 2 * qpos[4:7]]) @ v.weights  # small angles
+    return seen
 
 
-def _model(text: str) -> Any:
-    """The model without the shapes that are only looked at."""
-    spec = mujoco.MjSpec.from_string(text)
+def model(hexapod: fx.Hexapod, pose: fx.Pose, integrator: str, step: float) -> mujoco.MjModel:
+    """The machine at rest at a pose, without the shapes that are only looked at."""
+    spec = mujoco.MjSpec.from_string(mjcf(hexapod, pose, step))
     for geom in list(spec.geoms):
         spec.delete(geom)
-    return spec.compile()
-
-
-def _frequency(seen: Any, step: float) -> float:
-    """Angular frequency from the first to the last upward crossing of the mean."""
-    x = seen - seen.mean()
-    up = np.flatnonzero((x[:-1] < 0) & (x[1:] >= 0))
-    if up.size < 3 or not np.isfinite(x).all():
-        return np.nan
-    at = up - x[up] / (x[up + 1] - x[up])
-    return 2 * np.pi * (up.size - 1) / ((at[-1] - at[0]) * step)
+    found = spec.compile()
+    found.opt.integrator = INTEGRATORS[integrator]
+    return found

@@ -13,10 +13,11 @@ from statistics import median
 import numpy as np
 
 import flexapod as fx
+from benchmarks._contest import OURS, Contender, Contest, Plan, cpu_seconds
+from benchmarks._vibration import machine, vibration
 from flexapod import _core
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
-from engine import bench_constraint_dynamics
 from states import draw_state
 
 LIMIT = 1.5  # us
@@ -39,6 +40,52 @@ def core_call(hexapod: fx.Hexapod):
     return lambda: _core.forward_dynamics(hexapod.packed, True, *rows)
 
 
+def contests(plan: Plan) -> list[Contest]:
+    """Forward dynamics of one machine, whose legs all tools can have: inside the core, and by one call from Python."""
+    hexapod, pose = machine()
+    force = 3.0 * hexapod.platform_mass * np.array([1.0, 2.0, -1.0, 0.5, -0.3, 1.5])
+    core, calls = core_call(hexapod), plan.size(100, 2)
+    own = cpu_seconds(lambda: fx.forward_dynamics(hexapod, fx.Motion(pose), leg_force=force), repeats=calls)
+    contenders = [
+        Contender(OURS, "flexapod", "in the core, many states a call", cpu_seconds(core, STATES * COPIES)),
+        Contender(OURS, "flexapod", "fx.forward_dynamics, one state a call", own),
+    ]
+    if plan.has("pin"):
+        contenders.append(_pinocchio(hexapod, pose, calls))
+    if plan.has("mujoco"):
+        contenders.append(_mujoco(hexapod, pose, calls))
+    return [Contest("Equations of motion", "state", "acceleration of the platform, relative", contenders)]
+
+
+def _pinocchio(hexapod: fx.Hexapod, pose: fx.Pose, calls: int) -> Contender:
+    from benchmarks._pinocchio import bench_constraint_dynamics
+
+    bench = bench_constraint_dynamics(hexapod, pose)
+    motion = fx.Motion(pose, bench.velocity[:3], bench.velocity[3:])
+    ours = np.concatenate(fx.forward_dynamics(hexapod, motion, leg_force=bench.leg_force))
+    error = float(np.linalg.norm(bench.acceleration - ours) / np.linalg.norm(ours))
+    call = cpu_seconds(bench.run, repeats=calls)
+    return Contender("Pinocchio", "pin", "constraintDynamics, a call", call, error, 1e-8)
+
+
+def _mujoco(hexapod: fx.Hexapod, pose: fx.Pose, calls: int) -> Contender:
+    """At rest, with a wrench of a few times the weight. Its closures are stiff, not rigid: it agrees to a per cent."""
+    import mujoco
+
+    from benchmarks._mujoco import STEPS, Simulation
+
+    weight, size = 9.81 * hexapod.platform_mass, float(np.linalg.norm(hexapod.platform_joints[0]))
+    force, moment = 3 * weight * np.array([1.0, -2.0, 0.5]), 3 * weight * size * np.array([0.5, -0.3, 1.0])
+    wrench = np.concatenate([force, moment])
+    run = Simulation(vibration(hexapod, pose, 0)._replace(wrench=wrench), "Euler", STEPS[-1])
+    run.start()
+    holding = fx.hold(hexapod, pose).leg_force
+    ours = np.concatenate(fx.forward_dynamics(hexapod, fx.Motion(pose), leg_force=holding, force=force, moment=moment))
+    error = float(np.linalg.norm(run.data.qacc[:6] - ours) / np.linalg.norm(ours))
+    call = cpu_seconds(lambda: mujoco.mj_forward(run.model, run.data), repeats=calls)
+    return Contender("MuJoCo", "mujoco", "mj_forward, a call, soft closures", call, error, 0.01)
+
+
 def microseconds(call, times: int = 1) -> float:
     """Wall time of a call, the mean of some."""
     start = time.perf_counter()
@@ -49,6 +96,8 @@ def microseconds(call, times: int = 1) -> float:
 
 def main() -> None:
     """Print both times of every machine and their ratio, taken turn by turn."""
+    from benchmarks._pinocchio import bench_constraint_dynamics
+
     print(
         f"{'machine':14s} {'flexapod least':>15s} {'median':>8s} {'pinocchio least':>16s} {'median':>8s} {'ratio':>6s}"
     )

@@ -11,6 +11,8 @@ import time
 import numpy as np
 
 import flexapod as fx
+from benchmarks._arrays import array_matrices
+from benchmarks._contest import OURS, Contender, Contest, Plan, cpu_seconds
 from flexapod.optimal.finish import finish
 from flexapod.optimal.problem import Problem
 from flexapod.optimal.search import Study
@@ -38,45 +40,29 @@ def numpy_index(hexapod: fx.Hexapod, rows: np.ndarray) -> float:
     """The least index of poses (n, 6) by NumPy alone: J_p of platform and legs, H, eigenvalues of J_p^-1 H K H^T."""
     least = np.inf
     for first in range(0, len(rows), BLOCK):
-        J, H = numpy_matrices(hexapod, rows[first : first + BLOCK])
+        J, H = array_matrices(np, hexapod, rows[first : first + BLOCK])
         L = np.linalg.inv(np.linalg.cholesky(J))
         B = L @ H * np.sqrt(hexapod.legs.stiffness)
         least = min(least, float(np.linalg.eigvalsh(B @ B.swapaxes(1, 2))[:, 0].min()))
     return float(np.sqrt(max(least, 0.0)))
 
 
-def numpy_matrices(hexapod: fx.Hexapod, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """J_p and H, (n, 6, 6), from the partial velocities of the legs' parts."""
-    R = fx.Pose.from_rpy(*rows.T).matrix
-    q = hexapod.platform_joints @ R.swapaxes(1, 2)
-    S = rows[:, None, :3] + q - hexapod.base_joints
-    length = np.linalg.norm(S, axis=2, keepdims=True)
-    s, k = S / length, hexapod.universal_axes
-    y = np.cross(k, s)
-    y /= np.linalg.norm(y, axis=2, keepdims=True)
-    axes = np.stack([s, y, np.cross(s, y)], axis=2)
-    n = np.cross(k, y)
-    P = np.eye(3) - s[..., None] * n[..., None, :] / (n * s).sum(axis=2)[..., None, None]
-    W = P @ skew(s) / length[..., None]
-    Q = np.zeros((*s.shape[:2], 3, 3))
-    for part, lower in ((hexapod.legs.lower, True), (hexapod.legs.upper, False)):
-        r = np.einsum("nlij,li->nlj", axes, part.mass_center) + (0 if lower else S)
-        G = -skew(r) @ W + (0 if lower else s[..., None] * s[..., None, :])
-        inertia = axes.swapaxes(2, 3) @ part.inertia @ axes
-        Q += part.mass[:, None, None] * G.swapaxes(2, 3) @ G + W.swapaxes(2, 3) @ inertia @ W
-    reach = np.concatenate([np.broadcast_to(np.eye(3), (*s.shape[:2], 3, 3)), -skew(q)], axis=3)
-    J = (reach.swapaxes(2, 3) @ Q @ reach).sum(axis=1)
-    center = R @ hexapod.platform_mass_center
-    body = np.concatenate([np.broadcast_to(np.eye(3), R.shape), -skew(center)], axis=2)
-    J += hexapod.platform_mass * body.swapaxes(1, 2) @ body
-    J[:, 3:, 3:] += R @ hexapod.platform_inertia @ R.swapaxes(1, 2)
-    return J, np.concatenate([s, np.cross(q, s)], axis=2).swapaxes(1, 2)
-
-
-def skew(v: np.ndarray) -> np.ndarray:
-    out = np.zeros((*v.shape, 3))
-    out[..., 0, 1], out[..., 0, 2], out[..., 1, 2] = -v[..., 2], v[..., 1], -v[..., 0]
-    return out - out.swapaxes(-1, -2)
+def contests(plan: Plan) -> list[Contest]:
+    """The least index over the workspace, which is what a trial of a worst-case design search has to find."""
+    poses = plan.size(POSES, 2000)
+    p = problem()
+    start = p.map.from_values({})
+    hexapod = p.map.hexapod_at(start)
+    rows = fx.low_discrepancy(p.box(hexapod), poses).rows(0, max(poses // SHARE, 100))
+    ours = float(fx.sweep(hexapod, rows, "omega_1").omega_1.values.min())
+    error = abs(numpy_index(hexapod, rows) / ours - 1)
+    trial = cpu_seconds(lambda: p.assess_at(start, poses), poses / 1e6)
+    theirs = cpu_seconds(lambda: numpy_index(hexapod, rows), len(rows) / 1e6)
+    contenders = [
+        Contender(OURS, "flexapod", f"{poses} poses, descent, stroke", trial),
+        Contender("NumPy + LAPACK", "numpy", "lowest frequencies alone", theirs, error, 1e-6),
+    ]
+    return [Contest("Worst case of a design", "million poses", "least frequency, relative", contenders)]
 
 
 def main() -> None:

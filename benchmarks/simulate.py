@@ -17,6 +17,9 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 import flexapod as fx
+from benchmarks._contest import OURS, Contender, Contest, Plan, cpu_seconds
+from benchmarks._machine import missing
+from benchmarks._vibration import WANTED, Vibration, machine, own_run, ring, vibration
 from flexapod.trajectory import Method, equations, integrate
 
 TURNS = 5
@@ -33,6 +36,95 @@ class Candidate(NamedTuple):
     solve: Callable[[float], Any]
 
 
+def contests(plan: Plan) -> list[Contest]:
+    """Manipulator II to nine digits against integrators, and to a per cent against other simulators."""
+    return [_against_integrators(plan), _against_simulators(plan)]
+
+
+PACKAGES = {"flexapod": "flexapod", "SciPy": "scipy", "SUNDIALS": "scikit-sundae"}
+TIMED = 0.2  # s simulated each turn of the simulators, once the step is found
+TOLD = {  # the candidates of the table of all tools, and in which words
+    "flexapod": "compiled",
+    "SciPy DOP853": "DOP853 on Flexapod's compiled equations",
+    "SciPy LSODA": "LSODA on the same",
+    "SUNDIALS Adams": "Adams on the same",
+    "SciPy DOP853, fx.forward_dynamics": "DOP853 around fx.forward_dynamics",
+}
+
+
+def _against_integrators(plan: Plan) -> Contest:
+    name = "mukherjee-ii"
+    hexapod, pose = fx.load(name), fx.Pose(MACHINES[name])
+    run = fx.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, fx.natural_modes(hexapod, pose).omega[2]))
+    found = {c.name: c for c in _candidates(run, plan.has("scikit-sundae"))}
+    contenders = []
+    for name, how in TOLD.items():
+        if name in found:
+            c = found[name]
+            tool = name.split()[0]
+            duration = c.duration / plan.size(1, 10)
+            error = _error(run, duration, c.solve(duration)) if contenders else None
+            timed = cpu_seconds(lambda c=c, T=duration: c.solve(T), duration)
+            contenders.append(Contender(OURS if tool == "flexapod" else tool, PACKAGES[tool], how, timed, error, 1e-4))
+    return Contest("Simulation, rtol 1e-9", "simulated second", "displacement at the end, relative", contenders)
+
+
+def _against_simulators(plan: Plan) -> Contest:
+    """Each with the largest step or tolerance that is good enough."""
+    hexapod, pose = machine()
+    trial = vibration(hexapod, pose, 5)
+    rtol, samples = 1e-4, 4000
+    times = np.linspace(0, trial.duration, samples + 1)
+    run, method = own_run(trial), Method(rtol=rtol, threads=1)
+    omega, own = ring(integrate([run], times, method=method).relative[0] @ trial.weights, times[1])
+    _, amplitude = ring(integrate([run], times).relative[0] @ trial.weights, times[1])
+    v = trial._replace(duration=TIMED / plan.size(1, 10))
+    timed = cpu_seconds(lambda: integrate([run], [v.duration], method=method, motions=False), v.duration)
+    error, how = abs(omega / trial.omega - 1), f"rtol {rtol:g}, {_lost(own / amplitude)}"
+    contenders = [Contender(OURS, "flexapod", how, timed, error, WANTED)]
+    if plan.has("mujoco"):
+        contenders.append(_mujoco(v, trial, amplitude))
+    if plan.has("exudyn"):
+        contenders.append(_exudyn(v, trial, amplitude))
+    return Contest("Simulation, fastest mode to 1 %", "simulated second", "frequency, relative", contenders)
+
+
+def _lost(share: float) -> str:
+    return f"amplitude off by {share - 1:+.1%}"
+
+
+def _mujoco(v: Vibration, trial: Vibration, amplitude: float) -> Contender:
+    from benchmarks import _mujoco
+
+    runs = []
+    for integrator in _mujoco.INTEGRATORS:
+        for step in _mujoco.STEPS:
+            omega, last = ring(_mujoco.ringing(trial, integrator, step), step)
+            if abs(omega / v.omega - 1) < WANTED:
+                run = _mujoco.Simulation(v, integrator, step)
+                how = f"{integrator}, {step:g} s a step, {_lost(last / amplitude)}"
+                runs.append((run.cpu_seconds(), run, how, abs(omega / v.omega - 1)))
+                break
+    _, run, how, error = min(runs, key=lambda r: r[0])
+    return Contender("MuJoCo", "mujoco", how, lambda: run.cpu_seconds() / v.duration, error, WANTED)
+
+
+def _exudyn(v: Vibration, trial: Vibration, amplitude: float) -> Contender:
+    from benchmarks._exudyn import STEPS, Machine
+
+    for step in STEPS:
+        recorded = Machine(v.hexapod, v.pose, v.wrench)
+        recorded.record()
+        recorded.simulate(trial.duration, step)
+        omega, last = ring(recorded.recorded() @ v.weights, step)
+        error = abs(omega / v.omega - 1)
+        if error < WANTED:
+            break
+    plain = Machine(v.hexapod, v.pose, v.wrench)
+    how = f"trapezoidal rule, {step:g} s a step, {_lost(last / amplitude)}"
+    return Contender("Exudyn", "exudyn", how, lambda: plain.simulate(v.duration, step) / v.duration, error, WANTED)
+
+
 def main() -> None:
     """Print a table for each machine."""
     for name, position in MACHINES.items():
@@ -40,19 +132,17 @@ def main() -> None:
         omega = fx.natural_modes(hexapod, pose).omega
         run = fx.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, omega[2]))
         print(f"{name}: modes {omega[0]:.4g} to {omega[-1]:.5g} rad/s, rtol {RTOL:g}")
-        _table(run, _candidates(run))
+        _table(run, _candidates(run, not missing("scikit-sundae")))
     print("mukherjee-ii with damped legs")
     _damped()
     _many()
-    try:
+    if not missing("mujoco"):
         from benchmarks import _mujoco
-    except ImportError:
-        print("MuJoCo: not installed")
-    else:
+
         _mujoco.main()
 
 
-def _candidates(run: fx.Run) -> list[Candidate]:
+def _candidates(run: fx.Run, sundials: bool) -> list[Candidate]:
     def flexapod(duration: float, **options: Any) -> Any:
         found = integrate([run], [duration], method=Method(rtol=RTOL, threads=1), motions=False, **options)
         return found.relative[0, 0]
@@ -60,7 +150,7 @@ def _candidates(run: fx.Run) -> list[Candidate]:
     eq = equations(run)
     y0, scale = eq.start(), _scale(run)
     candidates = [
-        Candidate("flexapod", 0.25, flexapod),
+        Candidate("flexapod", 0.5, flexapod),
         Candidate("flexapod with energy balance", 0.25, lambda T: flexapod(T, works=True)),
     ]
     written = _written_in_python(run)
@@ -81,7 +171,7 @@ def _candidates(run: fx.Run) -> list[Candidate]:
                 lambda T, m=method: solve_ivp(eq.rates, (0, T), y0, m, rtol=RTOL, atol=RTOL * scale).y[:6, -1],
             )
         )
-    return candidates + _sundials(eq, y0, scale)
+    return candidates + (_sundials(eq, y0, scale) if sundials else [])
 
 
 def _written_in_python(run: fx.Run) -> Callable[[float, Any], Any]:
@@ -114,11 +204,7 @@ def _scale(run: fx.Run) -> Any:
 
 
 def _sundials(eq: Any, y0: Any, scale: Any) -> list[Candidate]:
-    try:
-        from sksundae.cvode import CVODE
-    except ImportError:
-        print("SUNDIALS: not installed")
-        return []
+    from sksundae.cvode import CVODE
 
     def rates(t: float, y: Any, out: Any) -> None:
         out[:] = eq.rates(t, np.ascontiguousarray(y))

@@ -7,7 +7,10 @@ median what it took.
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from statistics import median
+
+from benchmarks._contest import OURS, Contender, Contest, Plan
 
 TURNS = 15
 LIMITS = {"import flexapod": 0.3, "flexapod modes": 0.6}  # s, what a user does not notice and does not mind
@@ -26,6 +29,29 @@ def seconds(command: list[str]) -> float:
     start = time.perf_counter()
     subprocess.run(command, check=True, capture_output=True)
     return time.perf_counter() - start
+
+
+OTHERS = {  # what a script of each must import to begin
+    "SciPy": ("scipy", "numpy, scipy.linalg"),
+    "Pinocchio": ("pin", "pinocchio"),
+    "MuJoCo": ("mujoco", "mujoco"),
+    "Exudyn": ("exudyn", "exudyn, exudyn.utilities"),
+    "JAX": ("jax", "jax, jax.numpy"),
+}
+
+
+def contests(plan: Plan) -> list[Contest]:
+    """A fresh process: Flexapod to its first result, the others to the end of their import."""
+    first = "import flexapod as fx; fx.natural_modes(fx.load('mukherjee-ii'), fx.Pose([0, 0, 0.085]))"
+    contenders = [Contender(OURS, "flexapod", "import, load a design, its natural frequencies", _script(first))]
+    for tool, (package, modules) in OTHERS.items():
+        if plan.has(package):
+            contenders.append(Contender(tool, package, f"import {modules}", _script(f"import {modules}")))
+    return [Contest("Start-up", "process", "", contenders)]
+
+
+def _script(code: str) -> Callable[[], float]:
+    return lambda: seconds([sys.executable, "-c", code])
 
 
 def main() -> None:

@@ -8,19 +8,17 @@ that counts) over what a loop of independent multiply-adds of the same vector wi
 
 import multiprocessing
 import os
-import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
-from pathlib import Path
 from statistics import median
 
 import numpy as np
 
 import flexapod as fx
+from benchmarks._arrays import array_modes
+from benchmarks._contest import OURS, Contender, Contest, Plan, cpu_seconds
 from flexapod import _core
-
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
 TURNS = 9
 KERNEL_POSES, BATCH_POSES, PINOCCHIO_POSES = 400_000, 4_000, 20
@@ -79,138 +77,89 @@ def _core_name() -> str:
     return _core.simd()
 
 
-# --- the same in arrays: NumPy, and JAX under jit(vmap) -------------------------------------------------------------
-
-
-def array_modes(xp, hexapod: fx.Hexapod, poses):
-    """J_p and H by matrices over the leading axes of `poses`, then LAPACK: (omega ascending, cond_H)."""
-    R = rotations(xp, poses[..., 3:])
-    q = xp.einsum("...ij,kj->...ki", R, xp.asarray(hexapod.platform_joints))
-    S = poses[..., None, :3] + q - xp.asarray(hexapod.base_joints)
-    L = xp.linalg.norm(S, axis=-1, keepdims=True)
-    s = S / L
-    y = xp.cross(xp.broadcast_to(xp.asarray(hexapod.universal_axes), s.shape), s)
-    y = y / xp.linalg.norm(y, axis=-1, keepdims=True)
-    axes = xp.stack([s, y, xp.cross(s, y)], axis=-1)  # leg axes as columns
-    H = xp.swapaxes(xp.concatenate([s, xp.cross(q, s)], axis=-1), -1, -2)
-    J = platform_matrix(xp, hexapod, R) + leg_matrices(xp, hexapod, axes, L[..., None], q)
-    root_K = np.sqrt(hexapod.legs.stiffness)
-    B = xp.linalg.solve(xp.linalg.cholesky(J), H * root_K)
-    sigma_H = xp.linalg.svd(H, compute_uv=False)
-    return xp.linalg.svd(B, compute_uv=False)[..., ::-1], sigma_H[..., 0] / sigma_H[..., -1]
-
-
-def leg_matrices(xp, hexapod, axes, L, q):
-    """The sum of the legs' inertias at the platform, from partial velocities in leg axes (universal joints)."""
-    k = xp.einsum("...lij,li->...lj", axes, xp.asarray(hexapod.universal_axes))  # k in leg axes: (k.s, 0, k.z)
-    tau = (k[..., 0] / k[..., 2])[..., None, None]
-    W = (tau * np.array([[0.0, 1, 0], [0, 0, 0], [0, 0, 0]]) + np.array([[0.0, 0, 0], [0, 0, -1], [0, 1, 0]])) / L
-    Q = 0.0
-    for part, moves in ((hexapod.legs.lower, 0.0), (hexapod.legs.upper, 1.0)):
-        G = moves * np.eye(3) - tilde(np, np.asarray(part.mass_center)) @ W
-        m = np.asarray(part.mass)[:, None, None]
-        Q = Q + m * (xp.swapaxes(G, -1, -2) @ G) + xp.swapaxes(W, -1, -2) @ (np.asarray(part.inertia) @ W)
-    Q = axes @ Q @ xp.swapaxes(axes, -1, -2)
-    qt = tilde(xp, q)
-    side = xp.concatenate([xp.broadcast_to(xp.eye(3), qt.shape), qt], axis=-2)
-    return (side @ Q @ xp.swapaxes(side, -1, -2)).sum(axis=-3)
-
-
-def platform_matrix(xp, hexapod, R):
-    M, r = hexapod.platform_mass, tilde(xp, R @ np.asarray(hexapod.platform_mass_center))
-    I = R @ np.asarray(hexapod.platform_inertia) @ xp.swapaxes(R, -1, -2) - M * r @ r
-    top = xp.concatenate([xp.broadcast_to(M * xp.eye(3), r.shape), -M * r], axis=-1)
-    return xp.concatenate([top, xp.concatenate([M * r, I], axis=-1)], axis=-2)
-
-
-def tilde(xp, a):
-    zero = xp.zeros_like(a[..., 0])
-    x, y, z = a[..., 0], a[..., 1], a[..., 2]
-    rows = ([zero, -z, y], [z, zero, -x], [-y, x, zero])
-    return xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)
-
-
-def rotations(xp, rpy):
-    (cr, cp, cy), (sr, sp, sy) = ([f(rpy[..., i]) for i in range(3)] for f in (xp.cos, xp.sin))
-    rows = (
-        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-        [-sp, cp * sr, cp * cr],
-    )
-    return xp.stack([xp.stack(row, axis=-1) for row in rows], axis=-2)
+# --- the same by others ----------------------------------------------------------------------------------------------
 
 
 def numpy_rate(hexapod, poses) -> float:
     return len(poses) / seconds(lambda: array_modes(np, hexapod, poses))
 
 
-def jax_contender(hexapod, poses) -> Callable[[], float] | None:
-    try:
-        import jax
-        import jax.numpy as jnp
-    except ImportError:
-        return None
+def jax_modes(hexapod) -> Callable:
+    """The same under jit(vmap), in double precision: waits for the result."""
+    import jax
+    import jax.numpy as jnp
+
     jax.config.update("jax_enable_x64", True)
     run = jax.jit(jax.vmap(lambda pose: array_modes(jnp, hexapod, pose)))
-    jax.block_until_ready(run(poses))  # compiles
-    return lambda: len(poses) / seconds(lambda: jax.block_until_ready(run(poses)))
+    return lambda poses: jax.block_until_ready(run(poses))
 
 
-# --- Pinocchio, pose by pose -----------------------------------------------------------------------------------------
+def jax_contender(hexapod, poses) -> Callable[[], float] | None:
+    try:
+        run = jax_modes(hexapod)
+    except ImportError:
+        return None
+    run(poses)  # compiles
+    return lambda: len(poses) / seconds(lambda: run(poses))
 
 
-class PinocchioModes:
-    """One model for all poses: fixed base, free platform, six universal and prismatic legs cut at the platform."""
+# --- for the table of all tools --------------------------------------------------------------------------------------
 
-    def __init__(self, hexapod) -> None:
-        import pinocchio as pin
-
-        from engine import _add_legs, _add_platform
-
-        self.pin, self.hexapod, self.model = pin, hexapod, pin.Model()
-        origin, home = fx.Pose([0, 0, 0]), fx.home_pose(hexapod)
-        _add_platform(self.model, hexapod, origin)
-        self.legs = _add_legs(self.model, hexapod, home, origin, parent=0)
-        self.data = self.model.createData()
-        self.home = self._leg_coordinates(home)
-
-    def _leg_coordinates(self, pose):
-        """Turn about k from a fixed direction, tilt, length; one row a leg."""
-        h = self.hexapod
-        S = pose.matrix @ h.platform_joints[..., None]
-        S = S[..., 0] + pose.position - h.base_joints
-        k = h.universal_axes
-        y = np.cross(k, S)
-        along = np.einsum("ij,ij->i", k, S)
-        fixed = np.cross(k, np.roll(k, 1, axis=1) + np.array([0.3, -0.2, 0.1]))
-        turn = np.arctan2(np.einsum("ij,ij->i", k, np.cross(fixed, y)), np.einsum("ij,ij->i", fixed, y))
-        return np.stack([turn, -np.arctan2(along, np.linalg.norm(y, axis=1)), np.linalg.norm(S, axis=1)], axis=1)
-
-    def __call__(self, six):
-        pin, model, data = self.pin, self.model, self.data
-        pose = fx.Pose.from_rpy(*six)
-        q = pin.neutral(model)
-        q[:7] = pin.SE3ToXYZQUAT(pin.SE3(np.array(pose.matrix), np.array(pose.position)))
-        q[7:] = (self._leg_coordinates(pose) - self.home).ravel()
-        mass = np.triu(pin.crba(model, data, q))
-        mass += np.triu(mass, 1).T
-        pin.computeJointJacobians(model, data, q)
-        pin.updateFramePlacements(model, data)
-        frame = [
-            [pin.getFrameJacobian(model, data, f, pin.LOCAL_WORLD_ALIGNED)[:3] for f in (leg.end, leg.socket)]
-            for leg in self.legs
-        ]
-        closure = np.vstack([end - socket for end, socket in frame])
-        allowed = np.zeros((24, 6))
-        allowed[:6] = np.kron(np.eye(2), pose.matrix.T)
-        allowed[6:] = np.linalg.solve(closure[:, 6:], -closure[:, :6] @ allowed[:6])
-        H = allowed[8::3].T  # rates of the prismatic joints
-        B = np.linalg.solve(np.linalg.cholesky(allowed.T @ mass @ allowed), H * np.sqrt(self.hexapod.legs.stiffness))
-        sigma_H = np.linalg.svd(H, compute_uv=False)
-        return np.linalg.svd(B, compute_uv=False)[::-1], sigma_H[0] / sigma_H[-1]
+BATCHES = (250, 1000, 4000, 16000)
 
 
-# --- the contest -----------------------------------------------------------------------------------------------------
+def contests(plan: Plan) -> list[Contest]:
+    """The lowest frequency and cond(H) of many poses, on one core."""
+    hexapod = fx.load("mukherjee-i")
+    poses, few = random_poses(plan.size(KERNEL_POSES, 4000)), random_poses(plan.size(PINOCCHIO_POSES, 4))
+    quantities = TASKS["omega_1 + cond_H"]
+    isa = _core.simd()
+    contenders = [
+        Contender(
+            OURS,
+            "flexapod",
+            f"fx.sweep, {len(poses)} poses, {isa}",
+            cpu_seconds(lambda: fx.sweep(hexapod, poses, quantities, threads=1), len(poses)),
+        ),
+        _batched(plan, hexapod, "NumPy + LAPACK", "numpy", lambda poses: array_modes(np, hexapod, poses)),
+    ]
+    if plan.has("jax"):
+        contenders.append(_batched(plan, hexapod, "JAX", "jax", jax_modes(hexapod)))
+    if plan.has("pin"):
+        from benchmarks._pinocchio import PinocchioModes
+
+        modes = PinocchioModes(hexapod)
+        found = [modes(six) for six in few]
+        error = _error(hexapod, few, np.array([omega for omega, _ in found]), np.array([c for _, c in found]))
+        run = cpu_seconds(lambda: [modes(six) for six in few], len(few))
+        contenders.append(Contender("Pinocchio", "pin", "crba and Jacobians pose by pose, LAPACK", run, error, 1e-8))
+    return [Contest("Pose sweep", "pose", "omega_1 and cond(H), relative", contenders)]
+
+
+def _batched(plan: Plan, hexapod, tool: str, package: str, modes: Callable) -> Contender:
+    """A tool that takes poses in batches, of the size that suits it best."""
+    runs = {}
+    for size in BATCHES[: plan.size(len(BATCHES), 1)]:
+        batch = random_poses(size)
+        error = _error(hexapod, batch, *modes(batch))  # compiles, where there is something to compile
+        runs[size] = Contender(
+            tool,
+            package,
+            f"batches of {size}" + (", jit(vmap), compiled before" if tool == "JAX" else ""),
+            cpu_seconds(lambda batch=batch: modes(batch), size, max(1, 4000 // size)),
+            error,
+            1e-8,
+        )
+    return min(runs.values(), key=lambda c: min(c.run() for _ in range(3)))
+
+
+def _error(hexapod, poses, omega, cond_H) -> float:
+    ours = fx.sweep(hexapod, poses, ("omega_1", "cond_H"))
+    pairs = ((np.asarray(omega)[:, 0], ours.omega_1.values), (np.asarray(cond_H), ours.cond_H.values))
+    return max(float(np.abs(theirs / own - 1).max()) for theirs, own in pairs)
+
+
+# --- the sweep in depth ----------------------------------------------------------------------------------------------
 
 
 def check(hexapod, poses, pinocchio) -> None:
@@ -225,6 +174,8 @@ def check(hexapod, poses, pinocchio) -> None:
 
 
 def main() -> None:
+    from benchmarks._pinocchio import PinocchioModes
+
     hexapod, poses = fx.load("mukherjee-i"), random_poses(BATCH_POSES)
     pinocchio = PinocchioModes(hexapod)
     check(hexapod, poses, pinocchio)

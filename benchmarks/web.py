@@ -19,8 +19,12 @@ import time
 import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import cycle
 from pathlib import Path
 from typing import Any
+
+from benchmarks._contest import OURS, Contender, Contest, Plan
+from benchmarks._machine import all_cores
 
 FLAGS = [
     "--no-sandbox",
@@ -35,6 +39,8 @@ FLAGS = [
     "--enable-unsafe-swiftshader",
 ]
 MOVES = 100
+SHARES = [0.3 + 0.4 * ((i * 37) % MOVES) / MOVES for i in range(MOVES)]  # where the slider goes
+CHROMIUM = Path("/usr/bin/chromium")
 PAGES = 20
 SECONDS = 10.0
 
@@ -83,8 +89,8 @@ def slider_to_table(browser: Any, url: str, pause: float) -> list[float]:
     page = opened(browser, url, "modes")
     page.wait_for_timeout(1000)
     found = []
-    for i in range(MOVES):
-        found.append(float(page.evaluate(MOVE, 0.3 + 0.4 * ((i * 37) % MOVES) / MOVES)))
+    for share in SHARES:
+        found.append(float(page.evaluate(MOVE, share)))
         page.wait_for_timeout(pause)
     page.context.close()
     return found
@@ -143,6 +149,31 @@ def percentile(values: list[float], share: float) -> float:
     return sorted(values)[min(len(values) - 1, int(share * len(values)))]
 
 
+def contests(plan: Plan) -> Iterator[Contest]:
+    """The page by itself: no other tool does this."""
+    if plan.quick or not CHROMIUM.exists() or not plan.has("playwright"):
+        return
+    from playwright.sync_api import sync_playwright
+
+    with all_cores(), served() as (url, _), sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
+        page_ready(browser, url)
+        page = opened(browser, url, "modes")
+        shares = cycle(SHARES)
+
+        def move() -> float:
+            seconds = float(page.evaluate(MOVE, next(shares))) / 1000
+            page.wait_for_timeout(300)  # it draws
+            return seconds
+
+        for task, unit, how, run in (
+            ("Page opens", "page", "to a drawn cloud of 100 000 poses", lambda: page_ready(browser, url)),
+            ("Page follows", "move", "slider to table", lambda: statistics.median(move() for _ in range(5))),
+        ):
+            yield Contest(task, unit, "", [Contender(OURS, "flexapod", how, run)])
+        browser.close()
+
+
 def main() -> None:
     from playwright.sync_api import sync_playwright
 
@@ -150,7 +181,7 @@ def main() -> None:
         time.sleep(3)
         print(f"server at rest: {memory(pid):.0f} MB with its idle job process; load average {os.getloadavg()[0]:.1f}")
         with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
+            browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
             page_ready(browser, url)
             ready = [page_ready(browser, url) for _ in range(5)]
             print(f"page ready with 100 000 poses: median {statistics.median(ready):.2f} s, worst {max(ready):.2f} s")

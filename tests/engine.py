@@ -323,6 +323,9 @@ class Bench(NamedTuple):
     """Pinocchio's own constrained forward dynamics of the same machine, ready to be timed."""
 
     run: Callable[[], np.ndarray]  # one call of pinocchio.constraintDynamics: joint accelerations (24,)
+    acceleration: np.ndarray  # of the platform in that call, linear and angular, inertial axes (6,)
+    velocity: np.ndarray  # of the platform, m/s and rad/s (6,)
+    leg_force: np.ndarray  # N
     error: float  # relative difference of the platform's acceleration from ClosedChain's
     accuracy: float  # the proximal method's settings
     mu: float
@@ -366,4 +369,5 @@ def bench_constraint_dynamics(hexapod, pose, accuracy=1e-12, mu=1e-8, max_iterat
     expected = np.concatenate(tree.platform_acceleration(tree.forward_dynamics(leg_force, ZERO, ZERO)[0]))
     found = np.concatenate(tree.platform_acceleration(run()))
     error = float(np.linalg.norm(found - expected) / np.linalg.norm(expected))
-    return Bench(run, error, accuracy, mu, max_iterations, settings.iter)
+    velocity = np.concatenate([platform.velocity, platform.angular_velocity])
+    return Bench(run, found, velocity, leg_force, error, accuracy, mu, max_iterations, settings.iter)

@@ -61,6 +61,10 @@ CALLS = {
     "stability_index": fx.stability_index,
     "stepped_sine": lambda h, p: fx.stepped_sine(h, p, [100.0], 1e-6, "z"),
     "transmissibility": lambda h, p: fx.transmissibility(h, p, [1.0]),
+    "write_mat": lambda h, p: fx.write_mat("no-such-folder/machine.mat", h, p),
+    "write_mjcf": lambda h, p: fx.write_mjcf("no-such-folder/machine.xml", h, p),
+    "write_sdf": lambda h, p: fx.write_sdf("no-such-folder/machine.sdf", h, p),
+    "write_urdf": lambda h, p: fx.write_urdf("no-such-folder/machine.urdf", h, p),
 }
 
 PROVOKED = {
@@ -122,6 +126,7 @@ PROVOKED = {
     ("random_motion", "ArgumentError"): lambda: fx.random_motion("up", fx.vc_curve("VC-A"), seed=0),
     ("random_poses", "PoseError"): lambda: fx.random_poses(BOX, 0),
     ("random_response", "ArgumentError"): lambda: fx.random_response(MACHINE, HOME, [-1.0, 1.0], [1.0, 2.0], axis="z"),
+    ("read_joints", "DesignError"): lambda: fx.read_joints("no-such-file.csv"),
     ("read_time_series", "ArgumentError"): lambda: fx.read_time_series("no-such-file.csv"),
     ("robustness", "ArgumentError"): lambda: fx.robustness(MACHINE, [fx.Uncertain("legs.stiffness", 2.0)]),
     ("robustness", "PoseError"): lambda: fx.robustness(MACHINE, [fx.Uncertain("legs.stiffness", 0.1)], "everywhere"),
@@ -152,6 +157,14 @@ PROVOKED = {
     ("transmissibility", "ArgumentError"): lambda: fx.transmissibility(MACHINE, HOME, [-1.0]),
     ("vc_curve", "ArgumentError"): lambda: fx.vc_curve("VC-Z"),
     ("worst_pose", "PoseError"): lambda: fx.worst_pose(MACHINE, fx.Box()),
+    ("write_mat", "OutputError"): lambda: CALLS["write_mat"](MACHINE, HOME),
+    ("write_mjcf", "ArgumentError"): lambda: fx.write_mjcf("never.xml", MACHINE, timestep=-1.0),
+    ("write_mjcf", "DesignError"): lambda: fx.write_mjcf("never.xml", fx.load("mukherjee-ii")),
+    ("write_mjcf", "OutputError"): lambda: CALLS["write_mjcf"](MACHINE, HOME),
+    ("write_sdf", "DesignError"): lambda: fx.write_sdf("never.sdf", fx.load("mukherjee-ii")),
+    ("write_sdf", "OutputError"): lambda: CALLS["write_sdf"](MACHINE, HOME),
+    ("write_urdf", "DesignError"): lambda: fx.write_urdf("never.urdf", fx.load("mukherjee-ii")),
+    ("write_urdf", "OutputError"): lambda: CALLS["write_urdf"](MACHINE, HOME),
 }
 
 #: Pairs that take long, or another machine, and the test that shows them.

@@ -6,14 +6,11 @@
 namespace flexapod {
 
 /// x[k+1] = A x + B (y + noise), f = C x + D (y + noise), clipped to +-limit; y is Rig::measure at the sample.
-struct SampledController {
-  static constexpr int signals = 36;
-  size_t order;
-  const double *A, *B, *C, *D;  // rows of order, 36, order, 36 numbers
-  const double* limit;          // (6) N
+struct SampledController : simulation_task::Controller {
+  static constexpr int signals = simulation_task::signals;
 
   /// The forces for a measurement; true where a limit cut one off.
-  bool update(const double (&y)[signals], std::vector<double>& x, Vec6<double>& f) const {
+  bool update(const double (&y)[signals], List<double>& x, Vec6<double>& f) const {
     bool cut = false;
     for (int i = 0; i < 6; ++i) {
       f[i] = product(C + i * order, x.data(), order) + product(D + i * signals, y, signals);
@@ -21,7 +18,7 @@ struct SampledController {
       cut = cut || clipped != f[i];
       f[i] = clipped;
     }
-    std::vector<double> next(order);
+    List<double> next(order);
     for (size_t i = 0; i < order; ++i)
       next[i] = product(A + i * order, x.data(), order) + product(B + i * signals, y, signals);
     x.swap(next);
@@ -40,15 +37,8 @@ struct SampledController {
 /// excitation has a corner).
 class ControlLoop {
  public:
-  struct Timing {
-    double dt;
-    size_t count, steps;
-  };
-  /// Rows for every step's end, from t = 0: measurements without noise and absolute displacement. Rows for every sample:
-  /// forces, and whether one was cut off.
-  struct Record {
-    double *measured, *displacement, *force, *cut;
-  };
+  using Timing = simulation_task::Timing;
+  using Record = simulation_task::Record;
 
   ControlLoop(const RigInput& input, const Excitation& base, const SampledController& controller, const Timing& timing)
       : rig_(input, base, none_, none_), controller_(controller), timing_(timing), x_(controller.order) {
@@ -126,7 +116,7 @@ class ControlLoop {
   SampledController controller_;
   Timing timing_;
   RungeKutta8<16> method_;
-  std::vector<double> x_, corners_;
+  List<double> x_, corners_;
   size_t next_corner_ = 0;
 };
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <vector>
 
+#include "list.hpp"
 #include "rotation.hpp"
 
 namespace flexapod {
@@ -141,7 +141,7 @@ class Pieces {
     return {x, v, a};
   }
   /// Corners; and the least time between pieces that meet smoothly, which a step should not pass by unseen.
-  void notes(double start, std::vector<double>& corners, double& spacing) const {
+  void notes(double start, List<double>& corners, double& spacing) const {
     for (size_t i = 0; i < count_; ++i)
       if (corners_ || i == 0) corners.push_back(start + first_[width * i]);
     if (!corners_ && count_ > 1) {
@@ -200,7 +200,7 @@ class Excitation {
   }
 
   /// Instants at which a derivative may jump, and the least spacing of sampled series.
-  void notes(std::vector<double>& corners, double& spacing) const {
+  void notes(List<double>& corners, double& spacing) const {
     for (size_t i = 0; i < terms_.size(); ++i) {
       const Term& term = terms_[i];
       for (const double t : {term.start, term.start + term.rise, term.stop, term.stop + term.fall}) corners.push_back(t);
@@ -210,9 +210,9 @@ class Excitation {
   }
 
  private:
-  std::vector<Term> terms_;
-  std::vector<Sinusoids> sums_;
-  std::vector<Pieces> pieces_;
+  List<Term> terms_;
+  List<Sinusoids> sums_;
+  List<Pieces> pieces_;
 };
 
 /// How the base moves from its pose at rest.

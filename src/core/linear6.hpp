@@ -85,6 +85,27 @@ template <class T> struct Cholesky {
   Vec6<T> solve(const Vec6<T>& b) const { return backward(forward(b)); }
 };
 
+/// Solves m x = b for a symmetric positive definite m (its lower triangle is read) by m = L D L^T: no square root waits
+/// for another, as those of a Cholesky factor do. NaN where m is not positive definite.
+inline Vec6<double> solve_positive(Mat6<double> m, Vec6<double> b) {
+  double reciprocal[6], least = m[0][0];
+  FLEXAPOD_UNROLL for (int j = 0; j < 6; ++j) {
+    least = std::min(least, m[j][j]);
+    reciprocal[j] = 1.0 / m[j][j];
+    FLEXAPOD_UNROLL for (int i = j + 1; i < 6; ++i) {
+      const double factor = m[i][j] * reciprocal[j];
+      FLEXAPOD_UNROLL for (int k = j + 1; k <= i; ++k) m[i][k] -= factor * m[k][j];
+      b[i] -= factor * b[j];
+    }
+  }
+  FLEXAPOD_UNROLL for (int i = 5; i >= 0; --i) {
+    FLEXAPOD_UNROLL for (int k = i + 1; k < 6; ++k) b[i] -= m[k][i] * b[k];
+    b[i] *= reciprocal[i];
+  }
+  if (!(least > 0)) b = Vec6<double>{{NAN, NAN, NAN, NAN, NAN, NAN}};
+  return b;
+}
+
 /// Gaussian elimination with row pivoting on scaled rows. Returns false, and leaves x, where the matrix is singular
 /// to rounding.
 inline bool solve_general(Mat6<double> m, Vec6<double> b, Vec6<double>& x) {

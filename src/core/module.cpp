@@ -7,7 +7,6 @@
 #include "kinematics.hpp"
 #include "modes.hpp"
 #include "reactions.hpp"
-#include "six_legs.hpp"
 #include "statics.hpp"
 #include "sweep_module.hpp"
 
@@ -120,15 +119,11 @@ nb::tuple equations_of_motion(const Input& design, bool universal, const Input& 
 
 nb::object forward_dynamics_(const Input& design, bool universal, const Input& platforms, const Input& bases,
                              const Input& leg_forces, const Input& wrenches) {
-  const SixLegs legs(machine_of(design, universal));
   const States s(platforms, bases);
   const double *F = rows(leg_forces, s.n, 6, "leg_force"), *load = rows(wrenches, s.n, 6, "wrench");
   Output acceleration({s.n, 6});
-  double* out = acceleration.data();
-  for (size_t i = 0; i < s.n; ++i) {
-    const Vec6<double> wrench = external_wrench(s.platform[i].pose.R, vec6(load + 6 * i));
-    write(out, forward_dynamics(legs, s.platform[i], s.base[i], vec6(F + 6 * i), wrench));
-  }
+  simulation_kernel_in_use().forward_dynamics({rows(design, 1, design_size, "design"), universal, s.n, platforms.data(),
+                                               bases.data(), F, load, acceleration.data()});
   return nb::cast(acceleration.array());
 }
 

@@ -43,6 +43,14 @@ struct Turn {
   double sine, versine;
 
   explicit Turn(double angle2) {
+    if (angle2 < 0.25) {  // the first terms left out are below 1e-17
+      const double s = angle2;
+      sine = 1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0 * (1.0 - s / 110.0 *
+             (1.0 - s / 156.0 * (1.0 - s / 210.0))))));
+      versine = 0.5 * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0 * (1.0 - s / 90.0 * (1.0 - s / 132.0 *
+                (1.0 - s / 182.0))))));
+      return;
+    }
     const double half = 0.5 * std::sqrt(angle2), sinc = half > 0 ? std::sin(half) / half : 1.0;
     sine = std::cos(half) * sinc;
     versine = 0.5 * sinc * sinc;

@@ -13,12 +13,10 @@
 
 #if defined(__GNUC__)
 #define FLEXAPOD_INLINE inline __attribute__((always_inline))
-#define FLEXAPOD_UNROLL _Pragma("GCC unroll 16")
 #define FLEXAPOD_FLAT __attribute__((flatten, noinline))  // with all that it calls inlined
 #define FLEXAPOD_COLD __attribute__((noinline, cold))
 #else
 #define FLEXAPOD_INLINE inline
-#define FLEXAPOD_UNROLL
 #define FLEXAPOD_FLAT
 #define FLEXAPOD_COLD
 #endif
@@ -155,6 +153,29 @@ template <class V> FLEXAPOD_INLINE V sqrt_vector(V a) {
   return a;
 }
 }  // namespace detail
+
+/// The sum of all lanes.
+template <class V> FLEXAPOD_INLINE double sum(const Pack<V, 1>& a) {
+#if defined(__AVX512F__)
+  if constexpr (sizeof(V) == 64) {
+    const __m512d all = (__m512d)a.v[0];
+    const __m256d four = _mm256_add_pd(_mm512_castpd512_pd256(all), _mm512_maskz_extractf64x4_pd(0xff, all, 1));
+    const __m128d two = _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd(four, 1));
+    return _mm_cvtsd_f64(two) + _mm_cvtsd_f64(_mm_unpackhi_pd(two, two));
+  }
+#endif
+#if defined(__AVX2__)
+  if constexpr (sizeof(V) == 32) {
+    const __m256d four = (__m256d)a.v[0];
+    const __m128d two = _mm_add_pd(_mm256_castpd256_pd128(four), _mm256_extractf128_pd(four, 1));
+    return _mm_cvtsd_f64(two) + _mm_cvtsd_f64(_mm_unpackhi_pd(two, two));
+  }
+#endif
+  double lane[Pack<V, 1>::lanes], total = 0;
+  a.store(lane);
+  for (const double value : lane) total += value;
+  return total;
+}
 
 template <class V, int N> FLEXAPOD_INLINE Pack<V, N> sqrt(const Pack<V, N>& a) {
   Pack<V, N> r;

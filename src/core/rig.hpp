@@ -63,7 +63,7 @@ class Rig {
     return y;
   }
 
-  void rates(double t, const State& y, State& rate, bool powers) {
+  FLEXAPOD_FLAT void rates(double t, const State& y, State& rate, bool powers) {
     const Moment now = moment(t, y);
     const Motion<double>&frame = now.frame, &p = now.platform;
     const Vec3<double>&v = now.v, &w = now.w, &r = p.pose.t;

@@ -6,6 +6,12 @@
 #include <limits>
 #include <type_traits>
 
+#if defined(__GNUC__)
+#define FLEXAPOD_UNROLL _Pragma("GCC unroll 16")
+#else
+#define FLEXAPOD_UNROLL
+#endif
+
 namespace flexapod {
 
 template <class T> struct is_scalar : std::is_arithmetic<T> {};

@@ -5,23 +5,14 @@
 
 #include "modes.hpp"
 #include "rig.hpp"
+#include "simulation_task.hpp"
 
 namespace flexapod {
 
 enum class Outcome { complete, singular, leg_collapsed, joint_locked, step_collapse, not_finite, max_steps, stopped };
 
-struct Tolerances {
-  double rtol, atol;         // of the displacement at the platform's joints: relative, and m
-  double max_step, max_steps;
-  bool stop_at_singular;
-};
-
-/// Where the samples of one simulation go: rows for the instants given. The last three may be null.
-struct Samples {
-  const double* times;
-  size_t count;
-  double *displacement, *relative, *work, *platform, *base, *leg_force;
-};
+using simulation_task::Samples;
+using simulation_task::Tolerances;
 
 struct Counts {
   double accepted = 0, rejected = 0, evaluations = 0;
@@ -278,7 +269,7 @@ class Simulation {
   Method rk_;
   Samples samples_{};
   Counts counts_;
-  std::vector<double> corners_;
+  List<double> corners_;
   State last_{};
   double size_ = 0, slowest_, fastest_, max_step_, next_step_ = 0, time_ = 0;
   Peaks peaks_;

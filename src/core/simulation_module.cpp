@@ -5,23 +5,40 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstring>
 #include <mutex>
 #include <thread>
 
 #include "arrays.hpp"
-#include "control_loop.hpp"
-#include "simulation.hpp"
+#include "excitation.hpp"
+#include "sweep_module.hpp"
+
+#if defined(FLEXAPOD_X86)
+namespace flexapod_avx512 {
+extern const simulation_task::Kernel simulation_kernel;
+}
+namespace flexapod_avx2 {
+extern const simulation_task::Kernel simulation_kernel;
+}
+#endif
+namespace flexapod_baseline {
+extern const simulation_task::Kernel simulation_kernel;
+}
 
 namespace flexapod {
 namespace {
 
-/// One simulation's numbers in a row of `setup`.
-struct Setup {
-  Pose<double> platform, base;
-  Vec6<double> leg_force, wrench, displacement, velocity;
-  double roll_pitch_yaw, carried;
-};
-constexpr size_t setup_size = sizeof(Setup) / sizeof(double);
+using simulation_task::Kernel;
+using simulation_task::setup_size;
+
+constexpr const Kernel* kernels[] = {
+#if defined(FLEXAPOD_X86)
+    &flexapod_avx512::simulation_kernel, &flexapod_avx2::simulation_kernel,
+#endif
+    &flexapod_baseline::simulation_kernel};
+
+/// That for the instruction set which the sweeps use.
+const Kernel* chosen = nullptr;
 
 /// Runs job(i) for i < n on threads, while this one asks Python for interrupts and reports progress.
 class Crew {
@@ -72,18 +89,14 @@ class Crew {
   std::condition_variable finished_;
 };
 
-RigInput rig_input(const double* design, bool universal, const Setup& s, bool works) {
-  return {*reinterpret_cast<const Design<double>*>(design),
-          universal ? Joint::universal : Joint::spin_free,
-          s.platform,
-          s.base,
-          s.leg_force,
-          s.wrench,
-          s.roll_pitch_yaw != 0.0,
-          works,
-          s.carried != 0.0,
-          s.displacement,
-          s.velocity};
+/// The machine of row i, and the excitations of its base, wrench and leg command.
+simulation_task::Machine machine(const double* design, bool universal, const double* setup, bool works,
+                                 const Input& base, const Input& wrench, const Input& command) {
+  const auto series = [](const Input& e) {
+    static_cast<void>(Excitation(e.data(), e.size()));  // throws here, not on a thread, if the numbers are wrong
+    return simulation_task::Series{e.data(), e.size()};
+  };
+  return {design, universal, setup, works, series(base), series(wrench), series(command)};
 }
 
 Output nan_filled(std::initializer_list<size_t> shape) {
@@ -100,35 +113,34 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
                    const Input& times, const Input& options, nb::object progress) {
   const size_t n = setups.size() / setup_size;
   const double* design = rows(designs, n, design_size, "designs");
-  const auto* setup = reinterpret_cast<const Setup*>(rows(setups, n, setup_size, "setups"));
+  const double* setup = rows(setups, n, setup_size, "setups");
   const double* o = rows(options, 1, 8, "options");
   if (excitations.size() != 3 * n || n == 0 || times.size() % n != 0)
     throw std::invalid_argument("excitations or times do not fit the number of simulations");
   const size_t m = times.size() / n, kept = o[5] != 0.0 ? m : 0;
-  const Tolerances tolerances{o[0], o[1], o[2], o[3], o[4] != 0.0};
+  const simulation_task::Tolerances tolerances{o[0], o[1], o[2], o[3], o[4] != 0.0};
   const bool works = o[6] != 0.0;
 
-  std::vector<Excitation> driven;
-  for (const Input& e : excitations) driven.emplace_back(e.data(), e.size());
+  std::vector<simulation_task::Machine> driven;
+  for (size_t i = 0; i < n; ++i)
+    driven.push_back(machine(design + i * design_size, universal, setup + i * setup_size, works, excitations[3 * i],
+                             excitations[3 * i + 1], excitations[3 * i + 2]));
   Output displacement = nan_filled({n, m, 6}), relative = nan_filled({n, m, 6}), work = nan_filled({n, m, 4}), platform = nan_filled({n, kept, 24}),
          base = nan_filled({n, kept, 24}), leg_force = nan_filled({n, kept, 6}), outcome({n}), time({n}), last({n, 24}), counts({n, 3});
   double *x = displacement.data(), *u = relative.data(), *p = platform.data(), *b = base.data(), *W = work.data(), *F = leg_force.data(), *how = outcome.data();
   double *ended = time.data(), *c = counts.data();
-  auto* final_motion = reinterpret_cast<Motion<double>*>(last.data());
+  double* final_motion = last.data();
   std::vector<std::atomic<double>> done(n);
   Crew crew;
   crew.run(n, static_cast<size_t>(o[7]), progress, done, [&](size_t i) {
-    Simulation simulation(rig_input(design + i * design_size, universal, setup[i], works), driven[3 * i],
-                          driven[3 * i + 1], driven[3 * i + 2], tolerances);
     const auto part = [&](double* rows, size_t width) { return kept ? rows + i * m * width : nullptr; };
-    const Samples samples{times.data() + i * m, m, x + i * m * 6, u + i * m * 6, W + i * m * 4,
-                          part(p, 24),          part(b, 24),     part(F, 6)};
-    how[i] = static_cast<double>(simulation.run(samples, crew.stop, done[i]));
+    const simulation_task::Samples samples{times.data() + i * m, m, x + i * m * 6, u + i * m * 6, W + i * m * 4,
+                                           part(p, 24),          part(b, 24),      part(F, 6)};
+    const simulation_task::End end = chosen->simulate({driven[i], tolerances, samples, &crew.stop, &done[i]});
     done[i] = 1.0;
-    ended[i] = simulation.time();
-    final_motion[i] = simulation.last();
-    const Counts& count = simulation.counts();
-    c[3 * i] = count.accepted, c[3 * i + 1] = count.rejected, c[3 * i + 2] = count.evaluations;
+    how[i] = end.outcome, ended[i] = end.time;
+    std::copy_n(end.last, motion_size, final_motion + i * motion_size);
+    c[3 * i] = end.accepted, c[3 * i + 1] = end.rejected, c[3 * i + 2] = end.evaluations;
   });
   return nb::make_tuple(displacement.array(), relative.array(), work.array(), platform.array(), base.array(),
                         leg_force.array(), outcome.array(),
@@ -140,30 +152,30 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
 /// after an early end), forces and clipping at every sample, and the outcome.
 nb::tuple control_loop(const Input& design, bool universal, const Input& setup, const Input& base,
                        const std::vector<Input>& controller, const Input& noise, const Input& timing, nb::object progress) {
-  constexpr size_t signals = SampledController::signals;
+  constexpr size_t signals = simulation_task::signals;
   if (controller.size() != 5) throw std::invalid_argument("a controller is A, B, C, D and limit");
   const size_t order = controller[2].size() / 6, samples = noise.size() / signals;
-  const SampledController law{order,
+  const simulation_task::Controller law{order,
                               rows(controller[0], order, order, "A"),
                               rows(controller[1], order, signals, "B"),
                               rows(controller[2], 6, order, "C"),
                               rows(controller[3], 6, signals, "D"),
                               rows(controller[4], 1, 6, "limit")};
   const double* when = rows(timing, 1, 2, "timing");
-  const ControlLoop::Timing clock{when[0], samples, static_cast<size_t>(when[1])};
+  const simulation_task::Timing clock{when[0], samples, static_cast<size_t>(when[1])};
   const size_t m = samples * clock.steps + 1;
   const double* white = rows(noise, samples, signals, "noise");
-  const auto* s = reinterpret_cast<const Setup*>(rows(setup, 1, setup_size, "setup"));
-  const Excitation shaken(base.data(), base.size());
+  const Input none{};
+  const simulation_task::Machine shaken = machine(rows(design, 1, design_size, "design"), universal,
+                                                  rows(setup, 1, setup_size, "setup"), false, base, none, none);
   Output measured = nan_filled({m, signals}), displacement = nan_filled({m, 6}), force = nan_filled({samples, 6});
   Output cut({samples}), outcome({1});
-  const ControlLoop::Record record{measured.data(), displacement.data(), force.data(), cut.data()};
+  const simulation_task::Record record{measured.data(), displacement.data(), force.data(), cut.data()};
   double* how = outcome.data();
   std::vector<std::atomic<double>> done(1);
   Crew crew;
   crew.run(1, 1, progress, done, [&](size_t) {
-    ControlLoop loop(rig_input(rows(design, 1, design_size, "design"), universal, *s, false), shaken, law, clock);
-    *how = static_cast<double>(loop.run(white, record, crew.stop, done[0]));
+    *how = chosen->control_loop({shaken, law, clock, white, record, &crew.stop, &done[0]});
   });
   return nb::make_tuple(measured.array(), displacement.array(), force.array(), cut.array(), outcome.array());
 }
@@ -171,34 +183,30 @@ nb::tuple control_loop(const Input& design, bool universal, const Input& setup, 
 class Equations {
  public:
   Equations(const Input& design, bool universal, const Input& setup, const std::vector<Input>& excitations) {
-    const auto* s = reinterpret_cast<const Setup*>(rows(setup, 1, setup_size, "setup"));
-    const RigInput input = rig_input(rows(design, 1, design_size, "design"), universal, *s, false);
     for (const Input& e : excitations) numbers_.emplace_back(e.data(), e.data() + e.size());
-    const auto part = [&](size_t i) { return Excitation(numbers_.at(i).data(), numbers_.at(i).size()); };
-    rig_ = std::make_unique<Rig>(input, part(0), part(1), part(2));
+    const auto part = [&](size_t i) { return simulation_task::Series{numbers_.at(i).data(), numbers_.at(i).size()}; };
+    equations_ = chosen->new_equations({rows(design, 1, design_size, "design"), universal,
+                                        rows(setup, 1, setup_size, "setup"), false, part(0), part(1), part(2)});
   }
+  Equations(const Equations&) = delete;
+  Equations& operator=(const Equations&) = delete;
+  ~Equations() { chosen->delete_equations(equations_); }
+
   nb::object start() {
-    const Rig::State y = rig_->start();
-    return array(y);
+    Output y({size});
+    chosen->start(equations_, y.data());
+    return nb::cast(y.array());
   }
-  nb::object rates(double t, const Input& given) {
-    const double* numbers = rows(given, 1, Rig::mechanical, "y");
-    Rig::State y{}, rate;
-    std::copy_n(numbers, Rig::mechanical, y.begin());
-    rig_->inside = t;
-    rig_->rates(t, y, rate, false);
-    return array(rate);
+  nb::object rates(double t, const Input& y) {
+    Output rate({size});
+    chosen->rates(equations_, t, rows(y, 1, size, "y"), rate.data());
+    return nb::cast(rate.array());
   }
 
  private:
-  static nb::object array(const Rig::State& y) {
-    Output out({Rig::mechanical});
-    std::copy_n(y.begin(), Rig::mechanical, out.data());
-    return nb::cast(out.array());
-  }
-
+  static constexpr size_t size = 12;
   std::vector<std::vector<double>> numbers_;  // what the excitations point to
-  std::unique_ptr<Rig> rig_;
+  void* equations_;
 };
 
 /// Six channels with their first and second derivatives, (n, 3, 6).
@@ -233,7 +241,11 @@ nb::object base_motion(const Input& terms, bool roll_pitch_yaw, const Input& res
 
 }  // namespace
 
+const Kernel& simulation_kernel_in_use() { return *chosen; }
+
 void bind_simulation(nb::module_& m) {
+  chosen = *std::find_if(std::begin(kernels), std::end(kernels),
+                         [](const Kernel* k) { return std::strcmp(k->name, kernel_in_use().name) == 0; });
   m.attr("setup_size") = setup_size;
   m.def("simulate", &simulate, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg().none());
   m.def("control_loop", &control_loop, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(),

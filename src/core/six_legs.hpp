@@ -13,13 +13,10 @@ namespace flexapod {
 using Lanes = Pack<Vector, 1>;
 inline constexpr int leg_groups = (6 + Lanes::lanes - 1) / Lanes::lanes;  // vectors for six legs
 
-inline double sum(const Lanes& x) {
-  double lane[Lanes::lanes], total = 0;
-  x.store(lane);
-  for (const double value : lane) total += value;
-  return total;
-}
 inline Vec3<double> sum(const Vec3<Lanes>& v) { return {sum(v.x), sum(v.y), sum(v.z)}; }
+inline Sym3<double> sum(const Sym3<Lanes>& m) {
+  return {sum(m.xx), sum(m.yy), sum(m.zz), sum(m.xy), sum(m.xz), sum(m.yz)};
+}
 
 /// A number for each leg.
 struct PerLeg {
@@ -108,20 +105,19 @@ struct LegSums {
 };
 
 /// Eq. 35's accelerations of the platform: J_p^-1 (H F + wrench - eta + J_b [a_b; alpha_b]).
-inline Vec6<double> forward_dynamics(const SixLegs& legs, const LegPlaces& at, Motion<double> platform,
-                                     const Motion<double>& base, const PerLeg& leg_force, const Vec6<double>& wrench) {
+FLEXAPOD_FLAT inline Vec6<double> forward_dynamics(const SixLegs& legs, const LegPlaces& at, Motion<double> platform,
+                                                   const Motion<double>& base, const PerLeg& leg_force,
+                                                   const Vec6<double>& wrench) {
   platform = unaccelerated(platform);
   LegSums sums{};
   for (int g = 0; g < leg_groups; ++g) sums.add(legs, g, at.group[g], platform, base, leg_force.group[g]);
   Vec6<double> load = platform_wrench(legs.design, platform);
   add(load, sum(sums.force), sum(sums.moment));
-  Mat6<double> J = platform_inertia(legs.design, platform.pose.R).matrix();
-  const Mat6<Lanes> of_legs = sums.J.matrix();
-  for (int i = 0; i < 6; ++i) {
-    load[i] = wrench[i] - load[i];
-    for (int j = 0; j <= i; ++j) J[i][j] += sum(of_legs[i][j]);
-  }
-  return Cholesky<double>(J).solve(load);
+  SpatialInertia<double> J = platform_inertia(legs.design, platform.pose.R);
+  J.top = J.top + sum(sums.J.top), J.bottom = J.bottom + sum(sums.J.bottom);
+  for (int i = 0; i < 3; ++i) J.bottom_left.row[i] += sum(sums.J.bottom_left.row[i]);
+  for (int i = 0; i < 6; ++i) load[i] = wrench[i] - load[i];
+  return solve_positive(J.matrix(), load);
 }
 
 /// The same from poses.

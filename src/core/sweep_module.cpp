@@ -146,6 +146,7 @@ void bind_sweep(nb::module_& m) {
   chosen = &choose_kernel();
   m.def("sweep", &sweep_);
   m.def("sweep_flops", &sweep_flops);
+  m.attr("compiler") = FLEXAPOD_COMPILER;
   m.def("simd", [] { return chosen->name; });
   m.def("simd_available", &simd_available);
   m.def("peak_flops", [](size_t rounds) { return chosen->peak(rounds); }, nb::call_guard<nb::gil_scoped_release>());

@@ -33,16 +33,16 @@ HEADER = "leg, base_x_mm, base_y_mm, base_z_mm, platform_x_mm, platform_y_mm, pl
 
 
 def read_joints(path: str | Path, home: Pose | None = None) -> dict[str, Array | None]:
-    """Joints of six legs from a CSV file: changes for `Hexapod.replace`, all (6, 3), in m and unit-free axes.
+    """Joints of six legs from the CSV file at `path`: changes for `Hexapod.replace`, all (6, 3), m and unit-free axes.
 
     One line for each leg below a header. Columns: `leg` (1 to 6, may be left out), `base_x`, `base_y`, `base_z` (short:
     `bx`), and either `platform_x`, ... (`px`) in the platform frame, or `home_x`, ... (`hx`): the platform joints where
     they stand at home, in the base frame, which needs `home`. `axis_x`, ... (`kx`) are the universal joints' axes; left
     out, they become tangent to the base circle. Lengths are in m unless the column says otherwise: `base_x_mm` or
-    `Base X [mm]`. Semicolons and tabs separate as well, and then numbers may have decimal commas. Lines that begin
-    with `#` and columns name, note, comment, part are left out. path: of the file.
+    `Base X [mm]`. Semicolons and tabs separate as well, and then numbers may have decimal commas. Lines
+    that begin with `#` are left out, and columns name, note, comment, part.
 
-    Raises: DesignError, with the line, the column and the value, for what is not six legs.
+    Raises: DesignError that names the line, column and value.
     Source: own.
     """
     file = Path(path)

@@ -40,7 +40,7 @@ def states(hexapod: Hexapod, platform: Pose | Motion, base: Pose | Motion | None
         raise PoseError(
             f"platform has batch axes {motions[0].shape}, base {motions[1].shape}; they must be equal or 1"
         ) from None
-    rows = [np.ascontiguousarray(np.broadcast_to(m.packed, (*shape, 24)).reshape(-1, 24)) for m in motions]
+    rows = [np.ascontiguousarray(_spread(m.packed, shape).reshape(-1, 24)) for m in motions]
     length, sine = _core.leg_fit(hexapod.packed, *rows)
     good = np.all((length >= _shortest(hexapod)) & (sine >= LEAST_SINE), axis=1, keepdims=True)
     if not good.all():
@@ -102,9 +102,14 @@ def wrench(force: ArrayLike, moment: ArrayLike, shape: tuple[int, ...]) -> Array
     return np.ascontiguousarray(np.concatenate(parts, axis=-1))
 
 
+def _spread(value: Array, shape: tuple[int, ...]) -> Array:
+    """Numbers (..., k) for each state of a batch; most calls are for one state, where there is nothing to spread."""
+    return value if value.shape[:-1] == shape else np.broadcast_to(value, (*shape, value.shape[-1]))
+
+
 def _fitted(value: Array, name: str, shape: tuple[int, ...]) -> Array:
     try:
-        spread = np.broadcast_to(value, (*shape, value.shape[-1]))
+        spread = _spread(value, shape)
     except ValueError:
         raise PoseError(
             f"{name} has shape {value.shape}, which does not fit the batch axes {shape} of the states"

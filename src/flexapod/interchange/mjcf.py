@@ -23,19 +23,19 @@ THICK = 0.02  # radius of a drawn leg, of its length
 
 
 def write_mjcf(path: str | Path, hexapod: Hexapod, pose: Pose | None = None, *, timestep: float | None = None) -> Path:
-    """Write a machine at rest at a pose (default: home) as a MuJoCo model, SI units; returns the file.
+    """Write a machine at rest at a pose (default: home) as a MuJoCo model to `path`, SI units; returns the file.
 
-    path: of the file, by custom `.xml`. At joint positions zero the machine stands at the pose with springs that hold
-    it there. Motors `leg1` to `leg6` push beside the springs, N. timestep: s, by default a fiftieth of the shortest
-    natural period, and less for legs with little mass, which could swing on their springs before MuJoCo closes the
-    loops. The loops are closed by `connect`, or, where a spherical joint has friction, by a ball joint with this
-    friction on a small piece cut out of the platform and a `weld` of this piece to the rest: together they are the
-    platform. Base joints are those of the exact model ("universal").
+    At joint positions zero the machine stands at the pose with springs that hold it there. Motors `leg1` to `leg6` push
+    beside the springs, N. timestep: s, by default a fiftieth of the shortest natural period, and less for legs with
+    little mass, which could swing on their springs before MuJoCo closes the loops. The loops are closed by
+    `connect`, or, where a spherical joint has friction, by a ball joint with this friction on a small piece cut out of
+    the platform and a `weld` of this piece to the rest: together they are the platform. Base joints are those of the
+    exact model ("universal").
 
-    Raises: DesignError for bodies that MuJoCo refuses (see `nearest_physical`); ArgumentError for a time step that is
-    none; PoseError without one pose; SingularPoseError where no leg forces hold the machine; OutputError where the
-    file cannot be written.
-    Source: part B, for the base joints.
+    Raises: DesignError for bodies that MuJoCo refuses (see `nearest_physical`); ArgumentError for a timestep not > 0;
+    PoseError without a pose or at one that no leg can take; SingularPoseError where no leg forces hold the pose;
+    OutputError where the file cannot be written.
+    Source: own.
     """
     return write(path, mjcf(hexapod, pose, timestep))
 

@@ -18,15 +18,15 @@ UNLIMITED = 1e16  # SDF's own value for no limit
 
 
 def write_sdf(path: str | Path, hexapod: Hexapod, pose: Pose | None = None) -> Path:
-    """Write a machine at rest at a pose (default: home) as an SDF world with one model, SI units; returns the file.
+    """Write a machine at rest at a pose (default: home) as an SDF world at `path`, SI units; returns the file.
 
-    path: of the file, by custom `.sdf`. Links stand where they are at the pose, in the base frame; legs are universal,
-    prismatic (with spring, rest position and damping) and ball joints, the loops closed. The ball joints are without
-    friction, for which SDF has no word. Base joints are those of the exact model ("universal").
+    Links stand where they are at the pose, in the base frame; legs are universal, prismatic (with spring, rest position
+    and damping) and ball joints, the loops closed. The ball joints are without friction, for which SDF has no word.
+    Base joints are those of the exact model ("universal").
 
-    Raises: DesignError for bodies that are none (see `nearest_physical`); PoseError without one pose; SingularPoseError
-    where no leg forces hold the machine; OutputError where the file cannot be written.
-    Source: part B, for the base joints.
+    Raises: DesignError for bodies that are none (see `nearest_physical`); PoseError without a pose or at one that no
+    leg can take; SingularPoseError where no leg forces hold the pose; OutputError where the file cannot be written.
+    Source: own.
     """
     return write(path, sdf(standing(hexapod, pose)))
 

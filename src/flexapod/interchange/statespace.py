@@ -30,16 +30,16 @@ UNITS = {
 
 
 def write_mat(path: str | Path, hexapod: Hexapod, pose: Pose | None = None, **rest: Unpack[RestOptions]) -> Path:
-    """Write the state space of `linearise` at a pose (default: home) as a MAT-file of version 5; returns the file.
+    """Write the state space of `linearise` at a pose (default: home) to `path`, a MAT-file of version 5; returns it.
 
-    path: of the file, by custom `.mat`. rest: as for `linearise`. It holds four matrices A (12, 12), B (12, 24), C
-    (24, 12), D (24, 24) in SI units and radians; cell arrays of text state_names, state_units, and the same for input
-    and output; design, digest, joint, flexapod; pose_position (3, 1) m, pose_rotation (3, 3), pose_rpy (3, 1) rad;
-    rest_leg_force (6, 1) N. Signals are those of `Linearisation.state_space`.
+    It holds A (12, 12), B (12, 24), C (24, 12), D (24, 24) in SI units and radians; cell arrays of text state_names,
+    state_units, and the same for input and output; design, digest, joint, flexapod; pose_position (3, 1) m,
+    pose_rotation (3, 3), pose_rpy (3, 1) rad; rest_leg_force (6, 1) N. Signals are those of
+    `Linearisation.state_space`.
 
-    Raises: the errors of `linearise`, of which PoseError also without a pose; OutputError where the file cannot be
+    Raises: PoseError without a pose, and with SingularPoseError as `linearise`; OutputError where the file cannot be
     written.
-    Source: part C.
+    Source: own.
     """
     from scipy.io import savemat
 

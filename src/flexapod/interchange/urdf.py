@@ -20,16 +20,16 @@ AXES = {"x": [1.0, 0.0, 0.0], "y": [0.0, 1.0, 0.0], "z": [0.0, 0.0, 1.0]}
 
 
 def write_urdf(path: str | Path, hexapod: Hexapod, pose: Pose | None = None) -> tuple[Path, Path]:
-    """Write a machine at rest at a pose (default: home) as URDF and NAME.loops.json; returns both files. SI units.
+    """Write a machine at rest at a pose (default: home) as URDF to `path`, and NAME.loops.json; returns both files.
 
-    path: of the URDF file. The platform hangs on leg 1 by three hinges through its spherical joint; the JSON file names
-    the five point constraints that close the other legs, the six springs with their rest positions, the friction of the
+    In SI units. The platform hangs on leg 1 by three hinges through its spherical joint; the JSON file names the five
+    point constraints that close the other legs, the six springs with their rest positions, the friction of the
     spherical joints and gravity. At joint positions zero the machine stands at the pose, at rest. Base joints are those
     of the exact model ("universal").
 
-    Raises: DesignError for bodies that are none (see `nearest_physical`); PoseError without one pose; SingularPoseError
-    where no leg forces hold the machine; OutputError where the file cannot be written.
-    Source: part B, for the base joints.
+    Raises: DesignError for bodies that are none (see `nearest_physical`); PoseError without a pose or at one that no
+    leg can take; SingularPoseError where no leg forces hold the pose; OutputError where a file cannot be written.
+    Source: own.
     """
     machine = standing(hexapod, pose)
     file = write(path, urdf(machine))

@@ -1,0 +1,104 @@
+// What simulations are asked for and where their results go: plain data, shared by kernels that are compiled for
+// different instruction sets. Nothing here may be a function: it would be shared by them as well.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+
+namespace simulation_task {
+
+inline constexpr std::size_t setup_size = 50, motion_size = 24, signals = 36;
+
+/// The numbers of an excitation.
+struct Series {
+  const double* numbers;
+  std::size_t size;
+};
+
+/// A machine at rest and what drives it.
+struct Machine {
+  const double* design;  // 211 numbers
+  bool universal;
+  const double* setup;  // 50 numbers: see Setup in simulation_kernel.cpp
+  bool works;           // integrate works beside the motion
+  Series base, wrench, command;
+};
+
+struct Tolerances {
+  double rtol, atol;  // of the displacement at the platform's joints: relative, and m
+  double max_step, max_steps;
+  bool stop_at_singular;
+};
+
+/// Where the samples of one simulation go: rows for the instants given. The last three may be null.
+struct Samples {
+  const double* times;
+  std::size_t count;
+  double *displacement, *relative, *work, *platform, *base, *leg_force;
+};
+
+struct Run {
+  Machine machine;
+  Tolerances tolerances;
+  Samples samples;
+  const std::atomic<bool>* stop;
+  std::atomic<double>* progress;
+};
+
+struct End {
+  int outcome;
+  double time;                            // reached
+  double last[motion_size];               // the platform's motion then, inertial axes
+  double accepted, rejected, evaluations;  // steps, and calls of the equations of motion
+};
+
+/// x[k+1] = A x + B (y + noise), f = C x + D (y + noise), clipped to +-limit.
+struct Controller {
+  std::size_t order;
+  const double *A, *B, *C, *D;  // rows of order, 36, order, 36 numbers
+  const double* limit;          // (6) N
+};
+
+struct Timing {
+  double dt;
+  std::size_t count, steps;
+};
+
+/// Rows for every step's end, from t = 0: measurements without noise and absolute displacement. Rows for every sample:
+/// forces, and whether one was cut off.
+struct Record {
+  double *measured, *displacement, *force, *cut;
+};
+
+struct Loop {
+  Machine machine;
+  Controller controller;
+  Timing timing;
+  const double* noise;  // rows of 36 for every sample
+  Record record;
+  const std::atomic<bool>* stop;
+  std::atomic<double>* progress;
+};
+
+/// Many states of one machine: rows of 24, 24, 6 and 6 numbers, the wrench in platform axes; accelerations, rows of 6.
+struct States {
+  const double* design;
+  bool universal;
+  std::size_t count;
+  const double *platform, *base, *leg_force, *wrench;
+  double* acceleration;
+};
+
+/// A kernel compiled for one instruction set. `equations` are those of one simulation, y' = rates(t, y) with y (12).
+struct Kernel {
+  const char* name;
+  End (*simulate)(const Run& run);
+  int (*control_loop)(const Loop& loop);
+  void (*forward_dynamics)(const States& states);
+  void* (*new_equations)(const Machine& machine);
+  void (*delete_equations)(void* equations);
+  void (*start)(void* equations, double* y);
+  void (*rates)(void* equations, double t, const double* y, double* rate);
+};
+
+}  // namespace simulation_task
