@@ -96,8 +96,6 @@ class Controller:
 
         delay: whole samples by which the computed force comes late (0 or more).
         """
-        import control
-
         if self.dt is not None:
             raise ArgumentError(f"this controller is sampled already, every {self.dt:.6g} s; sample the continuous one")
         if not (np.isfinite(dt) and dt > 0):
@@ -106,6 +104,12 @@ class Controller:
             raise ArgumentError(f"delay is {delay}; it must be a whole number of samples, 0 or more")
         found = Controller(self.A, self.B, self.C, self.D, self.measures, self.name, float(dt))
         if self.order:
+            try:
+                import control
+            except ImportError as error:
+                raise ImportError(
+                    "sampling this controller needs python-control: pip install 'flexapod[control]'"
+                ) from error
             system = control.sample_system(control.ss(self.A, self.B, self.C, self.D), dt, method=method)
             found = replace(found, A=system.A, B=system.B, C=system.C, D=system.D)
         for _ in range(int(delay)):

@@ -157,7 +157,7 @@ def _e7() -> Row:
     size = float(np.linalg.norm(turn))
     more = (
         f"After a turn of {np.degrees(size):.1f}° the orientation is {np.degrees(_angle(turn)):.1f}° off; after one of "
-        f"{_SMALL:g} rad, as in Figs 7 to 9, {_angle(_SMALL / size * turn):.1g} rad."
+        f"{1e6 * _SMALL:g} µrad, as in Figs 7 to 9, {_angle(_SMALL / size * turn):.1g} rad."
     )
     shown = "manipulator I carried by a base that has turned for 1 s"
     holds = "the orientation is integrated on SO(3)"
@@ -215,7 +215,7 @@ def _gravity() -> Row:
     share = np.abs(kept / natural_modes(stiff, pose, "universal").omega - 1).max()
     more = (
         f"The lowest is {engine[0]:.3f} rad/s, by Eq. 5 {eq_5[0]:.3f} rad/s; with the printed legs of "
-        f"{stiff.legs.stiffness[0]:g} N/m the two differ by {share:.1g}."
+        f"{1e-6 * stiff.legs.stiffness[0]:g} N/µm the two differ by {percent(float(share))}."
     )
     return Row(
         "C",
@@ -275,7 +275,7 @@ def _words(rows: list[Row]) -> pd.DataFrame:
     shown["corrected, off by"] = [
         f"{row.right.max():.1g}" if row.right.max() < 1e-3 else _range(row.right) for row in rows
     ]
-    shown["in"] = [f"{row.shown}. {row.more}".strip() for row in rows]
+    shown["in"] = [f"{row.shown[0].upper()}{row.shown[1:]}. {row.more}".strip() for row in rows]
     return shown
 
 

@@ -33,7 +33,7 @@ DESIGN = "mukherjee-ii"
 DAMPING = 0.1  # of the highest mode, by the continuous controller
 FACTORS = np.geomspace(0.1, 6.0, 61)  # of the rule's sampling time
 RUN_FACTORS = (0.25, 0.5, 1.0, 2.0, 3.0, 4.0)
-DURATION = 0.1  # s
+DURATION = 0.05  # s
 _HIGHEST = 3  # modes 4 to 6 are the ones that a slow controller meets too late
 
 

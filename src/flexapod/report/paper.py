@@ -63,7 +63,7 @@ def _contents(parts: Sequence[Part]) -> str:
         count = verdicts([part])
         link = f'<a href="#{part.name}">{escape(part.title)}</a>'
         rows.append([link, *(str(count[verdict] or "") for verdict in _MARKS)])
-    return sheet.table(["part", *_MARKS], rows)
+    return f'<div class="contents">{sheet.table(["part", *_MARKS], rows)}</div>'
 
 
 def _section(part: Part) -> str:
