@@ -15,20 +15,24 @@ from matplotlib.figure import Figure
 from scipy.linalg import eig
 from scipy.spatial.transform import Rotation
 
-from flexapod.hexapod import Hexapod, load
-from flexapod.kinematics import home_pose
+from flexapod.hexapod import load
 from flexapod.linear import linearise
 from flexapod.modal import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.answers import Answer, answers, disagreement
 from flexapod.paper.charts import BLUE, ORANGE, Dots, percent, rows_of_dots
-from flexapod.paper.frequencies import PRINTED
+from flexapod.paper.frequencies import home
 from flexapod.paper.misprints import MISPRINTS, State, acceleration, legs_at
+from flexapod.paper.scatter import CASES
+from flexapod.paper.vibration import PRINTED
 from flexapod.pose import Array, Motion, Pose, rpy_matrix
+from flexapod.posesets import random_poses
 from flexapod.states import JointModel
+from flexapod.sweeps.dataset import sweep
 
 _SMALL = 1e-6  # rad, a turn as of the paper's vibrations
 _LOW_MODES = 3  # where gravity shows
+_POSES, _WELL_CONDITIONED = 20_000, 500.0  # over which legs that spin are compared with legs that do not
 _FLOOR = 1e-17  # of a disagreement that is drawn: none
 
 
@@ -139,7 +143,7 @@ def _braking() -> str:
 
 def _growth() -> str:
     hexapod = load("mukherjee-ii")
-    first = natural_modes(hexapod, _home(hexapod), "universal").omega[0]
+    first = natural_modes(hexapod, home(hexapod), "universal").omega[0]
     return (
         f"With it, manipulator II does not vibrate but leaves its equilibrium, e-fold in {1e3 / first:.1f} ms. Eq. 3 "
         "has the right sign."
@@ -171,7 +175,7 @@ def _angle(vector: Array) -> float:
 
 def _e8() -> Row:
     hexapod = load("mukherjee-ii")
-    omega = natural_modes(hexapod, _home(hexapod), "spin_free").omega
+    omega = natural_modes(hexapod, home(hexapod), "spin_free").omega
     as_hertz, as_printed = (float(np.abs(value / omega - 1).min()) for value in (2 * np.pi * PRINTED, PRINTED))
     more = (
         f"As Hz, {2 * np.pi * PRINTED:.0f} rad/s, it lies {as_hertz:.0%} from the nearest mode of manipulator II; as "
@@ -188,7 +192,7 @@ def _spin() -> Row:
     more = []
     for name in ("mukherjee-i", "mukherjee-ii"):
         hexapod = load(name)
-        exact, free = (natural_modes(hexapod, _home(hexapod), joint).omega for joint in ("universal", "spin_free"))
+        exact, free = (natural_modes(hexapod, home(hexapod), joint).omega for joint in ("universal", "spin_free"))
         more.append(f"{np.abs(free / exact - 1).max():.2%} of manipulator {'I' if name.endswith('-i') else 'II'}")
     return Row(
         "B",
@@ -198,15 +202,24 @@ def _spin() -> Row:
         _STATES["moving"],
         _off(cases, joint="spin_free"),
         _off(cases),
-        f"Natural frequencies at home change by at most {' and '.join(more)}.",
+        f"Natural frequencies at home change by at most {' and '.join(more)}; over the poses of Figure 2 with cond(H) "
+        f"< {_WELL_CONDITIONED:g} by up to {_over_the_workspace():.1%}.",
     )
+
+
+def _over_the_workspace() -> float:
+    """B: the largest relative change of a natural frequency of manipulator I over well-conditioned poses."""
+    hexapod, poses = load("mukherjee-i"), random_poses(CASES[2].box(), _POSES)
+    exact, free = (sweep(hexapod, poses, ("omega", "cond_H"), joint=joint) for joint in ("universal", "spin_free"))
+    good = exact.cond_H.values < _WELL_CONDITIONED
+    return float(np.nanmax(np.abs(free.omega.values[good] / exact.omega.values[good] - 1)))
 
 
 def _gravity() -> Row:
     """Part C: Eq. 5 leaves out weight and preload."""
     cases = answers("soft legs")
     hexapod = cases[0].state.hexapod
-    pose = _home(hexapod)
+    pose = home(hexapod)
     engine = _by_differences(cases, pose)[:_LOW_MODES]
     eq_5 = natural_modes(hexapod, pose, "universal").omega[:_LOW_MODES]
     tangent = linearise(hexapod, pose, joint="universal").modes().omega[:_LOW_MODES]
@@ -243,12 +256,6 @@ def _displaced(state: State, rest: Pose) -> Array:
     pose = state.platform.pose
     turn = Rotation.from_matrix(pose.matrix @ rest.matrix.T).as_rotvec()
     return np.concatenate([pose.position - rest.position, turn])
-
-
-def _home(hexapod: Hexapod) -> Pose:
-    pose = home_pose(hexapod)
-    assert pose is not None
-    return pose
 
 
 def _claims(rows: list[Row]) -> tuple[Claim, ...]:

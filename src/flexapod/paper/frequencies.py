@@ -8,18 +8,25 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from flexapod.hexapod import load
+from flexapod.hexapod import Hexapod, load
 from flexapod.kinematics import condition_number, home_pose
 from flexapod.modal import advised_sampling_time, natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.charts import BLUE, FAINT, ORANGE, Dots, rows_of_dots
-from flexapod.pose import Array
+from flexapod.paper.vibration import PRINTED
+from flexapod.pose import Array, Pose
 from flexapod.states import JointModel
 
-PRINTED = 749.715
 MODES = [f"omega_{mode}" for mode in range(1, 7)]
 R_U0_OF_I = {"legs.upper.mass_center": [-0.6, -0.08, 0.08]}
 MASSLESS = {"legs.lower": None, "legs.upper": None}
+
+
+def home(hexapod: Hexapod) -> Pose:
+    """The home pose, which both test manipulators have."""
+    pose = home_pose(hexapod)
+    assert pose is not None
+    return pose
 
 
 class Case(NamedTuple):
@@ -33,9 +40,7 @@ class Case(NamedTuple):
     def omega(self) -> Array:
         """(6,) rad/s, Eq. 5."""
         hexapod = load(self.design).replace(self.changes)
-        pose = home_pose(hexapod)
-        assert pose is not None
-        return natural_modes(hexapod, pose, self.joint).omega
+        return natural_modes(hexapod, home(hexapod), self.joint).omega
 
 
 CASES = (
@@ -83,9 +88,7 @@ def draw(name: str, _: Settings) -> Part:
 
 def _cond(case: Case) -> float:
     hexapod = load(case.design)
-    pose = home_pose(hexapod)
-    assert pose is not None
-    return float(condition_number(hexapod, pose))
+    return float(condition_number(hexapod, home(hexapod)))
 
 
 def _figure(table: pd.DataFrame) -> Any:

@@ -19,14 +19,14 @@ from matplotlib.patches import Rectangle
 from flexapod.assessment import assess
 from flexapod.excitation import half_sine_shock
 from flexapod.feedback import Controller, Plant, held, joined, static
-from flexapod.hexapod import Hexapod, load
-from flexapod.kinematics import home_pose
+from flexapod.hexapod import load
 from flexapod.laws import PID
 from flexapod.linear import linearise
 from flexapod.modal import advised_sampling_time
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.charts import ORANGE, dress
-from flexapod.pose import Array, Pose
+from flexapod.paper.frequencies import home
+from flexapod.pose import Array
 from flexapod.sampled import simulate_control
 from flexapod.states import JointModel
 
@@ -84,7 +84,7 @@ class _Bench:
 
     def __init__(self, joint: JointModel) -> None:
         self.hexapod = load(DESIGN).replace({"legs.damping.prismatic": FRICTION})
-        self.pose, self.joint = _home(self.hexapod), joint
+        self.pose, self.joint = home(self.hexapod), joint
         self.plant = Plant(linearise(self.hexapod, self.pose, joint=joint))
         self.dt = advised_sampling_time(float(self.plant.omega[-1]))
         self.shaken = held(self.plant, self.dt)[2][:, 2]
@@ -130,12 +130,6 @@ def _stationary(A: Array, Q: Array) -> Array:
         P = P + power @ P @ power.T
         power = power @ power
     return P
-
-
-def _home(hexapod: Hexapod) -> Pose:
-    pose = home_pose(hexapod)
-    assert pose is not None
-    return pose
 
 
 def _claims(numbers: dict[str, Any]) -> tuple[Claim, ...]:

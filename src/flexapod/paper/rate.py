@@ -18,12 +18,12 @@ from flexapod.errors import UnstableError
 from flexapod.excitation import Excitation
 from flexapod.feedback import Controller, Plant
 from flexapod.hexapod import load
-from flexapod.kinematics import home_pose
 from flexapod.laws import PID
 from flexapod.linear import linearise
 from flexapod.modal import advised_sampling_time
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.charts import BLUE, FAINT, INK, ORANGE, dress
+from flexapod.paper.frequencies import home
 from flexapod.pose import Array
 from flexapod.sampled import simulate_control
 from flexapod.spectra import flat_spectrum, random_motion
@@ -69,10 +69,8 @@ class _Bench:
 
     def __init__(self, joint: JointModel) -> None:
         self.hexapod, self.joint = load(DESIGN), joint
-        pose = home_pose(self.hexapod)
-        assert pose is not None
-        self.pose = pose
-        self.plant = Plant(linearise(self.hexapod, pose, joint=joint))
+        self.pose = home(self.hexapod)
+        self.plant = Plant(linearise(self.hexapod, self.pose, joint=joint))
         self.dt = advised_sampling_time(float(self.plant.omega[-1]))
         self.gain = 2 * DAMPING * float(self.plant.omega[-1])
         self.law = PID(0.0, self.gain, space="task").on(self.plant.linear)

@@ -8,14 +8,15 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
+from flexapod.dynamics import equations_of_motion
 from flexapod.hexapod import Hexapod, load
-from flexapod.kinematics import home_pose, inverse_kinematics
+from flexapod.kinematics import inverse_kinematics
 from flexapod.linear import linearise
 from flexapod.modal import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.charts import BLUE, ORANGE, Dots, percent, rows_of_dots
-from flexapod.paper.frequencies import MODES, R_U0_OF_I
-from flexapod.pose import Array, Pose
+from flexapod.paper.frequencies import MODES, R_U0_OF_I, home
+from flexapod.pose import Array
 from flexapod.states import JointModel
 
 Changes = Mapping[str, Any]
@@ -66,7 +67,7 @@ def _from_platform(hexapod: Hexapod) -> Changes:
 
 def _from_base_joint(hexapod: Hexapod) -> Changes:
     """r_u0 measured from the base joint, as it then lies at the home pose."""
-    length = inverse_kinematics(hexapod, _home(hexapod))
+    length = inverse_kinematics(hexapod, home(hexapod))
     center = hexapod.legs.upper.mass_center.copy()
     center[:, 0] -= length
     return {"legs.upper.mass_center": center}
@@ -184,23 +185,15 @@ def _under(reading: Reading, joint: JointModel) -> Array:
 
 
 def _omega(hexapod: Hexapod, joint: JointModel) -> Array:
-    return natural_modes(hexapod, _home(hexapod), joint).omega
+    return natural_modes(hexapod, home(hexapod), joint).omega
 
 
 def _with_gravity(hexapod: Hexapod, joint: JointModel) -> Array:
-    return linearise(hexapod, _home(hexapod), joint=joint).modes().omega
+    return linearise(hexapod, home(hexapod), joint=joint).modes().omega
 
 
 def _inertia(hexapod: Hexapod) -> Array:
-    from flexapod.dynamics import equations_of_motion
-
-    return equations_of_motion(hexapod, _home(hexapod)).J_p
-
-
-def _home(hexapod: Hexapod) -> Pose:
-    pose = home_pose(hexapod)
-    assert pose is not None
-    return pose
+    return equations_of_motion(hexapod, home(hexapod)).J_p
 
 
 def _claims(least: dict[str, float], table: pd.DataFrame) -> tuple[Claim, ...]:
