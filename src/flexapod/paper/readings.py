@@ -140,6 +140,7 @@ READINGS = (
     Reading("II", "M", "4 kg, a case of the paper", "400 kg, the other", _always({"platform.mass": 400.0})),
     Reading("II", "legs", "with their masses", "massless", _always({"legs.lower": None, "legs.upper": None})),
 )
+_CASES = ("M", "legs")  # not in doubt: what the paper varies
 _DESIGNS = {"I": "mukherjee-i", "II": "mukherjee-ii"}
 
 
@@ -197,11 +198,12 @@ def _inertia(hexapod: Hexapod) -> Array:
 
 
 def _claims(least: dict[str, float], table: pd.DataFrame) -> tuple[Claim, ...]:
-    weighty = table.largest_change > 0.01
+    doubtful = table[~table.datum.isin(_CASES)]
+    weighty = doubtful.largest_change > 0.01
     return (
         Claim(
             "Appendix A gives the data of both manipulators.",
-            f"It has to be read: of {len(table)} other readings {int(weighty.sum())} change a natural frequency by "
+            f"It has to be read: of {len(doubtful)} other readings {int(weighty.sum())} change a natural frequency by "
             "more than 1 %.",
             agrees(not weighty.any()),
             "Slips of the print and data that it leaves out.",
@@ -233,7 +235,7 @@ def _words(rows: list[Any], change: Array) -> pd.DataFrame:
     shown = pd.DataFrame(index=pd.Index([row[0] for row in rows], name="manipulator"))
     for place, column in enumerate(("datum", "read here", "the other reading"), start=1):
         shown[column] = [row[place] for row in rows]
-    for mode in range(6):
-        shown[f"ω{mode + 1}, rad/s"] = [f"{row[4][mode]:.3f}" for row in rows]
     shown["largest change"] = [percent(value) for value in np.abs(change).max(axis=1)]
+    for mode in range(6):
+        shown[f"ω{mode + 1}, rad/s"] = [f"{row[4][mode]:.1f}" for row in rows]
     return shown
