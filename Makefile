@@ -7,10 +7,13 @@ OUT    ?= out
 
 CORE := CMakeLists.txt $(wildcard src/core/*)
 
-.PHONY: report test build lint types bench bench-readme clean web web-check
+.PHONY: report paper test build lint types bench bench-readme clean web web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
+
+paper: build ## the paper reproduced on one page (OUT=...)
+	$(BIN)/flexapod paper --out $(OUT)
 
 test: build ## the whole test suite
 	$(BIN)/python -m pytest

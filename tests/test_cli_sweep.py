@@ -1,4 +1,4 @@
-"""`flexapod sweep` and `flexapod paper` as they are used: from a shell."""
+"""`flexapod sweep` as it is used: from a shell."""
 
 import json
 import os
@@ -225,31 +225,6 @@ def test_no_scheduler_there(tmp_path, capsys, monkeypatch):
     assert code == 2
     assert "no Dask scheduler answers at tcp://127.0.0.1:9" in said
     assert not out.exists()
-
-
-def test_the_paper_says_what_its_text_says(tmp_path, capsys):
-    code, text, _ = run(capsys, "paper", "--points", 20_000, "--out", tmp_path, "--json")
-    assert code == 0
-    figures = json.loads(text)
-    for number in "2345":
-        numbers = figures[number]["numbers"]
-        by_cond = list(numbers["omega_1_by_cond_H"].values())
-        assert by_cond == sorted(by_cond, reverse=True)
-        assert by_cond[0] > 40 * by_cond[-1]  # "decreases sharply with increase of condition number"
-        assert numbers["rank_correlation"] < -0.7
-        assert numbers["spread_at_equal_cond_H"] > 1.2  # "at the same condition number ... a lot of variation"
-        assert numbers["part_of_poses_lower_with_larger_mass"] == 1.0  # "decreases with increasing mass"
-        assert numbers["median_ratio_light_to_heavy"] > 3
-        assert "each coordinate plus and minus" in figures[number]["caption"]
-        assert (tmp_path / f"figure-{number}.png").read_bytes().startswith(b"\x89PNG")
-        assert json.loads((tmp_path / f"figure-{number}.json").read_text())["numbers"] == numbers
-    assert figures["2"]["numbers"]["spread_at_equal_cond_H"] > 2
-
-
-def test_a_figure_that_there_is_not(capsys):
-    code, _, said = run(capsys, "paper", "--figure", "1")
-    assert code == 2
-    assert "there are 2, 3, 4, 5" in " ".join(said.split())
 
 
 def test_import_stays_light():

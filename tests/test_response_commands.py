@@ -1,6 +1,4 @@
-"""The commands response, paper (figures 7 to 9) and animate, and the figures of vibration."""
-
-import json
+"""The commands response and animate, and the figures of vibration."""
 
 import numpy as np
 import pandas as pd
@@ -10,8 +8,6 @@ from PIL import Image
 
 import flexapod as fx
 from flexapod import plots_response
-from flexapod.cli import main
-from flexapod.paper import vibration
 
 CENTER = ["--pose", "0", "0", "0.085", "0", "0", "0"]
 AXES = ["x", "y", "z", "roll", "pitch", "yaw"]
@@ -121,63 +117,6 @@ def test_bad_spectrum_files(run, tmp_path, text, message):
     code, _, err = run("response", "mukherjee-ii", *CENTER, "--psd", path)
     assert code == 2
     assert message in err
-
-
-# --- paper ---------------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture(scope="module")
-def paper(tmp_path_factory):
-    """Numbers of figures 7, 8 and 9, drawn once by the command, and where the files are."""
-    out = tmp_path_factory.mktemp("paper")
-    numbers = [str(part) for n in (7, 8, 9) for part in ("--figure", n)]
-    assert main(["paper", *numbers, "--out", str(out)]) == 0
-    return {n: json.loads((out / f"figure-{n}.json").read_text())["numbers"] for n in (7, 8, 9)}, out
-
-
-def test_figure_7_grows(paper):
-    found, out = paper[0][7], paper[1]
-    assert found["omega_rad_s"] == pytest.approx(761.408, abs=6e-4)  # corrections, section D
-    assert found["omega_printed_rad_s"] == 749.715
-    table = pd.read_csv(out / "figure-7.csv", index_col="time_s")
-    size = [np.abs(table.yaw_rad[a : a + 0.1]).max() for a in np.arange(0.0, 1.0, 0.1)]
-    assert (np.diff(size) > 0).all()
-    # Resonance: growth of the amplitude is linear at first, as friction's e-fold is a minute away.
-    np.testing.assert_allclose(np.diff(size)[3:], np.diff(size)[3:].mean(), rtol=0.2)  # the other modes beat
-    assert found["growth_of_yaw"] == pytest.approx(size[-1] / size[0], rel=0.05)
-    assert found["apart_from_tangent"] < 1e-3
-
-
-def test_figure_8_beats_within_bounds(paper):
-    found, out = paper[0][8], paper[1]
-    assert found["omega_rad_s"] == 550.136
-    np.testing.assert_allclose(found["second_half_over_first"], 1.0, atol=0.05)
-    assert found["apart_from_tangent"] < 1e-3
-    table = pd.read_csv(out / "figure-8.csv", index_col="time_s")
-    tangent = vibration._FromRest(fx.linearise(fx.load("mukherjee-ii"), II, joint="spin_free"), 550.136)
-    bound = tangent.bound(table.index.values)
-    assert (np.abs(table.values) <= 1.001 * bound).all()
-    assert bound[:, 2].max() < 1.5 * vibration.AMPLITUDE
-
-
-def test_figure_9_peaks_where_the_linear_model_says(paper):
-    found, out = paper[0][9], paper[1]
-    assert found["found"] == found["frequencies"] == 200
-    assert found["peaks_elsewhere"] == 0
-    assert len(found["peaks_rad_s"]) >= 2
-    assert found["median_apart_from_tangent"] < 1e-6
-    table = pd.read_csv(out / "figure-9.csv", index_col="omega_rad_s")
-    assert (table.status == "found").all()
-    assert table.index[table.yaw.argmax()] == pytest.approx(761.408, rel=1e-3)
-    assert table.index[table.x.argmax()] == pytest.approx(492.6, rel=2e-3)  # the near-repeated pair
-
-
-def test_paper_command_tells_what_is_the_same(run, paper):
-    for n, files in ((7, 3), (8, 3), (9, 3)):
-        caption = json.loads((paper[1] / f"figure-{n}.json").read_text())["caption"]
-        assert all(word in caption for word in (f"Fig. {n}:", "Paper:", "Same here:", "Different:"))
-        assert len(list(paper[1].glob(f"figure-{n}.*"))) == files
-    assert run("paper", "--figure", "6")[0] == 2
 
 
 # --- animate -------------------------------------------------------------------------------------------------------

@@ -102,8 +102,6 @@ class Controller:
         Raises: ArgumentError for a time that is not > 0, a delay that is no whole number, or a controller that is
         sampled already.
         """
-        import control
-
         if self.dt is not None:
             raise ArgumentError(f"this controller is sampled already, every {self.dt:.6g} s; sample the continuous one")
         if not (np.isfinite(dt) and dt > 0):
@@ -112,6 +110,12 @@ class Controller:
             raise ArgumentError(f"delay is {delay}; it must be a whole number of samples, 0 or more")
         found = Controller(self.A, self.B, self.C, self.D, self.measures, self.name, float(dt))
         if self.order:
+            try:
+                import control
+            except ImportError as error:
+                raise ImportError(
+                    "sampling this controller needs python-control: pip install 'flexapod[control]'"
+                ) from error
             system = control.sample_system(control.ss(self.A, self.B, self.C, self.D), dt, method=method)
             found = replace(found, A=system.A, B=system.B, C=system.C, D=system.D)
         for _ in range(int(delay)):

@@ -1,16 +1,23 @@
-"""`flexapod paper`: the figures of the paper, drawn anew."""
+"""`flexapod paper`: the paper done anew, as figures, tables and one page."""
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from flexapod.cli import common
+from flexapod.cli.stages import stages
 
 if TYPE_CHECKING:
+    from flexapod.paper import Part, Settings
     from flexapod.states import JointModel
+
+PAGE = "index.html"
+_MANY = 50_000  # rows from which five digits must do, more than a drawing shows
+_SVG = {"svg.hashsalt": "flexapod"}  # the same numbers give the same file
 
 
 class FigureNumber(click.ParamType):
@@ -33,7 +40,7 @@ class FigureNumber(click.ParamType):
     "figures",
     type=FigureNumber(),
     multiple=True,
-    help="Number of a figure in the paper. Repeatable.  [default: all]",
+    help="Number of a figure in the paper, for this figure without the page. Repeatable.  [default: everything]",
 )
 @click.option("--points", type=click.IntRange(min=100), default=None, metavar="N", help="Poses in a scatter figure.")
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the poses.")
@@ -42,7 +49,7 @@ class FigureNumber(click.ParamType):
     type=click.Path(path_type=Path, file_okay=False),
     default=Path("out"),
     show_default=True,
-    help="Directory for figure-N.png, figure-N.json (caption and numbers) and figure-N.csv (what is drawn).",
+    help=f"Directory for {PAGE}, comparison.csv, and of each part NAME.png, .svg, .csv (what is drawn), .json.",
 )
 @click.option(
     "--joint",
@@ -55,31 +62,78 @@ class FigureNumber(click.ParamType):
 def command(
     figures: tuple[int, ...], points: int | None, seed: int, out: Path, joint: JointModel, as_json: bool
 ) -> None:
-    """Draw figures of Mukherjee, Dasgupta and Mallik (2007) with the packaged test manipulators.
+    """Do the work of Mukherjee, Dasgupta and Mallik (2007) anew with the packaged test manipulators.
 
-    What the paper leaves open, such as the ranges of the poses, is chosen here and told in the caption.
+    The figures that can be computed, the natural frequencies, the three conclusions, and the errors of the printed
+    equations, each with a number; on one page, beside what the paper says. What the paper leaves open, such as the
+    ranges of the poses, is chosen here and told in the captions.
     """
-    import json
-
-    from flexapod.paper import FIGURES, Settings, draw
+    from flexapod.paper import PARTS, Settings
 
     common.output_directory(out)
-    told = {}
-    for number in figures or sorted(FIGURES):
-        drawn = draw(number, Settings(points, seed, joint))
-        path = out / f"figure-{number}.png"
-        try:
-            drawn.figure.savefig(path, dpi=160)
-        except OSError as error:
-            raise click.UsageError(f"{path} cannot be written: {error.strerror}. Choose another --out.") from error
-        record = {"caption": drawn.caption, "numbers": common.plain(drawn.numbers)}
-        common.write_file(out / f"figure-{number}.json", json.dumps(record, indent=2) + "\n")
-        if drawn.table is not None:
-            common.write_file(out / f"figure-{number}.csv", drawn.table.to_csv())
-        told[str(number)] = {"file": str(path), **record}
-        if not as_json:
-            click.echo(f"{path}\n  {drawn.caption}")
-            for name, value in drawn.numbers.items():
-                click.echo(f"  {name}: {value}")
+    settings = Settings(points, seed, joint)
+    names = [f"figure-{number}" for number in figures] or list(PARTS)
+    parts = []
+    with stages(quiet=as_json) as report:
+        for name in names:
+            report(name, 0.0)
+            parts.append(_drawn(name, settings))
+            _write(parts[-1], out)
+            report(name, 1.0)
+        told = {
+            part.name.removeprefix("figure-"): {"file": str(out / f"{part.name}.png"), **_record(part)}
+            for part in parts
+        }
+        if not figures:
+            report("page", 0.0)
+            told["page"] = _page(parts, out)
     if as_json:
         common.print_json(told)
+        return
+    for part in parts:
+        _print(part, out)
+    if not figures:
+        click.echo(f"{told['page']['file']}\n  {told['page']['statements']}")
+
+
+def _drawn(name: str, settings: Settings) -> Part:
+    """A part of the paper. Raises UsageError where it needs an extra that is not installed."""
+    from flexapod.paper import draw
+
+    try:
+        return draw(name, settings)
+    except ImportError as error:
+        raise click.UsageError(str(error)) from error
+
+
+def _write(part: Part, out: Path) -> None:
+    """The part's files."""
+    import matplotlib
+
+    common.save_figure(part.figure, out / f"{part.name}.png")
+    with matplotlib.rc_context(_SVG):  # type: ignore[arg-type]
+        common.save_figure(part.figure, out / f"{part.name}.svg")
+    common.write_file(out / f"{part.name}.json", json.dumps(_record(part), indent=2, ensure_ascii=False) + "\n")
+    digits = "%.9g" if len(part.table) < _MANY else "%.5g"
+    common.write_file(out / f"{part.name}.csv", part.table.to_csv(float_format=digits))
+    if part.shown is not None:
+        common.write_file(out / f"{part.name}-table.csv", part.shown.to_csv())
+
+
+def _record(part: Part) -> dict[str, Any]:
+    claims = [claim._asdict() for claim in part.claims]
+    return {"caption": part.caption, "numbers": common.plain(part.numbers), "claims": claims}
+
+
+def _page(parts: list[Part], out: Path) -> dict[str, Any]:
+    from flexapod.report import paper
+
+    common.write_file(out / PAGE, paper.page(parts))
+    common.write_file(out / "comparison.csv", paper.comparison(parts).to_csv())
+    return {"file": str(out / PAGE), "statements": dict(paper.verdicts(parts))}
+
+
+def _print(part: Part, out: Path) -> None:
+    click.echo(f"{out / part.name}.png\n  {part.caption}")
+    for claim in part.claims:
+        click.echo(f"  [{claim.verdict}] {claim.paper}\n      {claim.ours}")

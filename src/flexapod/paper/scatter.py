@@ -6,14 +6,15 @@ conditioned ones near home into singular ones, as the paper's text says of its f
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+import pandas as pd
 
 from flexapod import plots_sweep
 from flexapod.hexapod import Hexapod, load
 from flexapod.kinematics import home_pose
-from flexapod.paper import PaperFigure, Settings
+from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.posesets import Box, random_poses
 from flexapod.sweeps.dataset import sweep
 from flexapod.sweeps.summary import SweepSummary, summarise
@@ -54,8 +55,9 @@ CASES = {
 }
 
 
-def draw(figure: int, settings: Settings) -> PaperFigure:
+def draw(name: str, settings: Settings) -> Part:
     """One of Figures 2-5, with the numbers behind what the paper says of it."""
+    figure = int(name.removeprefix("figure-"))
     case = CASES[figure]
     poses = random_poses(case.box(), settings.points or POINTS, settings.seed)
     own, other = (
@@ -70,6 +72,7 @@ def draw(figure: int, settings: Settings) -> PaperFigure:
         "poses": summary.poses,
         "mass_kg": case.mass,
         "omega_1_median_rad_s": summary.quantiles[0.5],
+        "omega_1_least_rad_s": float(np.nanmin(own["omega_1"])),
         "omega_1_by_cond_H": _falls(own),
         "rank_correlation": summary.correlation,
         "spread_at_equal_cond_H": summary.spread,
@@ -77,8 +80,10 @@ def draw(figure: int, settings: Settings) -> PaperFigure:
         "median_ratio_light_to_heavy": ratio,
         "part_of_poses_lower_with_larger_mass": float(np.mean(heavy_omega < light_omega)),
     }
-    axes = plots_sweep.index_scatter(own, most_cond=float(np.nanquantile(own["cond_H"], _SHOWN)))
-    axes.set_title(f"Figure {figure}: {case.name}, platform {case.mass:g} kg", fontsize=11, color=plots_sweep.INK)
+    most_cond = float(np.nanquantile(own["cond_H"], _SHOWN))
+    axes = plots_sweep.index_scatter(own, most_cond=most_cond)
+    title = f"Figure {figure}: {case.name}, platform {case.mass:g} kg"
+    axes.set_title(title, fontsize=11, color=plots_sweep.INK)
     axes.text(
         0.98,
         0.97,
@@ -91,7 +96,43 @@ def draw(figure: int, settings: Settings) -> PaperFigure:
     )
     drawn = axes.get_figure(root=True)
     assert drawn is not None
-    return PaperFigure(figure, drawn, _caption(case, settings, summary), numbers)
+    table = pd.DataFrame({name: own[name].values for name in ("cond_H", "omega_1")}).rename_axis("pose")
+    table = table[table.cond_H <= most_cond].rename(columns={"omega_1": "omega_1_rad_s"})
+    claims = _claims(case, numbers)
+    return Part(name, title, drawn, _caption(case, settings, summary), numbers, claims, table)
+
+
+def _claims(case: Case, numbers: dict[str, Any]) -> tuple[Claim, ...]:
+    bands = list(numbers["omega_1_by_cond_H"].values())
+    spread, correlation = numbers["spread_at_equal_cond_H"], numbers["rank_correlation"]
+    lower = numbers["part_of_poses_lower_with_larger_mass"]
+    light, heavy = sorted((case.mass, case.other_mass))
+    return (
+        Claim(
+            "The lowest natural frequency falls sharply as cond(H) grows; near singular poses it is very low.",
+            f"Median of the best conditioned tenth {bands[0]:.4g} rad/s, of the worst hundredth {bands[-1]:.3g} rad/s; "
+            f"least of all {numbers['omega_1_least_rad_s']:.2g} rad/s.",
+            agrees(bands == sorted(bands, reverse=True) and bands[0] > 10 * bands[-1]),
+        ),
+        Claim(
+            "At equal cond(H) poses differ much in their lowest frequency; still the two indices correlate.",
+            f"At equal cond(H) the 95 % quantile is {spread:.2f} times the 5 % quantile; rank correlation "
+            f"{correlation:.2f}.",
+            agrees(spread > 1.2 and correlation < -0.5),
+        ),
+        Claim(
+            "A heavier platform lowers the lowest frequency, which cond(H) cannot show.",
+            f"Lower with {heavy:g} kg than with {light:g} kg at {lower:.0%} of the poses, in the median by a factor of "
+            f"{numbers['median_ratio_light_to_heavy']:.2f}; cond(H) is the same.",
+            agrees(lower == 1.0),
+        ),
+        Claim(
+            "The cloud of poses itself, and its axes.",
+            "Ranges chosen here, see the caption.",
+            "open",
+            "The paper prints neither the poses nor their ranges.",
+        ),
+    )
 
 
 def _falls(own: xr.Dataset) -> dict[str, float]:
