@@ -7,13 +7,16 @@ OUT    ?= out
 
 CORE := CMakeLists.txt $(wildcard src/core/*)
 
-.PHONY: report test build lint types bench clean web web-check
+.PHONY: report test build lint types bench clean web web-check validation
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
 
 test: build ## the whole test suite
 	$(BIN)/python -m pytest
+
+validation: build ## docs/validation.json from the tests' own numbers
+	$(BIN)/python -m pytest --record-validation=docs/validation.json
 
 build: $(VENV)/.built
 
