@@ -14,21 +14,10 @@ from flexapod.schema import KEYS
 
 PAGE = Path(__file__).parents[1] / "docs" / "notation.md"
 BATCH = (2,)
-OF_POSES = [
-    "inverse_kinematics",
-    "leg_rates",
-    "force_transformation",
-    "condition_number",
-    "joint_angles",
-    "leg_distance",
-    "equations_of_motion",
-    "joint_reactions",
-    "energy",
-    "hold",
-    "natural_modes",
-    "stability_index",
-    "energy_shares",
-]
+OF_POSES = (
+    *("inverse_kinematics", "leg_rates", "force_transformation", "condition_number", "joint_angles", "leg_distance"),
+    *("equations_of_motion", "joint_reactions", "energy", "hold", "natural_modes", "stability_index", "energy_shares"),
+)
 
 
 class Row(NamedTuple):

@@ -1,5 +1,9 @@
 """The equations of docs/theory/ as they stand there, in NumPy, against the core; and where their links lead."""
 
+import re
+from operator import attrgetter
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -125,3 +129,26 @@ def test_stiffness_of_massless_legs_as_written(hexapod, measured):
     K[3:, 3:] += tilde(R @ load[3:])
     scale = np.repeat([1.0, 1 / size(h)], 3)
     measured("rest/closed-form", relative(found.K * np.outer(scale, scale), K * np.outer(scale, scale)), 1000 * EPS)
+
+
+# --- links ------------------------------------------------------------------------------------------------------------
+
+DOCS = Path(__file__).parents[1] / "docs"
+PAGES = sorted(DOCS.rglob("*.md"))
+
+
+@pytest.mark.parametrize("path", PAGES, ids=lambda path: str(path.relative_to(DOCS)))
+def test_links_to_the_code_lead_somewhere(path):
+    text = path.read_text(encoding="utf-8")
+    for file, symbol in re.findall(r"\]\(core:([\w.]+)#(\w+)\)", text):
+        assert re.search(rf"\b{symbol}\b", (DOCS.parent / "src" / "core" / file).read_text(encoding="utf-8")), symbol
+    for name in re.findall(r"\]\[flexapod\.([\w.]+)\]", text):
+        attrgetter(name)(fx)  # raises AttributeError where there is none
+
+
+def test_the_theory_names_what_implements_it():
+    """Every page of the theory links functions of the core or of the library."""
+    pages = sorted((DOCS / "theory").glob("*.md"))
+    assert len(pages) >= 9
+    for path in pages:
+        assert re.search(r"\]\(core:|\]\[flexapod\.", path.read_text(encoding="utf-8")), path.name
