@@ -7,7 +7,7 @@ OUT    ?= out
 
 CORE := CMakeLists.txt $(wildcard src/core/*)
 
-.PHONY: report paper test build lint types bench bench-readme clean web web-check
+.PHONY: report paper test build lint types bench bench-readme validation clean web web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
@@ -17,6 +17,9 @@ paper: build ## the paper reproduced on one page (OUT=...)
 
 test: build ## the whole test suite
 	$(BIN)/python -m pytest
+
+validation: build ## docs/validation.json from the tests' own numbers
+	$(BIN)/python -m pytest --record-validation=docs/validation.json
 
 build: $(VENV)/.built
 

@@ -1,10 +1,12 @@
-"""What all tests share: how examples are drawn, and the command line in this process."""
+"""What all tests share: how examples are drawn, the command line in this process, and what was measured."""
 
 import json
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
 
+from claims import Ledger, committed
 from flexapod.cli import main
 
 # Hypothesis draws the same examples in every run, so that a failure is never a matter of luck.
@@ -36,3 +38,44 @@ def result(run):
         return json.loads(out)
 
     return call
+
+
+# --- what was measured ------------------------------------------------------------------------------------------------
+
+LEDGER = pytest.StashKey[Ledger]()
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--record-validation",
+        metavar="FILE",
+        type=Path,
+        help="run the tests that measure the claims of the validation page, and write what they found",
+    )
+
+
+def pytest_configure(config):
+    recording = config.getoption("--record-validation") is not None
+    config.stash[LEDGER] = Ledger(None if recording else committed())
+
+
+def pytest_collection_modifyitems(config, items):
+    if config.getoption("--record-validation") is not None:
+        measuring = [item for item in items if "measured" in getattr(item, "fixturenames", ())]
+        config.hook.pytest_deselected(items=[item for item in items if item not in measuring])
+        items[:] = measuring
+
+
+def pytest_sessionfinish(session, exitstatus):
+    path = session.config.getoption("--record-validation")
+    if path is not None and exitstatus == 0:
+        try:
+            session.config.stash[LEDGER].write(path)
+        except ValueError as error:
+            pytest.exit(str(error), returncode=1)
+
+
+@pytest.fixture(scope="session")
+def measured(request):
+    """`measured(key, found, bound)`: assert a deviation and take it down for the validation page (claims.py)."""
+    return request.config.stash[LEDGER]

@@ -16,6 +16,12 @@ def relative(found, expected) -> float:
     return float(np.linalg.norm(np.asarray(found) - expected) / np.linalg.norm(expected))
 
 
+def apart(found, expected, floor=0.0) -> float:
+    """The largest difference of two numbers in the same place, each relative to what is expected there plus `floor`."""
+    expected = np.asarray(expected)
+    return float(np.max(np.abs(np.asarray(found) - expected) / (floor + np.abs(expected))))
+
+
 def center(hexapod) -> fx.Pose:
     """The middle of the workspace."""
     home = fx.home_pose(hexapod)

@@ -9,7 +9,7 @@ goes in and comes out; every parameter and every field of a result by its name. 
 `Raises:` stands in every function, in every class that checks what it is made of, and in methods that check something.
 It names the errors of its own checks and no error that cannot happen, or says "nothing of its own.". (DesignError for
 a `hexapod` that is none goes without saying.) `Source:` stands in every function and class: equation, section, figure,
-appendix or conclusion of the paper, E1 to E8 or part A to D of its corrections (docs/notation.md), an author with the
+appendix or conclusion of the paper, E1 to E8 or part A to D of its corrections (docs/theory.md), an author with the
 year, a standard, or "own".
 """
 

@@ -37,19 +37,25 @@ def even(*squares):
     return out
 
 
-def matched(found, expected, tolerance):
-    """Every expected pole has one of those found within `tolerance` of it, relative to the largest."""
+def mismatch(found, expected):
+    """How far each expected pole is from one of those found, (n,), relative to the largest."""
     assert len(found) == len(expected)
-    left = list(found)
-    scale = np.abs(expected).max()
+    left, off = list(found), []
     for pole in expected:
         distance = np.abs(np.array(left) - pole)
-        assert distance.min() < tolerance * scale, f"{pole} is missing; the nearest is off by {distance.min()}"
+        off.append(distance.min())
         left.pop(int(distance.argmin()))
+    return np.array(off) / np.abs(expected).max()
+
+
+def matched(found, expected, tolerance):
+    """Every expected pole has one of those found within `tolerance` of it, relative to the largest."""
+    off = mismatch(found, expected)
+    assert (off < tolerance).all(), f"{expected[off.argmax()]} is missing; the nearest is off by {off.max()}"
 
 
 @pytest.mark.parametrize("gain", [3.0, 30.0, 300.0])
-def test_one_force_loop_has_the_poles_of_the_closed_form(orbit, gain):
+def test_one_force_loop_has_the_poles_of_the_closed_form(orbit, gain, measured):
     """s prod(s^2 + w_i^2) + g prod(s^2 + z_i^2) = 0, z the frequencies without that leg's stiffness (Preumont)."""
     h, pose = uneven(orbit), fx.home_pose(orbit)
     J = fx.equations_of_motion(h, pose).J_p
@@ -63,11 +69,11 @@ def test_one_force_loop_has_the_poles_of_the_closed_form(orbit, gain):
     polynomial = np.polyadd(np.polymul([1.0, 0.0], even(*w2)), gain * even(*z2))
     found = fx.closed_loop(h, pose, fx.ForceFeedback(gain, legs=(3,)), unstable="keep", nearness=0.0).pole
     # the double zero at s = 0 that polynomial and loop share is found to the root of rounding
-    matched(found, np.roots(polynomial), 1e-6)
+    measured("control/force", mismatch(found, np.roots(polynomial)), 1e-6)
 
 
 @pytest.mark.parametrize("gain", [10.0, 200.0, 5000.0])
-def test_one_velocity_loop_has_the_poles_of_the_closed_form(orbit, gain):
+def test_one_velocity_loop_has_the_poles_of_the_closed_form(orbit, gain, measured):
     """prod(s^2 + w_i^2) + g s c prod(s^2 + z_i^2) = 0, z the frequencies with that leg locked; c = h^T J^-1 h."""
     h, pose = uneven(orbit), fx.home_pose(orbit)
     tangent = linearise(h, pose)
@@ -78,7 +84,7 @@ def test_one_velocity_loop_has_the_poles_of_the_closed_form(orbit, gain):
     c = column @ np.linalg.solve(tangent.M, column)
     polynomial = np.polyadd(even(*w2), gain * c * np.polymul([1.0, 0.0], even(*z**2)))
     found = fx.closed_loop(h, pose, fx.VelocityFeedback(gain, legs=(5,)), nearness=0.0).pole
-    matched(found, np.roots(polynomial), 1e-8)
+    measured("control/velocity", mismatch(found, np.roots(polynomial)), 1e-8)
 
 
 def test_equal_loops_on_all_legs_damp_every_mode_by_the_closed_form(orbit):
@@ -168,13 +174,13 @@ def python_control_poles(hexapod, pose, kp, kd):
 
 
 @pytest.mark.parametrize("name", ["cubic-isolator", "precision-positioner", "motion-base"])
-def test_pd_poles_agree_with_python_control(name):
+def test_pd_poles_agree_with_python_control(name, measured):
     h = fx.load(name)
     pose = fx.home_pose(h)
     k = float(h.legs.stiffness[0])
     kp, kd = 0.7 * k, 0.4 * k / fx.stability_index(h, pose)
     found = fx.closed_loop(h, pose, fx.PID(kp, kd), nearness=0.0).pole
-    matched(found, python_control_poles(h, pose, kp, kd), 1e-9)
+    measured("control/position", mismatch(found, python_control_poles(h, pose, kp, kd)), 1e-9)
 
 
 def test_what_gains_mean(orbit):

@@ -11,13 +11,10 @@ from scipy.spatial.transform import Rotation
 import flexapod as fx
 from engine import ClosedChain, bench_constraint_dynamics
 from states import appendix_a, draw_state, perturbed
+from support import apart, relative
 
 GOLDEN = json.loads((Path(__file__).parent / "data" / "golden.json").read_text(encoding="utf-8"))["cases"]
 UNIVERSAL = [case for case in GOLDEN if case["joint"] == "universal"]  # spin_free is no mechanism
-
-
-def relative(found, expected) -> float:
-    return float(np.linalg.norm(np.asarray(found) - expected) / np.linalg.norm(expected))
 
 
 def plain_motion(case: dict) -> SimpleNamespace:
@@ -37,13 +34,13 @@ def golden_state(case: dict) -> tuple[ClosedChain, tuple, tuple]:
 
 
 @pytest.mark.parametrize("case", UNIVERSAL, ids=lambda case: case["design"])
-def test_engine_reproduces_golden(case):
+def test_engine_reproduces_golden(case, measured):
     chain, motions, loads = golden_state(case)
     linear, angular = chain.acceleration(*motions, *loads)
     # Two codes that share nothing. The engine's two ways to solve its equations differ by 4e-14; the stored answers,
     # whose J_b came from differences of large numbers, leave up to 5e-12 where the platform weighs 4000 kg.
-    assert relative(linear, case["acceleration"]) < 1e-11
-    assert relative(angular, case["angular_acceleration"]) < 1e-11
+    found = relative(linear, case["acceleration"]), relative(angular, case["angular_acceleration"])
+    measured("motion/stored-engine", found, 1e-11)
     assert relative(chain.mass_matrix(*motions), case["J_p"]) < 1e-12
     assert relative(chain.base_matrix(*motions), case["J_b"]) < 1e-11
 
@@ -53,7 +50,7 @@ def test_engine_reproduces_golden(case):
 
 @pytest.mark.parametrize("name", ["mukherjee-i", "mukherjee-ii"])
 @pytest.mark.parametrize("block", range(5))
-def test_forward_dynamics_agrees_with_engine(name, block):
+def test_forward_dynamics_agrees_with_engine(name, block, measured):
     """200 states in all, half of them of the packaged designs, half of perturbed ones with strong friction."""
     rng = np.random.default_rng([2007, block])
     packaged = fx.load(name)
@@ -63,24 +60,23 @@ def test_forward_dynamics_agrees_with_engine(name, block):
         found = fx.forward_dynamics(hexapod, state.platform, base=state.base, joint="universal", **state.loads)
         # The engine's own rounding is below 1e-13 here. cond(J_p) reaches 4e4, so that a J_p good to 1e-14 may leave
         # 1e-10, which is what is promised.
-        assert relative(found[0], expected[0]) < 1e-10
-        assert relative(found[1], expected[1]) < 1e-10
+        measured("motion/engine", [relative(f, e) for f, e in zip(found, expected, strict=True)], 1e-10)
 
 
 @pytest.mark.parametrize("name", ["mukherjee-i", "mukherjee-ii"])
-def test_equations_of_motion_agree_with_engine(name):
+def test_equations_of_motion_agree_with_engine(name, measured):
     rng = np.random.default_rng(34)
     for _ in range(10):
         hexapod = perturbed(fx.load(name), rng)
         state, chain = draw_state(hexapod, rng), ClosedChain(hexapod)
         equations = fx.equations_of_motion(hexapod, state.platform, base=state.base, joint="universal")
-        assert relative(equations.J_p, chain.mass_matrix(state.platform, state.base)) < 1e-11
-        assert relative(equations.J_b, chain.base_matrix(state.platform, state.base)) < 1e-11
-        assert relative(equations.eta, chain.bias(state.platform, state.base)) < 1e-11
+        measured("motion/J_p", relative(equations.J_p, chain.mass_matrix(state.platform, state.base)), 1e-11)
+        measured("motion/J_b", relative(equations.J_b, chain.base_matrix(state.platform, state.base)), 1e-11)
+        measured("motion/eta", relative(equations.eta, chain.bias(state.platform, state.base)), 1e-11)
 
 
 @pytest.mark.parametrize("name", ["mukherjee-i", "mukherjee-ii"])
-def test_joint_reactions_agree_with_engine(name):
+def test_joint_reactions_agree_with_engine(name, measured):
     rng = np.random.default_rng(12)
     for _ in range(10):
         hexapod = perturbed(fx.load(name), rng)
@@ -96,7 +92,7 @@ def test_joint_reactions_agree_with_engine(name):
             # The engine names what acts on the legs; the library what the legs do to platform and base.
             sign = -1.0 if field.startswith(("spherical", "universal")) else 1.0
             # Both round at 1e-13; the accelerations, and the light leg's share of them, cost the rest.
-            assert relative(getattr(found, field), sign * getattr(expected, field)) < 1e-10, field
+            measured("motion/reactions", relative(getattr(found, field), sign * getattr(expected, field)), 1e-10)
 
 
 @pytest.mark.parametrize("name", ["mukherjee-i", "mukherjee-ii"])
@@ -113,15 +109,15 @@ def test_moment_in_the_prismatic_pair_depends_on_the_section(name):
 
 
 @pytest.mark.parametrize("name", ["mukherjee-i", "mukherjee-ii", "motion-base"])
-def test_energies_agree_with_engine(name):
+def test_energies_agree_with_engine(name, measured):
     rng = np.random.default_rng(14)
     for _ in range(10):
         hexapod = perturbed(fx.load(name), rng)
         state, chain = draw_state(hexapod, rng), ClosedChain(hexapod)
         found = fx.energy(hexapod, state.platform, state.base)
         # Sums of positive terms (or nearly so: the paper's leg inertias are not) of a few dozen products.
-        assert found.kinetic == pytest.approx(chain.kinetic_energy(state.platform, state.base), rel=1e-12)
-        assert found.dissipation == pytest.approx(chain.dissipation(state.platform, state.base), rel=1e-12)
+        expected = [chain.kinetic_energy(state.platform, state.base), chain.dissipation(state.platform, state.base)]
+        measured("motion/energies", apart([found.kinetic, found.dissipation], expected), 1e-12)
         # Terms of both signs: against their size, the platform's weight at a leg's length or so.
         weight = hexapod.platform_mass * np.linalg.norm(hexapod.gravity) * np.linalg.norm(state.platform.pose.position)
         potential = chain.potential_energy(state.platform, state.base)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from support import relative
+from support import apart, relative
 
 CASES = json.loads((Path(__file__).parent / "data" / "golden.json").read_text(encoding="utf-8"))["cases"]
 NAMES = {"I": "mukherjee-i", "II": "mukherjee-ii"}
@@ -38,15 +38,15 @@ def test_there_are_24_states():
     assert {case["joint"] for case in CASES} == {"universal", "spin_free"}
 
 
-def test_equations_of_motion(case):
+def test_equations_of_motion(case, measured):
     platform, base = motion_of(case["platform"]), motion_of(case["base"])
     found = fx.equations_of_motion(hexapod_of(case), platform, base=base, joint=case["joint"])
     for name in ("J_p", "J_b", "H"):
         for mine, stored in zip(blocks(getattr(found, name)), blocks(case[name]), strict=True):
-            assert relative(mine, stored) < 1e-10  # promised; both codes round at about 1e-12
+            measured("motion/matrices", relative(mine, stored), 1e-10)  # promised; both codes round at about 1e-12
 
 
-def test_accelerations(case):
+def test_accelerations(case, measured):
     loads = {"force": case["force_platform_frame"], "moment": case["moment_platform_frame"]}
     linear, angular = fx.forward_dynamics(
         hexapod_of(case),
@@ -56,14 +56,14 @@ def test_accelerations(case):
         joint=case["joint"],
         **loads,
     )
-    assert relative(linear, case["acceleration"]) < 1e-10  # promised
-    assert relative(angular, case["angular_acceleration"]) < 1e-10
+    found = relative(linear, case["acceleration"]), relative(angular, case["angular_acceleration"])
+    measured("motion/accelerations", found, 1e-10)  # promised
 
 
-def test_leg_lengths_and_condition_number(case):
+def test_leg_lengths_and_condition_number(case, measured):
     hexapod, pose, base = hexapod_of(case), motion_of(case["platform"]).pose, motion_of(case["base"]).pose
     # A length is a root of a sum of three squares of differences of numbers of its own order: a few eps.
-    np.testing.assert_allclose(fx.inverse_kinematics(hexapod, pose, base), case["leg_length"], rtol=1e-14)
+    measured("geometry/stored", apart(fx.inverse_kinematics(hexapod, pose, base), case["leg_length"]), 1e-14)
     H = fx.force_transformation(hexapod, pose, base)
     # The smallest singular value errs by eps times the largest: relative eps times cond(H), which is below 1e3 here.
     assert np.linalg.cond(H) == pytest.approx(case["cond_H"], rel=1e-10)
@@ -71,9 +71,9 @@ def test_leg_lengths_and_condition_number(case):
     assert fx.condition_number(hexapod, on_ground) == pytest.approx(case["cond_H"], rel=1e-10)
 
 
-def test_natural_frequencies(case):
+def test_natural_frequencies(case, measured):
     found = fx.natural_modes(
         hexapod_of(case), motion_of(case["platform"]).pose, joint=case["joint"], base=motion_of(case["base"]).pose
     )
     # Promised. The stored ones come from an eigenvalue problem, which loses eps times the square of the condition.
-    np.testing.assert_allclose(found.omega, case["natural_frequency_rad_s"], rtol=1e-9)
+    measured("modes/stored", apart(found.omega, case["natural_frequency_rad_s"]), 1e-9)

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 import flexapod as fx
 from drawn import machines, seeds, situations
-from support import EPS, MACHINES, away, center, displaced, relative, size
+from support import EPS, MACHINES, apart, away, center, displaced, relative, size
 
 # --- poses ------------------------------------------------------------------------------------------------------------
 
@@ -81,12 +81,12 @@ def test_motion_defaults_to_rest_and_the_fixed_base_to_the_origin():
 
 
 @given(case=situations())
-def test_lengths_are_distances_between_joints(case):
+def test_lengths_are_distances_between_joints(case, measured):
     platform, base = case.platform.pose, case.base.pose
     upper = Rotation.from_matrix(platform.matrix).apply(np.array(case.hexapod.platform_joints)) + platform.position
     lower = Rotation.from_matrix(base.matrix).apply(np.array(case.hexapod.base_joints)) + base.position
     expected = np.linalg.norm(upper - lower, axis=1)
-    np.testing.assert_allclose(fx.inverse_kinematics(case.hexapod, platform, base), expected, rtol=1e-13)
+    measured("geometry/lengths", apart(fx.inverse_kinematics(case.hexapod, platform, base), expected), 1e-13)
 
 
 @pytest.mark.parametrize("name", MACHINES)
@@ -140,14 +140,14 @@ def test_forward_kinematics_from_a_start(name):
 
 
 @pytest.mark.parametrize("name", MACHINES)
-def test_forward_kinematics_without_a_start(name):
+def test_forward_kinematics_without_a_start(name, measured):
     """The assembly found has the lengths; near home it is the one near home."""
     hexapod, rng = fx.load(name), np.random.default_rng(7)
     for _ in range(40):
         pose = nearby(hexapod, rng, 0.1, 0.3)
         lengths = fx.inverse_kinematics(hexapod, pose)
         found = fx.forward_kinematics(hexapod, lengths)
-        np.testing.assert_allclose(fx.inverse_kinematics(hexapod, found), lengths, rtol=2e-11)  # its promise
+        measured("geometry/forward", apart(fx.inverse_kinematics(hexapod, found), lengths), 2e-11)  # its promise
     pose = nearby(hexapod, rng, 0.01, 0.02)
     assert_same_pose(hexapod, fx.forward_kinematics(hexapod, fx.inverse_kinematics(hexapod, pose)), pose)
 
@@ -251,7 +251,7 @@ def test_leg_distance_is_the_least_of_all_pairs(case):
 
 
 @pytest.mark.parametrize("seed", range(40))
-def test_leg_distance_of_any_two_segments(seed):
+def test_leg_distance_of_any_two_segments(seed, measured):
     """Crossing, end to end, coplanar, past each other: the other four legs stand far away."""
     rng = np.random.default_rng(seed)
     while True:  # half of them on a lattice, where segments cross, touch and share planes
@@ -269,7 +269,7 @@ def test_leg_distance_of_any_two_segments(seed):
     }
     found = fx.leg_distance(fx.load("motion-base").replace(changes), fx.Pose([0, 0, 0]))
     # SciPy's minimum of the square is good to about 1e-9.
-    assert found == pytest.approx(segments_apart(ends[0], legs[0], ends[1], legs[1]), abs=3e-5)
+    measured("geometry/clearance", found - segments_apart(ends[0], legs[0], ends[1], legs[1]), 3e-5)
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.4, 1.0, 1.7])

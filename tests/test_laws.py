@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 import flexapod as fx
 from drawn import Situation, machines, seeds, situations, with_round_legs
-from support import EPS, JOINTS, MACHINES, accelerated, center, difference, later, relative, size, time_scale
+from support import EPS, JOINTS, MACHINES, accelerated, apart, center, difference, later, relative, size, time_scale
 
 both_models = pytest.mark.parametrize("joint", JOINTS)
 
@@ -26,7 +26,7 @@ def in_motion(case: Situation, joint: str) -> fx.Motion:
 
 @both_models
 @given(case=situations())
-def test_rate_of_energy_is_power(joint, case):
+def test_rate_of_energy_is_power(joint, case, measured):
     """d(kinetic + gravitational + elastic)/dt = power of actuators, wrench and moving base, less friction.
 
     The leg force is a spring's and an actuator's. The paper's model has legs that turn with the universal joint but
@@ -60,7 +60,7 @@ def test_rate_of_energy_is_power(joint, case):
     flow = np.abs(powers).max() + abs(energy(0.0)) / time
     # Differences of fourth order: a step of 1e-3 of the time scale errs by 1e-12 of the flow times the fifth
     # derivative's factor, some thousands at worst (stiff springs stretch fast), and by rounding, eps / 1e-3.
-    assert difference(energy, 1e-3 * time) == pytest.approx(sum(powers), abs=1e-8 * flow)
+    measured("laws/power", (difference(energy, 1e-3 * time) - sum(powers)) / flow, 1e-8)
 
 
 def _power_without_work(case: Situation, reaction: fx.Reactions) -> float:
@@ -79,25 +79,25 @@ def _power_without_work(case: Situation, reaction: fx.Reactions) -> float:
 
 
 @given(case=situations())
-def test_leg_rates_are_derivatives_of_lengths(case):
+def test_leg_rates_are_derivatives_of_lengths(case, measured):
     hexapod, platform, base = case.hexapod, case.platform, case.base
     found = fx.leg_rates(hexapod, platform, base)
     step = 1e-3 * time_scale(hexapod, platform, base)
     length = difference(lambda t: fx.leg_rates(hexapod, later(platform, t), later(base, t)).length, step)
     rate = difference(lambda t: fx.leg_rates(hexapod, later(platform, t), later(base, t)).rate, step)
     # Fourth order with a step of 1e-3: 1e-12 times the fifth derivative's factor, some hundreds; rounding eps / 1e-3.
-    assert relative(found.rate, length) < 1e-9
-    assert relative(found.acceleration, rate) < 1e-9
+    measured("laws/leg-rates", [relative(found.rate, length), relative(found.acceleration, rate)], 1e-9)
 
 
 @given(case=situations())
-def test_H_transposed_is_the_leg_rates(case):
+def test_H_transposed_is_the_leg_rates(case, measured):
     """Virtual work: the legs' forces and the platform's wrench do the same work."""
     hexapod = case.hexapod
     H = fx.force_transformation(hexapod, case.platform.pose, case.base.pose)
     twist = np.concatenate([case.platform.velocity, case.platform.angular_velocity])
     rate = fx.leg_rates(hexapod, case.platform, case.base.pose).rate  # base at rest
-    assert relative(H.T @ twist, rate) < 1000 * EPS  # sums of six products whose parts cancel a hundredfold at most
+    # Sums of six products whose parts cancel a hundredfold at most.
+    measured("laws/virtual-work", relative(H.T @ twist, rate), 1000 * EPS)
 
 
 @both_models
@@ -145,12 +145,13 @@ def test_inertia_is_symmetric_and_positive_definite(joint, case):
 
 @both_models
 @given(case=situations())
-def test_kinetic_energy_is_half_of_twist_times_inertia(joint, case):
+def test_kinetic_energy_is_half_of_twist_times_inertia(joint, case, measured):
     still = fx.Motion(case.base.pose)
     J = fx.equations_of_motion(case.hexapod, case.platform, base=still, joint=joint).J_p
     twist = np.concatenate([case.platform.velocity, case.platform.angular_velocity])
     found = fx.energy(case.hexapod, case.platform, still, joint=joint).kinetic
-    assert found == pytest.approx(twist @ J @ twist / 2, rel=1e-12)  # sums of squares: no cancellation to speak of
+    # Sums of squares: no cancellation to speak of.
+    measured("laws/kinetic-energy", apart(found, twist @ J @ twist / 2), 1e-12)
 
 
 # --- invariance -------------------------------------------------------------------------------------------------------
@@ -158,7 +159,7 @@ def test_kinetic_energy_is_half_of_twist_times_inertia(joint, case):
 
 @both_models
 @given(case=situations(), seed=seeds)
-def test_moving_the_world_changes_nothing(joint, case, seed):
+def test_moving_the_world_changes_nothing(joint, case, seed, measured):
     """Turn and shift everything, gravity too: vectors turn along, numbers stay."""
     rng = np.random.default_rng(seed)
     Q = Rotation.from_rotvec(rng.normal(size=3)).as_matrix()
@@ -175,9 +176,8 @@ def test_moving_the_world_changes_nothing(joint, case, seed):
         base=turned(case.base),
     )
     J = fx.equations_of_motion(case.hexapod, case.platform, base=case.base, joint=joint).J_p
-    tolerance = 100 * EPS * np.linalg.cond(J)  # rounding of the load through J_p
     for a, b in zip(accelerations(case, joint), accelerations(other, joint), strict=True):
-        assert relative(b, Q @ a) < tolerance
+        measured("laws/frame", relative(b, Q @ a) / (EPS * np.linalg.cond(J)), 100)  # rounding of the load through J_p
     one, two = (fx.joint_reactions(c.hexapod, c.platform, c.base, c.leg_force, joint=joint) for c in (case, other))
     for field in one._fields:
         # A moment is a small difference of large levers: ten thousand roundings.
@@ -190,7 +190,7 @@ def test_moving_the_world_changes_nothing(joint, case, seed):
 
 @both_models
 @given(case=situations(), seed=seeds)
-def test_uniform_motion_changes_nothing(joint, case, seed):
+def test_uniform_motion_changes_nothing(joint, case, seed, measured):
     """Galileo: one velocity more for platform and base. Einstein: one acceleration more for both and for gravity."""
     velocity, acceleration = np.random.default_rng(seed).normal(size=(2, 3)) * size(case.hexapod)
 
@@ -207,14 +207,13 @@ def test_uniform_motion_changes_nothing(joint, case, seed):
     linear, angular = accelerations(case, joint)
     moved_linear, moved_angular = accelerations(other, joint)
     J = fx.equations_of_motion(case.hexapod, case.platform, base=case.base, joint=joint).J_p
-    tolerance = 100 * EPS * np.linalg.cond(J)  # rounding of the load through J_p
-    assert relative(moved_linear - acceleration, linear) < tolerance
-    assert relative(moved_angular, angular) < tolerance
+    found = np.array([relative(moved_linear - acceleration, linear), relative(moved_angular, angular)])
+    measured("laws/uniform", found / (EPS * np.linalg.cond(J)), 100)  # rounding of the load through J_p
 
 
 @both_models
 @given(case=situations())
-def test_translation_of_base_and_platform_together_is_weight(joint, case):
+def test_translation_of_base_and_platform_together_is_weight(joint, case, measured):
     """E2's sign: with a_p = a_b = a at rest, the wrench is that of gravity -a."""
     a = np.array([1.0, -2.0, 3.0])
     poses = [fx.Motion(m.pose, acceleration=a) for m in (case.platform, case.base)]
@@ -223,7 +222,7 @@ def test_translation_of_base_and_platform_together_is_weight(joint, case):
     e = fx.equations_of_motion(weightless, *poses, joint=joint)
     moved = (e.J_p - e.J_b)[:, :3] @ a + e.eta
     held = fx.equations_of_motion(heavy, case.platform.pose, case.base.pose, joint=joint).eta
-    assert relative(moved, held) < 1e-13  # sums of some hundred products
+    measured("laws/weight", relative(moved, held), 1e-13)  # sums of some hundred products
 
 
 @both_models
@@ -248,7 +247,7 @@ def test_renumbering_the_legs_permutes_the_results(joint, case, seed):
 
 
 @given(case=situations())
-def test_the_reference_point_is_a_matter_of_choice(case):
+def test_the_reference_point_is_a_matter_of_choice(case, measured):
     """Another origin of the platform's frame: the same machine moves the same way."""
     d = 0.2 * size(case.hexapod) * np.array([0.6, -0.3, 0.7])  # new origin in old platform axes
     values = case.hexapod.values()
@@ -266,10 +265,10 @@ def test_the_reference_point_is_a_matter_of_choice(case):
     linear, angular = accelerations(case, "universal")
     moved_linear, moved_angular = accelerations(other, "universal")
     J = fx.equations_of_motion(case.hexapod, case.platform, base=case.base).J_p
-    tolerance = 1000 * EPS * np.linalg.cond(J)  # rounding of the load through J_p, in two frames
-    assert relative(moved_angular, angular) < tolerance
     expected = linear + np.cross(angular, arm) + np.cross(w, np.cross(w, arm))
-    assert relative(moved_linear, expected) < tolerance
+    found = np.array([relative(moved_angular, angular), relative(moved_linear, expected)])
+    # Rounding of the load through J_p, in two frames.
+    measured("laws/reference-point", found / (EPS * np.linalg.cond(J)), 1000)
     omega = [fx.natural_modes(c.hexapod, c.platform.pose, base=c.base.pose).omega for c in (case, other)]
     np.testing.assert_allclose(*omega, rtol=1e-9)  # eps times the condition of L^-1 H K^1/2, at most 1e6 here
 
@@ -317,14 +316,14 @@ def test_symmetric_machine_has_double_modes(name, joint):
 
 
 @pytest.mark.parametrize("name", MACHINES)
-def test_joint_models_agree_where_legs_stand_across_their_axes(name):
+def test_joint_models_agree_where_legs_stand_across_their_axes(name, measured):
     """tau = 0: with k normal to every leg and a still base, the exact model has no spin along the leg."""
     hexapod = fx.load(name)
     pose = center(hexapod)
     legs = pose.position + hexapod.platform_joints @ pose.matrix.T - hexapod.base_joints
     crosswise = hexapod.replace({"base.universal_axes": np.cross(legs, [0.3, 0.5, 1.0])})
     J = [fx.equations_of_motion(crosswise, pose, joint=joint).J_p for joint in JOINTS]
-    assert relative(*J) < 1e-13  # k.s is zero to rounding only
+    measured("laws/across", relative(*J), 1e-13)  # k.s is zero to rounding only
 
 
 @settings(max_examples=10)

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 
 import flexapod as fx
 from drawn import machines
-from support import EPS, JOINTS, MACHINES, away, center, difference, displaced, relative, size
+from support import EPS, JOINTS, MACHINES, apart, away, center, difference, displaced, relative, size
 
 BASE = displaced(fx.Pose([0.3, -0.2, 0.5]), [0, 0, 0, 0.2, -0.3, 0.8])
 both_models = pytest.mark.parametrize("joint", JOINTS)
@@ -44,7 +44,7 @@ def blocks(matrix):
 
 @both_models
 @pytest.mark.parametrize("name", ["mukherjee-i", "motion-base", "cubic-isolator"])
-def test_matrices_are_derivatives_of_the_dynamics(name, joint):
+def test_matrices_are_derivatives_of_the_dynamics(name, joint, measured):
     """Accelerations from the legs' springs, F = -K (L - L0), by how both plates are displaced and move."""
     hexapod = soft(name)
     pose, load = on_base(away(hexapod)), load_of(hexapod)
@@ -76,14 +76,14 @@ def test_matrices_are_derivatives_of_the_dynamics(name, joint):
         for mine, theirs in zip(blocks(getattr(tangent, label)), blocks(expected), strict=True):
             # Fourth-order differences: by displacement with a step of 2e-4, 1e-15 of truncation and eps / 2e-4 of
             # rounding, through J_p's condition of some thousands; exact in velocities (quadratic) and accelerations.
-            assert np.abs(mine - theirs).max() < 1e-8 * np.abs(theirs).max(), label
+            measured("rest/tangent", np.abs(mine - theirs).max() / np.abs(theirs).max(), 1e-8)
     equations = fx.equations_of_motion(hexapod, pose, BASE, joint=joint)
     np.testing.assert_array_equal(tangent.M, equations.J_p)
     np.testing.assert_array_equal(tangent.H, equations.H)
 
 
 @pytest.mark.parametrize("name", MACHINES)
-def test_stiffness_is_the_hessian_of_potential_energy(name):
+def test_stiffness_is_the_hessian_of_potential_energy(name, measured):
     hexapod = soft(name)
     pose = away(hexapod)
     tangent = fx.linearise(hexapod, pose)
@@ -105,7 +105,7 @@ def test_stiffness_is_the_hessian_of_potential_energy(name):
     expected = np.array([[second(i, j) for j in range(6)] for i in range(6)])
     found = tangent.K * np.outer(scale, scale)
     # Richardson's extrapolation: step^4 is 2e-11, times the sixth derivative's factor; rounding eps / step^2, 5e-11.
-    np.testing.assert_allclose(found, expected, atol=3e-8 * np.abs(expected).max())
+    measured("rest/hessian", (found - expected) / np.abs(expected).max(), 3e-8)
     np.testing.assert_allclose(found, found.T, atol=1e-13 * np.abs(found).max())  # rounding
 
 
@@ -120,7 +120,7 @@ def test_stiffness_is_symmetric_without_a_turning_wrench(hexapod):
 
 
 @pytest.mark.parametrize("name", MACHINES)
-def test_base_and_platform_moving_as_one(name):
+def test_base_and_platform_moving_as_one(name, measured):
     """Legs do not feel a displacement of the whole machine: only gravity, which does not turn along, does."""
     hexapod = soft(name)
     pose = on_base(away(hexapod))
@@ -131,7 +131,7 @@ def test_base_and_platform_moving_as_one(name):
     tilt = np.column_stack(weight) @ np.column_stack([np.cross(g, e) for e in one])
     expected = np.hstack([np.zeros((6, 3)), tilt])
     scale = np.abs(tangent.K @ tangent.carry).max(axis=1, keepdims=True)
-    assert (np.abs(together - expected) < 1e-12 * scale).all()  # rounding
+    measured("rest/together", (together - expected) / scale, 1e-12)  # rounding
     assert np.abs(together[:, 3:]).max() > 1e-3 * np.abs(hexapod.gravity).max() * hexapod.platform_mass
     friction = tangent.C_b + tangent.C @ tangent.carry
     assert (np.abs(friction) < 1e-12 * np.abs(tangent.C @ tangent.carry).max(axis=1, keepdims=True)).all()
@@ -142,7 +142,7 @@ def test_base_and_platform_moving_as_one(name):
 
 @both_models
 @pytest.mark.parametrize("name", MACHINES)
-def test_frequencies_approach_eq_5_as_legs_stiffen(name, joint):
+def test_frequencies_approach_eq_5_as_legs_stiffen(name, joint, measured):
     """The difference is of first order in load over stiffness: it falls as 1 / stiffness."""
     hexapod = soft(name)
     pose = away(hexapod)
@@ -155,7 +155,7 @@ def test_frequencies_approach_eq_5_as_legs_stiffen(name, joint):
         gaps.append(np.linalg.norm(exact**2 / paper**2 - 1))
     assert gaps[0] < 0.2
     # The next order is the first squared: a few per cent of it where the gap is a few per cent.
-    assert gaps[0] / gaps[1] == pytest.approx(10, rel=0.2)
+    measured("rest/stiffening", apart(gaps[0] / gaps[1], 10), 0.2)
 
 
 def test_gravity_topples_a_soft_machine_that_eq_5_calls_stable():
@@ -200,7 +200,7 @@ def test_gravity_topples_a_soft_machine_that_eq_5_calls_stable():
 # --- damped modes -----------------------------------------------------------------------------------------------------
 
 
-def test_damping_ratio_of_massless_legs_in_closed_form():
+def test_damping_ratio_of_massless_legs_in_closed_form(measured):
     """C = c H H^T and K = k H H^T: every damping ratio is c omega / (2 k)."""
     k, c = 1e4, 12.0
     changes = {"gravity": [0, 0, 0], "legs.lower": None, "legs.upper": None, "legs.stiffness": k}
@@ -209,7 +209,7 @@ def test_damping_ratio_of_massless_legs_in_closed_form():
     modes = fx.linearise(hexapod, pose).modes()
     omega = fx.natural_modes(hexapod, pose).omega
     np.testing.assert_allclose(modes.omega, omega, rtol=1e-11)  # an eigenvalue problem of condition 1e3
-    np.testing.assert_allclose(modes.damping_ratio, c * omega / (2 * k), rtol=1e-9)
+    measured("rest/damping", apart(modes.damping_ratio, c * omega / (2 * k)), 1e-9)
     # Vertically at the centre it is the mass on six springs: 2 k and 2 c for a cube.
     one = fx.linearise(hexapod, center(hexapod)).modes()
     vertical = np.argmin(np.abs(one.omega - np.sqrt(2 * k / 20)))
@@ -267,7 +267,7 @@ def response(t: fx.Linearisation, omega: float, K_b: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("gravity", [0.0, -9.81])
 @pytest.mark.parametrize("name", ["motion-base", "cubic-isolator", "mukherjee-i"])
-def test_state_space_is_the_second_order_equation(name, gravity):
+def test_state_space_is_the_second_order_equation(name, gravity, measured):
     hexapod = soft(name).replace({"gravity": [0, 0, gravity], "legs.stiffness": 100 * soft(name).legs.stiffness})
     t = fx.linearise(hexapod, on_base(away(hexapod)), base=BASE, **load_of(hexapod))
     system = t.to_control()
@@ -286,7 +286,7 @@ def test_state_space_is_the_second_order_equation(name, gravity):
             for columns in np.split(np.arange(24), [3, 6, 12, 18]):
                 mine, theirs = found[np.ix_(rows, columns)], expected[np.ix_(rows, columns)]
                 # Two ways to solve equations whose condition is up to 1e5.
-                assert relative(mine, theirs) < 1e-9
+                measured("rest/state-space", relative(mine, theirs), 1e-9)
 
 
 def test_state_space_names_its_signals():

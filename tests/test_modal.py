@@ -7,7 +7,7 @@ from hypothesis import given, settings
 import flexapod as fx
 from drawn import machines, situations
 from exact import natural_frequencies
-from support import EPS, JOINTS, MACHINES, away, center, difference, displaced, size
+from support import EPS, JOINTS, MACHINES, apart, away, center, difference, displaced, size
 
 both_models = pytest.mark.parametrize("joint", JOINTS)
 
@@ -70,7 +70,7 @@ def test_energy_shares_of_known_machines():
 @both_models
 @pytest.mark.parametrize("name", ["motion-base", "precision-positioner", "cubic-isolator"])
 @pytest.mark.parametrize("off", [1e-2, 1e-4, 1e-6])
-def test_frequencies_near_a_singular_pose_against_50_digits(name, joint, off):
+def test_frequencies_near_a_singular_pose_against_50_digits(name, joint, off, measured):
     """Turned to within `off` degrees of the singular pose: cond(B) up to 1e8 and more."""
     hexapod = fx.load(name)
     pose = turned(hexapod, 90 - off)
@@ -79,7 +79,7 @@ def test_frequencies_near_a_singular_pose_against_50_digits(name, joint, off):
     condition = found[-1] / found[0]
     assert condition > 1e3
     # What float64 allows: eps times the condition of B = L^-1 H K^1/2, whose singular values they are.
-    np.testing.assert_allclose(found, expected, rtol=100 * EPS * condition)
+    measured("modes/near-singular", apart(found, expected) / (EPS * condition), 100)
     np.testing.assert_allclose(found[1:], expected[1:], rtol=1e-9)  # the others are not near zero
 
 
@@ -94,12 +94,12 @@ def test_near_singular_conditions_span_what_is_promised():
 
 @both_models
 @pytest.mark.parametrize("name", MACHINES)
-def test_frequencies_at_ordinary_poses_against_50_digits(name, joint):
+def test_frequencies_at_ordinary_poses_against_50_digits(name, joint, measured):
     hexapod = fx.load(name)
     for pose in (center(hexapod), away(hexapod)):
         found = fx.natural_modes(hexapod, pose, joint=joint).omega
         expected = [float(w) for w in natural_frequencies(hexapod, pose, joint)]
-        np.testing.assert_allclose(found, expected, rtol=100 * EPS * found[-1] / found[0])
+        measured("modes/ordinary", apart(found, expected) / (EPS * found[-1] / found[0]), 100)
 
 
 @both_models
@@ -130,13 +130,13 @@ def frequencies_of(hexapod, pose, joint, key, direction, step):
     return difference(omega, step)
 
 
-def assert_same_slopes(found, expected, omega):
-    """Against fourth-order differences, per relative change of the number.
+def slope_error(found, expected, omega):
+    """Against fourth-order differences, per relative change of the number; to be below 1e-8.
 
     Truncation is 1e-16 times the fifth derivative's factor, which near-equal frequencies make large; rounding is eps
     times cond(B) over the step of 1e-4.
     """
-    assert (np.abs(found - expected) < 1e-8 * omega + 1e-7 * np.abs(expected)).all()
+    return np.abs(found - expected) / (omega + 10 * np.abs(expected))
 
 
 def directions(shape):
@@ -148,7 +148,7 @@ def directions(shape):
 
 @both_models
 @pytest.mark.parametrize("name", ["mukherjee-i", "motion-base"])
-def test_sensitivities_are_derivatives(name, joint):
+def test_sensitivities_are_derivatives(name, joint, measured):
     hexapod = fx.load(name)
     pose = away(hexapod)
     found = fx.frequency_sensitivity(hexapod, pose, joint=joint)
@@ -167,12 +167,12 @@ def test_sensitivities_are_derivatives(name, joint):
         assert derivative.shape == (6, *hexapod.values()[key].shape), key
         for index, direction in directions(hexapod.values()[key].shape):
             expected = frequencies_of(hexapod, pose, joint, key, direction, SMALL * scale)
-            assert_same_slopes(derivative[:, *index] * scale, expected * scale, omega)
+            measured("modes/sensitivities", slope_error(derivative[:, *index] * scale, expected * scale, omega), 1e-8)
 
 
 @both_models
 @pytest.mark.parametrize("name", ["mukherjee-i", "motion-base"])
-def test_sensitivities_to_inertia_and_pose(name, joint):
+def test_sensitivities_to_inertia_and_pose(name, joint, measured):
     hexapod = fx.load(name)
     pose = away(hexapod)
     found = fx.frequency_sensitivity(hexapod, pose, joint=joint)
@@ -184,23 +184,23 @@ def test_sensitivities_to_inertia_and_pose(name, joint):
             twins[i, j] = twins[j, i] = 1
             expected = frequencies_of(hexapod, pose, joint, "platform.inertia", twins, SMALL * scale)
             for derivative in (found.platform_inertia[:, i, j], found.platform_inertia[:, j, i]):
-                assert_same_slopes(derivative * scale, expected * scale, omega)
+                measured("modes/sensitivities", slope_error(derivative * scale, expected * scale, omega), 1e-8)
     for i, reach in enumerate(np.repeat([size(hexapod), 1.0], 3)):
         expected = difference(
             lambda t, i=i: fx.natural_modes(hexapod, displaced(pose, t * np.eye(6)[i]), joint=joint).omega,
             SMALL * reach,
         )
-        assert_same_slopes(found.pose[:, i] * reach, expected * reach, omega)
+        measured("modes/sensitivities", slope_error(found.pose[:, i] * reach, expected * reach, omega), 1e-8)
 
 
 @settings(max_examples=10)
 @given(hexapod=machines())
-def test_sensitivities_obey_the_scaling_laws(hexapod):
+def test_sensitivities_obey_the_scaling_laws(hexapod, measured):
     """omega is of degree one half in stiffness; moving base and platform as one changes nothing."""
     pose = center(hexapod)
     found, omega = fx.frequency_sensitivity(hexapod, pose), fx.natural_modes(hexapod, pose).omega
     # Euler's theorem for homogeneous functions; the derivatives are exact to the rounding of the modes.
-    np.testing.assert_allclose(found.stiffness @ hexapod.legs.stiffness, omega / 2, rtol=1e-8)
+    measured("modes/stiffness-law", apart(found.stiffness @ hexapod.legs.stiffness, omega / 2), 1e-8)
     moved = found.pose[:, :3] + found.base_joints.sum(axis=1)
     np.testing.assert_allclose(moved, 0, atol=1e-8 * omega[-1] / size(hexapod))
 

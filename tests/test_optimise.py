@@ -12,6 +12,7 @@ from flexapod.optimal.problem import Problem
 from flexapod.optimal.slopes import Slopes, index_slopes
 from flexapod.optimal.variables import DesignMap
 from flexapod.quantities import evaluate
+from support import apart
 
 RADIANS = np.radians
 
@@ -86,11 +87,14 @@ def differences(function, design, x):
     return np.stack(columns, axis=-1)
 
 
-def assert_slopes(found, expected, design, rtol=2e-7):
-    """Both in units of each variable's range, so that entries of different units compare."""
+def slope_error(found, expected, design):
+    """In units of each variable's range, so that entries of different units compare; of the largest."""
     width = design.high - design.low
-    scale = np.abs(expected * width).max()
-    assert np.abs((found - expected) * width).max() < rtol * scale  # see `differences`; rounding dominates
+    return np.abs((found - expected) * width).max() / np.abs(expected * width).max()
+
+
+def assert_slopes(found, expected, design, rtol=2e-7):
+    assert slope_error(found, expected, design) < rtol  # see `differences`; rounding dominates
 
 
 def test_the_map_and_its_inverse_agree_with_the_design(somewhere):
@@ -102,7 +106,7 @@ def test_the_map_and_its_inverse_agree_with_the_design(somewhere):
     np.testing.assert_allclose(design.from_unit(design.unit(x))[0], x, rtol=1e-13)
 
 
-def test_frequency_slopes_against_differences(somewhere):
+def test_frequency_slopes_against_differences(somewhere, measured):
     design, x, offsets = somewhere
 
     def omega(x):
@@ -113,7 +117,7 @@ def test_frequency_slopes_against_differences(somewhere):
     value, rayleigh = slopes_at(design, x, offsets).omega
     np.testing.assert_allclose(value, omega(x), rtol=1e-12)
     found = np.einsum("kaan->kan", rayleigh) / (2 * value[..., None])
-    assert_slopes(found, differences(omega, design, x), design)
+    measured("design/slopes", slope_error(found, differences(omega, design, x), design), 2e-7)
 
 
 @pytest.mark.parametrize(
@@ -158,7 +162,7 @@ def test_constraint_slopes_against_differences_and_values_against_the_sweep(kind
     np.testing.assert_allclose(found.value, expected, rtol=4e-3 if kind.log else 1e-8)
 
 
-def test_slopes_where_frequencies_are_equal():
+def test_slopes_where_frequencies_are_equal(measured):
     """At its centre a cubic hexapod with massless legs and a small inertia has its lowest frequency three times."""
     hexapod = fx.load("cubic-isolator").replace(
         {"legs.lower": None, "legs.upper": None, "platform.inertia": (0.1 * np.eye(3)).tolist()}
@@ -187,7 +191,7 @@ def test_slopes_where_frequencies_are_equal():
     for side in (1, -1):  # each of the three goes its own way, in order, on either side
         moved = (lowest_three(side * 1e-5) - omega[:3]) / 1e-5
         expected = np.sort(side * by_formula)
-        np.testing.assert_allclose(moved, expected, rtol=5e-3)  # second order: step times the others' frequency gap
+        measured("design/repeated", apart(moved, expected), 5e-3)  # second order: step times the others' frequency gap
 
     def soft(step):
         moved = Slopes(own + step * jacobian[:, 0], jacobian, own[None, HOME], True, True)
@@ -217,7 +221,7 @@ def test_joint_circles_keep_their_symmetry():
             assert apart.max() < 1e-14 * 10  # a few roundings of metres
 
 
-def test_the_best_height_of_a_symmetric_family_is_the_closed_form():
+def test_the_best_height_of_a_symmetric_family_is_the_closed_form(measured):
     """With height the heave stiffens, omega_z^2 = 6 k (h/L)^2 / M, and the yaw softens, 6 k (R r sin(phi)/L)^2 / I_z.
 
     The best height is where they cross, h = R r sin(phi) sqrt(M / I_z): an optimum at a repeated frequency.
@@ -230,13 +234,13 @@ def test_the_best_height_of_a_symmetric_family_is_the_closed_form():
     found = fx.optimise(machine, [fx.Variable("home.position[2]", 0.02, 0.3)], trials=0)
     # The smooth minimum of two modes is off by at most log(2)/4000, and its place by as much.
     assert abs(found.variables["home.position[2]"] / best - 1) < 5e-4
-    assert abs(found.index / index - 1) < 2e-4
+    measured("design/height", found.index / index - 1, 2e-4)
     assert found.coincident == 2
     searched = fx.optimise(machine, [fx.Variable("home.position[2]", 0.02, 0.3)], trials=12)
-    assert abs(searched.index / index - 1) < 2e-4
+    measured("design/height", searched.index / index - 1, 2e-4)
 
 
-def test_massless_legs_are_best_isotropic():
+def test_massless_legs_are_best_isotropic(measured):
     """The translational stiffnesses of six legs sum to 6 k whatever the geometry, so no machine of this mass has an
     index above sqrt(2 k / M); one that has it is isotropic, as the cubic configuration is."""
     machine = three_pairs(height=0.12, mass=10.0, inertia=(0.02, 0.02, 0.02))
@@ -251,9 +255,8 @@ def test_massless_legs_are_best_isotropic():
         trials=0,
     )
     most = np.sqrt(2 * 1e6 / 10.0)
-    assert (
-        (1 - 1e-3) * most < found.index < (1 + 1e-12) * most
-    )  # log(3)/4000 from the smooth minimum, and flat about it
+    assert found.index < (1 + 1e-12) * most
+    measured("design/isotropic", 1 - found.index / most, 1e-3)  # log(3)/4000 from the smooth minimum, and flat about it
     H = fx.force_transformation(found.hexapod, fx.home_pose(found.hexapod))
     np.testing.assert_allclose(H[:3] @ H[:3].T, 2 * np.eye(3), atol=4e-3)  # twice the relative shortfall of the index
 

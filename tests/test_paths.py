@@ -97,14 +97,14 @@ def test_index_along_a_path_is_the_index_of_its_poses(machine):
     np.testing.assert_allclose(found.samples["index"], fx.stability_index(machine, path()(t).pose), rtol=1e-12)
 
 
-def test_minimum_is_refined_between_samples(machine):
+def test_minimum_is_refined_between_samples(machine, measured):
     coarse = fx.path_index(machine, path(), samples=16)
     dense = np.linspace(2, path().times[-1], 20001)
     least = fx.stability_index(machine, path()(dense).pose).min()
     sampled = fx.stability_index(machine, path()(path().grid(16)).pose).min()
     assert sampled > least * (1 + 1e-5)  # so that refinement has something to do
     assert coarse.minimum <= least * (1 + 1e-9)
-    assert coarse.minimum == pytest.approx(least, rel=1e-6)  # of the dense samples' spacing
+    measured("design/path-minimum", coarse.minimum / least - 1, 1e-6)  # of the dense samples' spacing
 
 
 def test_times_below_the_bound(machine):
@@ -122,7 +122,7 @@ def test_times_below_the_bound(machine):
     assert fx.path_index(machine, path(), bound=0.99 * found.minimum).above
 
 
-def test_weighted_cumulative_value(machine):
+def test_weighted_cumulative_value(machine, measured):
     p = path(weights=[1, 0, 4, 2, 1])
     found = fx.path_index(machine, p, samples=2000)
 
@@ -131,7 +131,7 @@ def test_weighted_cumulative_value(machine):
 
     exact = sum(quad(integrand, a, b, epsabs=1e-8)[0] for a, b in zip(p.times[:-1], p.times[1:], strict=True))
     # Simpson on 2000 samples, with kinks of the weights on samples but those of the index (crossing modes) between them
-    assert float(found.samples.cumulative_index[-1]) == pytest.approx(exact, rel=1e-6)
+    measured("design/path-mean", float(found.samples.cumulative_index[-1]) / exact - 1, 1e-6)
     assert found.weighted_mean == pytest.approx(exact / np.trapezoid(p.weights, p.times), rel=1e-6)
     heavy = fx.path_index(machine, path(weights=[0, 0, 1, 0, 0])).weighted_mean
     assert heavy != pytest.approx(fx.path_index(machine, path()).weighted_mean, rel=1e-3)
@@ -153,7 +153,7 @@ def test_a_path_through_a_singular_pose_is_refused(machine):
         assert omega[0] < 1e-6 * omega[5]  # zero to the accuracy of the time found
 
 
-def test_leg_forces_follow_from_the_full_dynamics(machine):
+def test_leg_forces_follow_from_the_full_dynamics(machine, measured):
     p = path().retimed(0.4)
     loads = fx.path_loads(machine, p, samples=2000)
     i = 701
@@ -170,7 +170,7 @@ def test_leg_forces_follow_from_the_full_dynamics(machine):
     work = float(np.trapezoid(power, loads.time))
     rise = fx.energy(machine, p(p.times[-1])).gravitational - fx.energy(machine, p(p.times[0])).gravitational
     lost = np.trapezoid(fx.energy(machine, p(loads.time.values)).dissipation, loads.time)
-    assert work == pytest.approx(rise + lost, rel=1e-5)  # trapezoids on 2000 samples
+    measured("design/path-work", work / (rise + lost) - 1, 1e-5)  # trapezoids on 2000 samples
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from tests.states import CENTER
 import flexapod as fx
 from flexapod.linear import AXES
 from flexapod.steady import complex_poles, steady_response
+from support import apart
 
 II = fx.Pose(CENTER["mukherjee-ii"])
 DAMPED = {"legs.damping.prismatic": 2000.0, "legs.damping.universal": 0.3, "legs.damping.spherical": 0.2}
@@ -39,7 +40,7 @@ def vertical_mass(damping: float = 32.0) -> tuple[fx.Hexapod, fx.Pose, float, fl
 
 
 @pytest.mark.parametrize("eta", [0.0, 0.05])
-def test_one_degree_of_freedom_has_the_textbook_response(eta):
+def test_one_degree_of_freedom_has_the_textbook_response(eta, measured):
     hexapod, pose, m, c, k = vertical_mass()
     omega = np.array([0.0, 1.0, 30.0, np.sqrt(k / m), 100.0, 1e4])
     response = fx.transmissibility(hexapod, pose, omega, loss_factor=eta)
@@ -47,7 +48,7 @@ def test_one_degree_of_freedom_has_the_textbook_response(eta):
     z = {"output": "z", "base": "z"}
     # The home pose closes the symmetry to rounding, which cond(H) of a few raises to 1e-14.
     expected = leg / (leg - m * omega**2)
-    np.testing.assert_allclose(response.absolute.sel(z), expected, rtol=1e-12)
+    measured("frequency/textbook", apart(response.absolute.sel(z), expected), 1e-12)
     np.testing.assert_allclose(response.relative.sel(z), expected - 1, rtol=1e-12, atol=1e-14)
     compliance = 1 / (leg - m * omega**2)
     np.testing.assert_allclose(response.compliance.sel(output="z", wrench="z"), compliance, rtol=1e-12)
@@ -75,13 +76,13 @@ def brute_force(linear: fx.Linearisation, omega: float, eta: float, digits: int 
 
 
 @pytest.mark.parametrize("eta", [0.0, 0.02])
-def test_general_machine_against_many_digits(damped, eta):
+def test_general_machine_against_many_digits(damped, eta, measured):
     linear = fx.linearise(damped, fx.Pose.from_rpy(0.003, 0.002, 0.085, 0.05, 0.1, -0.05), force=[30.0, 10.0, -50.0])
     omega = np.array([3.0, 492.0, 761.0, 5000.0, 16000.0, 1e5])
     found = steady_response(linear, omega, eta).relative
     for w, X in zip(omega, found, strict=True):
         # Rounding of K is seen at low frequency, where the relative motion is of the order of omega^2.
-        np.testing.assert_allclose(X, brute_force(linear, w, eta), rtol=1e-9, atol=1e-9 * np.abs(X).max())
+        measured("frequency/digits", apart(X, brute_force(linear, w, eta), floor=np.abs(X).max()), 1e-9)
 
 
 def test_base_moved_slowly_carries_the_platform_and_its_weight_tilts(damped):
@@ -112,12 +113,12 @@ def test_rigid_motion_with_the_base_meets_nothing_but_turned_gravity():
     np.testing.assert_allclose(carried, 0.0, atol=10 * 2.0**-52 * np.abs(linear.C).max())
 
 
-def test_reciprocity_and_output_points(damped):
+def test_reciprocity_and_output_points(damped, measured):
     response = fx.transmissibility(damped, II, [10.0, 700.0, 9000.0], loss_factor=0.01)
     compliance = response.compliance.values
     size = np.abs(compliance).max(axis=(1, 2), keepdims=True)
     # No wrench at rest: K is symmetric, and so is the machine's compliance (Maxwell-Betti).
-    assert (np.abs(compliance - compliance.transpose(0, 2, 1)) < 1e-10 * size).all()
+    measured("frequency/reciprocity", (compliance - compliance.transpose(0, 2, 1)) / size, 1e-10)
     point = np.array([0.01, -0.02, 0.03])
     away = fx.transmissibility(damped, II, [10.0, 700.0, 9000.0], loss_factor=0.01, point=point)
     for name in ("absolute", "relative", "command"):
@@ -155,7 +156,7 @@ def test_compliance_of_a_published_hexapod():
     assert C[1, 3] == pytest.approx(-3.209e-7, rel=2e-4)
 
 
-def test_python_control_gives_the_same_frequency_response(damped):
+def test_python_control_gives_the_same_frequency_response(damped, measured):
     hexapod = damped.replace(NO_GRAVITY)  # tilted gravity is what twelve states cannot hold
     omega = np.array([50.0, 492.5, 761.0, 8000.0, 20000.0])
     system = fx.linearise(hexapod, II).to_control()
@@ -178,7 +179,7 @@ def test_python_control_gives_the_same_frequency_response(damped):
     for ours, theirs in pairs:
         size = np.abs(theirs).max(axis=(1, 2), keepdims=True)
         # python-control solves with states in m and m/s, 1e4 apart: cond(A) of 1e8 leaves it about 1e-8.
-        assert (np.abs(ours.values - theirs) < 1e-7 * size).all(), ours.name
+        measured("frequency/control", (ours.values - theirs) / size, 1e-7)
 
 
 def test_sharpest_resonances_keep_their_digits(paper):
@@ -263,7 +264,7 @@ def test_bad_arguments(damped):
 
 
 @pytest.mark.parametrize("damping", [320.0, 0.32, 3.2e-6])
-def test_white_base_acceleration_of_one_mass_has_the_closed_form(damping):
+def test_white_base_acceleration_of_one_mass_has_the_closed_form(damping, measured):
     hexapod, pose, m, c, k = vertical_mass(damping)
     natural, level = np.sqrt(k / m), 2.5
     zeta = c / (2 * np.sqrt(k * m))
@@ -272,7 +273,8 @@ def test_white_base_acceleration_of_one_mass_has_the_closed_form(damping):
     # Mean square of relative displacement: pi G / (4 zeta omega^3); the band leaves out low * G / omega^4 and less.
     expected = np.sqrt(np.pi * level / (4 * zeta * natural**3))
     left_out = low / natural * zeta
-    assert found.rms_relative.sel(output="z") == pytest.approx(expected, rel=1e-9 + left_out)
+    rms = float(found.rms_relative.sel(output="z"))
+    measured("frequency/white", (rms / expected - 1) / (1e-9 + left_out), 1)
     legs = np.sqrt((found.rms_leg_force**2).sum())
     rise = fx.force_transformation(hexapod, pose)[2]
     stretch = np.sqrt((hexapod.legs.stiffness**2 * rise**2).sum())
@@ -288,7 +290,7 @@ def lyapunov(linear: fx.Linearisation, density: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("share", [1.0, 1e-3, 1e-5])
-def test_rms_agrees_with_the_lyapunov_equation(paper, share):
+def test_rms_agrees_with_the_lyapunov_equation(paper, share, measured):
     hexapod = paper.replace({**NO_GRAVITY, **{key: share * value for key, value in DAMPED.items()}})
     rng = np.random.default_rng(5)
     root = rng.normal(size=(6, 6)) * np.repeat([1.0, 10.0], 3)[:, None]
@@ -297,7 +299,7 @@ def test_rms_agrees_with_the_lyapunov_equation(paper, share):
     found = fx.random_response(hexapod, II, np.tile(density, (2, 1, 1)), omega)
     # Quadrature is good to 1e-9; the Lyapunov solver loses cond(A) eps over the damping ratio.
     expected = lyapunov(fx.linearise(hexapod, II), density)
-    np.testing.assert_allclose(found.rms_relative, expected, rtol=1e-8 + 1e-11 / share)
+    measured("frequency/lyapunov", apart(found.rms_relative, expected) / (1e-8 + 1e-11 / share), 1)
 
 
 def test_independent_axes_one_axis_and_a_matrix_agree(damped):
@@ -350,14 +352,14 @@ def test_spectra_show_every_peak_and_cumulate_to_the_rms(paper):
     assert {100.0, 2e4} <= set(found.omega.values)
 
 
-def test_structural_damping_alone_has_its_closed_form():
+def test_structural_damping_alone_has_its_closed_form(measured):
     """One mass with a loss factor: the mean square of the relative motion is an elementary integral."""
     hexapod, pose, m, _, k = vertical_mass(0.0)
     natural, eta = np.sqrt(k / m), 1e-3
     found = fx.random_response(hexapod, pose, [1.0, 1.0], [1e-6 * natural, 1e6 * natural], axis="z", loss_factor=eta)
     # Integral of dw / |w_0^2 (1 + i eta) - w^2|^2 from zero = pi Re(1/sqrt(1 + i eta)) / (2 eta w_0^3).
     expected = np.sqrt(np.pi / (2 * eta * natural**3) * (1 / np.sqrt(1 + 1j * eta)).real)
-    assert found.rms_relative.sel(output="z") == pytest.approx(expected, rel=1e-6)  # band starts at 1e-6
+    measured("frequency/structural", apart(found.rms_relative.sel(output="z"), expected), 1e-6)  # band starts at 1e-6
 
 
 def test_undamped_or_growing_modes_have_no_stationary_response(paper):

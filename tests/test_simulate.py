@@ -42,7 +42,7 @@ def motion_at(dataset, i):
 # --- conservation ----------------------------------------------------------------------------------------------------
 
 
-def test_energy_is_kept_for_a_thousand_periods_without_friction():
+def test_energy_is_kept_for_a_thousand_periods_without_friction(measured):
     """All six modes ring; what is lost is lost at the rate of the fastest one's 3000 periods."""
     hexapod, pose = machine("precision-positioner")
     hexapod = hexapod.replace(SMOOTH)
@@ -50,7 +50,7 @@ def test_energy_is_kept_for_a_thousand_periods_without_friction():
     period = 2 * np.pi / fx.stability_index(hexapod, pose)
     start = fx.Motion(fx.Pose(pose.position + 1e-5 * size), [0.01, 0.0, -0.02], [0.03, 0.05, -0.04])
     dataset = fx.simulate(hexapod, pose, start=start, duration=1000 * period, samples=500, rtol=1e-12)
-    assert dataset.attrs["energy_error"] < 1e-8  # what is promised
+    measured("time/energy", dataset.attrs["energy_error"], 1e-8)  # what is promised
     assert dataset.kinetic_energy.max() > 0
 
 
@@ -64,7 +64,7 @@ def test_papers_machine_keeps_its_energy():
     assert dataset.attrs["energy_error"] < 1e-9
 
 
-def test_works_balance_the_energy():
+def test_works_balance_the_energy(measured):
     """Base, wrench, leg commands and friction all at work; the machine's energy is what they bring and take."""
     hexapod, pose = machine()
     hexapod = hexapod.replace(
@@ -83,11 +83,11 @@ def test_works_balance_the_energy():
     work = dataset.work.values
     assert (np.abs(work).max(axis=0) > 1e-4).all()  # each of them took part, J
     assert (np.diff(work[:, 3]) < 0).all()  # friction only takes
-    assert dataset.attrs["energy_error"] < 1e-10  # of a few thousand steps at 1e-12, and rounding
+    measured("time/works", dataset.attrs["energy_error"], 1e-10)  # of a few thousand steps at 1e-12, and rounding
 
 
 @pytest.mark.parametrize("joint", ["universal", "spin_free"])
-def test_order_of_convergence(joint):
+def test_order_of_convergence(joint, measured):
     """Steps of one length: halving them divides the error by 2^8, while platform and base turn by 0.2 rad."""
     hexapod, pose = machine("precision-positioner")
     omega = fx.natural_modes(hexapod, pose).omega
@@ -103,7 +103,7 @@ def test_order_of_convergence(joint):
     exact = end(0.05 / omega[-1], 1e-14)
     errors = np.array([np.linalg.norm(end(h / omega[-1]) - exact) for h in (1.6, 0.8, 0.4)])
     order = np.log2(errors[:-1] / errors[1:])
-    assert (np.abs(order - 8) < 0.7).all()  # the next power of the step adds a little at these lengths
+    measured("time/order", order - 8, 0.7)  # the next power of the step adds a little at these lengths
 
 
 def test_interpolant_is_as_good_as_the_steps():
@@ -121,7 +121,7 @@ def test_interpolant_is_as_good_as_the_steps():
 # --- closed forms ----------------------------------------------------------------------------------------------------
 
 
-def test_free_flight_of_a_symmetric_top():
+def test_free_flight_of_a_symmetric_top(measured):
     """Legs without mass and next to no stiffness: a thrown top precesses about its angular momentum, for many turns."""
     hexapod, pose = machine()
     center, flat = np.array([0.01, -0.02, 0.03]), np.diag([0.02, 0.02, 0.035])
@@ -159,7 +159,7 @@ def test_free_flight_of_a_symmetric_top():
     )
     mass_center = pose.position + center + np.outer(times, velocity) + 0.5 * np.outer(times**2, hexapod.gravity)
     # A thousand steps at 1e-12; the stiffness moves the top by 1e-12 N/m * 500 m / 4 kg in 100 s^2 / 2: 1e-9 m.
-    np.testing.assert_allclose(dataset.rotation.values, turn.as_matrix(), atol=1e-8)
+    measured("time/top", dataset.rotation.values - turn.as_matrix(), 1e-8)
     np.testing.assert_allclose(dataset.position.values, mass_center - turn.apply(center), atol=1e-7)
     assert dataset.attrs["energy_error"] < 1e-9
 
@@ -182,7 +182,7 @@ def test_base_moved_slowly_carries_the_platform_along():
     np.testing.assert_allclose(dataset.displacement.values[-1, 5], 0.3, atol=1e-6)
 
 
-def test_spinning_base_holds_the_centrifugal_equilibrium():
+def test_spinning_base_holds_the_centrifugal_equilibrium(measured):
     """The balance is found apart from the simulation, in the rotating frame; started there, the platform stays."""
     hexapod, pose = machine("cubic-isolator")
     spin = np.array([0.0, 0.0, 6.0])
@@ -207,11 +207,11 @@ def test_spinning_base_holds_the_centrifugal_equilibrium():
     base_motion = fx.polynomial("yaw", [0.0, spin[2]])
     dataset = fx.simulate(hexapod, pose, base_motion=base_motion, start=start, duration=3.0, samples=100)
     relative = dataset.relative_displacement.values
-    np.testing.assert_allclose(relative, np.tile(found.x, (100, 1)), atol=1e-8 * np.abs(found.x).max())
+    measured("time/centrifugal", (relative - found.x) / np.abs(found.x).max(), 1e-8)
     assert np.linalg.norm(dataset.angular_velocity.values - spin, axis=1).max() < 1e-9
 
 
-def test_small_vibration_has_the_tangents_frequency():
+def test_small_vibration_has_the_tangents_frequency(measured):
     hexapod, pose = machine("precision-positioner")
     linear = fx.linearise(hexapod, pose)
     modes = linear.modes()
@@ -227,7 +227,7 @@ def test_small_vibration_has_the_tangents_frequency():
     found = integrate([fx.Run(hexapod, pose, start=start)], times).displacement[0]
     expected = scale * np.real(np.exp(np.outer(times, [pole])) * shape)
     # Start: positions of 1e-1 m rounded to 1e-17 m; the rest is 1e-9 of the machine's size squared.
-    np.testing.assert_allclose(found, expected, atol=1e-6 * np.abs(expected).max())
+    measured("time/tangent", (found - expected) / np.abs(expected).max(), 1e-6)
 
 
 # --- rest, loads and commands ----------------------------------------------------------------------------------------
@@ -247,7 +247,7 @@ def test_gravity_rings_only_when_asked():
     assert middle.min() == pytest.approx(2 * settled[2], rel=0.05)
 
 
-def test_slow_loads_and_commands_lead_to_static_equilibrium():
+def test_slow_loads_and_commands_lead_to_static_equilibrium(measured):
     hexapod, pose = machine("precision-positioner")
     T = 500 / fx.stability_index(hexapod, pose)
     force, change = np.array([50.0, -20.0, 30.0]), 2e-5
@@ -264,7 +264,7 @@ def test_slow_loads_and_commands_lead_to_static_equilibrium():
     lengths = fx.hold(hexapod, pose).unstretched_length + change * (np.arange(6) == 2)
     end = fx.static_equilibrium(hexapod, lengths, pose, force=force, moment=(0, 3.0, 0))
     travel = np.abs(end.pose.position - pose.position).max()
-    np.testing.assert_allclose(dataset.position.values[-1], end.pose.position, atol=1e-6 * travel)
+    measured("time/statics", (dataset.position.values[-1] - end.pose.position) / travel, 1e-6)
     np.testing.assert_allclose(dataset.leg_force.values[-1], end.leg_force, atol=1e-4)
     held = fx.simulate(hexapod, pose, force=force, moment=(0, 3.0, 0), duration=0.01)
     assert np.abs(held.displacement).max() < 1e-13  # constant loads belong to rest
@@ -305,7 +305,7 @@ def test_a_base_elsewhere_changes_nothing():
 
 
 @pytest.mark.parametrize("name", ["mukherjee-i", "mukherjee-ii"])
-def test_trajectory_has_the_engines_accelerations(name):
+def test_trajectory_has_the_engines_accelerations(name, measured):
     """50 points along a violent one: base shaken in six directions, friction, wrench, leg commands."""
     rng = np.random.default_rng(35)
     hexapod = perturbed(fx.load(name), rng)
@@ -331,10 +331,10 @@ def test_trajectory_has_the_engines_accelerations(name):
         linear, angular = chain.acceleration(motion_at(dataset, i), base_now, dataset.leg_force.values[i], *loads)
         for found, expected in ((dataset.acceleration, linear), (dataset.angular_acceleration, angular)):
             scale = np.linalg.norm(expected) + 1e-3 * np.linalg.norm(found.values, axis=1).max()
-            assert np.linalg.norm(found.values[i] - expected) < 1e-10 * scale  # what is promised
+            measured("time/engine", np.linalg.norm(found.values[i] - expected) / scale, 1e-10)  # what is promised
 
 
-def test_trajectory_agrees_with_scipy_in_the_inertial_frame():
+def test_trajectory_agrees_with_scipy_in_the_inertial_frame(measured):
     """Another formulation: absolute position and quaternion, `fx.forward_dynamics`, SciPy's integrator."""
     hexapod, pose = machine()
     rest = fx.hold(hexapod, pose)
@@ -357,7 +357,7 @@ def test_trajectory_agrees_with_scipy_in_the_inertial_frame():
     other = solve_ivp(rates, (0, times[-1]), z0, "DOP853", times, rtol=1e-11, atol=1e-13)
     dataset = fx.simulate(hexapod, pose, base_motion=SHAKEN, times=times, rtol=1e-11)
     # Travels of 1e-3 m in some 50 steps of 1e-11; legs of 8e7 N/m make 1e-13 m of SciPy's tolerance felt.
-    np.testing.assert_allclose(dataset.position.values, other.y[:3].T, atol=1e-9)
+    measured("time/scipy", dataset.position.values - other.y[:3].T, 1e-9)
     turn = Rotation.from_quat(other.y[3:7].T).as_matrix()
     np.testing.assert_allclose(dataset.rotation.values, turn, atol=1e-8)
     np.testing.assert_allclose(dataset.velocity.values, other.y[7:10].T, atol=1e-6)

@@ -25,12 +25,12 @@ def apart(dataset) -> np.ndarray:
 
 @pytest.mark.parametrize("axis", AXES)
 @pytest.mark.parametrize("joint", ["universal", "spin_free"])
-def test_small_motion_is_the_tangents(paper, axis, joint):
+def test_small_motion_is_the_tangents(paper, axis, joint, measured):
     # Away from resonances (492, 493, 762, 8635, 16159, 16208 rad/s). What remains is of the order of the amplitude
     # squared over the leg's length squared, 1e-9, and the tolerance of shooting.
     found = fx.stepped_sine(paper, II, [100.0, 430.0, 550.136, 700.0, 900.0], 1e-6, axis, joint=joint, tolerance=1e-9)
     assert (found.status == "found").all()
-    assert apart(found).max() < 3e-7
+    measured("frequency/stepped", apart(found), 3e-7)
     difference = np.abs(found.response - found.linear).values
     largest = np.abs(found.linear).max(axis=1).values[:, None]
     assert (difference < np.maximum(1e-3 * np.abs(found.linear).values, 1e-7 * largest)).all()  # every single output
@@ -45,19 +45,19 @@ def test_linear_is_the_transmissibility(paper):
     np.testing.assert_array_equal(found.harmonics.sel(harmonic=1), found.ratio)
 
 
-def test_difference_from_the_tangent_grows_with_the_amplitude_squared(paper):
+def test_difference_from_the_tangent_grows_with_the_amplitude_squared(paper, measured):
     """Three amplitudes: the fundamental of a motion x has no second-order part, so it differs by x^2."""
     amplitude = np.array([0.00125, 0.0025, 0.005])
     steps = [fx.stepped_sine(paper, II, [550.136, 640.0, 755.0], a, "roll") for a in amplitude]
     differences = np.array([apart(d) for d in steps])
     assert (differences[-1] > 3e-4).all()
     # The next term is of fourth order: a hundredth of the second where the difference is a hundredth.
-    np.testing.assert_allclose(np.log2(differences[1:] / differences[:-1]), 2.0, atol=0.02)
+    measured("frequency/quadratic", np.log2(differences[1:] / differences[:-1]) - 2, 0.02)
     second = np.array([np.linalg.norm(d.harmonics.sel(harmonic=2), axis=1) for d in steps])
     np.testing.assert_allclose(np.log2(second[1:] / second[:-1]), 1.0, atol=0.02)  # per amplitude
 
 
-def test_peaks_lie_at_the_tangents_damped_frequencies(paper):
+def test_peaks_lie_at_the_tangents_damped_frequencies(paper, measured):
     poles = fx.linearise(paper, II).modes().pole
     for mode, output in ((0, "x"), (1, "y"), (2, "yaw")):
         damped = poles[mode].imag
@@ -66,8 +66,7 @@ def test_peaks_lie_at_the_tangents_damped_frequencies(paper):
         found = fx.stepped_sine(paper, II, omega, 1e-9, "z")
         assert (found.status == "found").all()
         peak = float(omega[found.ratio.sel(output=output).values.argmax()])
-        assert abs(peak / damped - 1) < 1e-3
-        assert abs(peak / damped - 1) < 1e-4  # in fact the nearest frequency of the grid
+        measured("frequency/peaks", peak / damped - 1, 1e-4)  # the nearest frequency of the grid
 
 
 def settled(hexapod, omega: float, amplitude: float, axis: str) -> np.ndarray:
@@ -82,20 +81,20 @@ def settled(hexapod, omega: float, amplitude: float, axis: str) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("omega", "share"), [(300.0, 1.0), (492.5, 1.0), (1500.0, 1.0), (560.0, 0.05)])
-def test_with_strong_damping_it_is_what_a_long_run_settles_to(paper, omega, share):
+def test_with_strong_damping_it_is_what_a_long_run_settles_to(paper, omega, share, measured):
     hexapod = paper.replace({key: share * value for key, value in STRONG.items()})
     for amplitude in (1e-4, 0.02):
         found = fx.stepped_sine(hexapod, II, [omega], amplitude, "roll")
         expected = settled(hexapod, omega, amplitude, "roll")
         # Shooting stops where its correction is below 1e-7 of the motion; the transient has died to e^-25.
-        np.testing.assert_allclose(found.response[0], expected, atol=3e-7 * np.linalg.norm(expected))
+        measured("frequency/settled", (found.response.values[0] - expected) / np.linalg.norm(expected), 3e-7)
         if amplitude < 0.01:
             assert apart(found)[0] < 2e-6  # (1e-4 rad)^2, enlarged by resonance; and so both are the tangent's response
         else:
             assert apart(found)[0] > 5e-6  # and both are not
 
 
-def test_with_the_papers_friction_it_is_the_driven_part_of_a_run_from_rest(paper):
+def test_with_the_papers_friction_it_is_the_driven_part_of_a_run_from_rest(paper, measured):
     """A transient of 1/e in minutes: fitted together with the driven motion by least squares over a second."""
     omega, amplitude = 550.136, 1e-6
     times = np.linspace(0.0, 1.0, 20001)
@@ -107,7 +106,7 @@ def test_with_the_papers_friction_it_is_the_driven_part_of_a_run_from_rest(paper
     driven = (fitted[0] + 1j * fitted[7]) * 1j / amplitude
     found = fx.stepped_sine(paper, II, [omega], amplitude, "z")
     # The fit leaves the motion's second-order part, 1e-5 of it, which is nearly orthogonal to what is fitted.
-    np.testing.assert_allclose(found.response[0], driven, atol=1e-6 * np.abs(driven).max())
+    measured("frequency/fitted", (found.response.values[0] - driven) / np.abs(driven).max(), 1e-6)
 
 
 def test_too_large_a_motion_is_data_and_the_rest_completes(paper):

@@ -1,7 +1,7 @@
 """The errors in the printed equations, each as what it adds to the terms of Eq. 34 that the core computes.
 
 The mechanics stay where they are: an error is a difference of a leg's inertia, of its force or of the loads, carried
-into J_p, J_b and eta as Eq. 34 carries them. Numbers are those of the list of corrections in docs/notation.md. E7 and
+into J_p, J_b and eta as Eq. 34 carries them. Numbers are those of the list of corrections in docs/theory.md. E7 and
 E8 are no terms of Eq. 34: the first errs in what is done with its solution, the second in a unit.
 """
 
