@@ -7,7 +7,7 @@ OUT    ?= out
 
 CORE := CMakeLists.txt $(wildcard src/core/*)
 
-.PHONY: report test build lint types bench clean web web-check
+.PHONY: report test build lint types bench docs clean web web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
@@ -26,6 +26,14 @@ types: build
 
 bench: build ## ratios from one interleaved run
 	$(BIN)/python -m benchmarks
+
+docs: $(VENV)/.docs ## the site, in site/: every warning an error, every link checked, nothing loaded from elsewhere
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build
+	$(BIN)/python docs/check_site.py site
+
+$(VENV)/.docs: $(VENV)/.built
+	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[docs]'
+	touch $@
 
 WEB := web/package.json web/package-lock.json web/index.html web/vite.config.ts web/tsconfig.json \
        $(wildcard web/src/* web/public/*)
@@ -56,4 +64,4 @@ $(VENV)/.built: $(VENV)/.tools $(CORE)
 	touch $@
 
 clean:
-	rm -rf $(VENV) build out
+	rm -rf $(VENV) build out site
