@@ -30,6 +30,9 @@ FENCE = re.compile(
     re.MULTILINE,
 )
 
+#: Commands that take too long here, and where they are tested.
+ELSEWHERE = {"serve": "tests/web", "paper": "tests of `flexapod paper`"}
+
 #: Runs a command line: exit code, standard output, standard error.
 Run = Callable[..., tuple[int, str, str]]
 
@@ -107,10 +110,10 @@ def _python(text: str, namespace: dict[str, object], where: str) -> str:
 
 
 def _commands(text: str, run: Run, where: str) -> None:
-    """Lines that begin with `flexapod`; but for `serve`, which runs until it is stopped (tests/web)."""
+    """Lines that begin with `flexapod`."""
     for line in text.replace("\\\n", " ").splitlines():
         words = shlex.split(line, comments=True)
-        if words[:1] == ["flexapod"] and words[1] != "serve":
+        if words[:1] == ["flexapod"] and words[1] not in ELSEWHERE:
             code, _, err = run(*words[1:])
             assert code == 0, f"{where}: {line}\n{err}"
 

@@ -10,6 +10,10 @@ from documents import blocks, matches, run_document
 ROOT = Path(__file__).parent.parent
 GUIDES = [path for path in sorted((ROOT / "docs").rglob("*.md")) if "```" in path.read_text(encoding="utf-8")]
 
+OUTSIDE = [
+    str(path.relative_to(ROOT)) for folder in (".", "benchmarks", "examples") for path in ROOT.glob(f"{folder}/*.md")
+]
+
 
 @pytest.fixture
 def there(tmp_path, monkeypatch):
@@ -30,7 +34,7 @@ def test_what_a_guide_shows_works(path, there, run):
     run_document(path, there, run)
 
 
-@pytest.mark.parametrize("path", ["README.md", "CHANGELOG.md", "benchmarks/README.md"])
+@pytest.mark.parametrize("path", OUTSIDE)
 def test_links_from_outside_the_site_lead_to_files(path):
     """Those within docs/ are checked by `make docs`."""
     text = (ROOT / path).read_text(encoding="utf-8")

@@ -88,7 +88,8 @@ def test_what_is_only_named_or_called_is_not_defined():
 
 
 def test_links_that_leave_docs_lead_to_pages_of_the_site():
-    assert outside.mended("[a](../CHANGELOG.md#x) [b](docs.md)", "docs") == "[a](changelog.md#x) [b](docs.md)"
+    assert outside.leaving("[a](../CHANGELOG.md#x) [b](web.md)", "") == "[a](changelog.md#x) [b](web.md)"
+    assert outside.leaving("[a](../../CHANGELOG.md) [b](../web.md)", "theory") == "[a](../changelog.md) [b](../web.md)"
     assert outside.mended("[a](../docs/notation.md)", "benchmarks") == "[a](notation.md)"
     assert (
         outside.mended("![a](all.png) [b](https://x.org/y)", "benchmarks")

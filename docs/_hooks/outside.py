@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import ast
+import posixpath
 import re
 from pathlib import Path
-from posixpath import normpath
+from posixpath import normpath, relpath
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -33,11 +34,11 @@ def in_site(path: str) -> str:
     return "index.md" if path == "README.md" else path
 
 
-def mended(markdown: str, folder: str) -> str:
-    """Markdown of a file in `folder` of the repository, with its relative links as the site needs them."""
+def mended(markdown: str, folder: str, page: str = "") -> str:
+    """Text of a file in `folder` of the repository, its links made those of a page in the site's folder `page`."""
 
     def target(match: re.Match[str]) -> str:
-        place = in_site(normpath(f"{folder}/{match[2]}"))
+        place = relpath(in_site(normpath(f"{folder}/{match[2]}")), page or ".")
         return f"{match[1]}{place}{match[3] or ''}{match[4]}"
 
     return LINK.sub(target, markdown)
@@ -81,4 +82,15 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
     if page.file.generated_by:
         return markdown
-    return LINK.sub(lambda m: mended(m[0], "docs") if m[2].startswith("../") else m[0], markdown)
+    return leaving(markdown, posixpath.dirname(page.file.src_uri))
+
+
+def leaving(markdown: str, page: str) -> str:
+    """Markdown of a page in a folder of docs/, with those of its links mended that leave docs/."""
+    folder = f"docs/{page}"
+
+    def target(match: re.Match[str]) -> str:
+        inside = normpath(f"{folder}/{match[2]}").startswith("docs/")
+        return match[0] if inside else mended(match[0], folder, page)
+
+    return LINK.sub(target, markdown)
