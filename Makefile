@@ -7,7 +7,7 @@ OUT    ?= out
 
 CORE := CMakeLists.txt $(wildcard src/core/*)
 
-.PHONY: report paper test build lint types bench bench-readme validation clean web web-check
+.PHONY: report paper test build lint types bench bench-readme docs validation clean web web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
@@ -35,6 +35,14 @@ bench: $(VENV)/.bench ## Flexapod and other tools: one table, one figure, ratios
 
 bench-readme: bench ## the same into benchmarks/README.md
 	$(BIN)/python -m benchmarks --update --redraw out/benchmarks/results.json
+
+docs: $(VENV)/.docs ## the site, in site/: every warning an error, every link checked, nothing loaded from elsewhere
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build
+	$(BIN)/python docs/check_site.py site
+
+$(VENV)/.docs: $(VENV)/.built
+	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[docs]'
+	touch $@
 
 WEB := web/package.json web/package-lock.json web/index.html web/vite.config.ts web/tsconfig.json \
        $(wildcard web/src/* web/public/*)
@@ -69,4 +77,4 @@ $(VENV)/.bench: $(VENV)/.built
 	touch $@
 
 clean:
-	rm -rf $(VENV) build out
+	rm -rf $(VENV) build out site

@@ -230,20 +230,3 @@ def test_designs_and_keys_complete():
     assert names[:2] == ["mukherjee-i", "mukherjee-ii"]
     keys = [item.value for item in Assignment().shell_complete(None, None, "legs.st")]
     assert keys == ["legs.stiffness="]
-
-
-def test_the_readmes_example_and_commands_work(run, tmp_path, monkeypatch):
-    import re
-    import shlex
-
-    text = (Path(__file__).parent.parent / "README.md").read_text(encoding="utf-8")
-    exec(re.findall(r"```python\n(.*?)```", text, re.DOTALL)[0], {})
-    monkeypatch.chdir(tmp_path)
-    commands = re.findall(r"^flexapod (.*?)(?:  +#.*)?$", text, re.MULTILINE)
-    served = [command for command in commands if command.startswith("serve")]  # runs until it is stopped: tests/web
-    assert len(commands) == 14
-    assert len(served) == 1
-    for command in [each for each in commands if each not in served]:
-        assert run(*shlex.split(command))[0] == 0, command
-    assert (tmp_path / "my-machine.html").exists()
-    assert (tmp_path / "reports" / "my-machine.html").exists()

@@ -1,0 +1,44 @@
+"""Tables of the keys of a design file and their units, for pages that say `<!-- keys -->` or `<!-- units -->`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from flexapod.schema import KEYS, SHAPES, Key
+from flexapod.units import UNITS, printed, si_unit
+
+if TYPE_CHECKING:
+    from mkdocs.config.defaults import MkDocsConfig
+    from mkdocs.structure.files import Files
+    from mkdocs.structure.pages import Page
+
+
+def table() -> str:
+    rows = ["| key | meaning | is a | shape | range |", "|---|---|---|---|---|"]
+    for name, key in KEYS.items():
+        shapes = " or ".join(SHAPES[shape] for shape in key.shapes)
+        rows.append(f"| `{name}` | {key.meaning} | {key.dimension or 'number'} | {shapes} | {bounds(key)} |")
+    return "\n".join(rows)
+
+
+def units() -> str:
+    rows = ["| dimension | without a unit | with a unit at the end of the key |", "|---|---|---|"]
+    for dimension, known in UNITS.items():
+        endings = ", ".join(f"`_{unit}`" for unit in known)
+        rows.append(f"| {dimension} | {printed(si_unit(dimension))} | {endings} |")
+    return "\n".join(rows)
+
+
+def bounds(key: Key) -> str:
+    if key.symmetric:
+        return "symmetric"
+    least = "" if key.least is None else f"{'>' if key.open_ else '≥'} {key.least:g}"
+    most = "" if key.most is None or key.most > 1e50 else f"≤ {key.most:g}"
+    return ", ".join(filter(None, (least, most)))
+
+
+def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
+    for mark, tabulated in (("<!-- keys -->", table), ("<!-- units -->", units)):
+        if mark in markdown:
+            markdown = markdown.replace(mark, tabulated())
+    return markdown

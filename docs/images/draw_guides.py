@@ -1,0 +1,77 @@
+"""Draws the figures of the how-to pages: python docs/images/draw_guides.py"""
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.figure import Figure
+
+import flexapod as fx
+from flexapod import plots_optimise, plots_response, plots_sweep
+
+HERE = Path(__file__).parent
+
+
+def save(figure: Figure, name: str) -> None:
+    figure.savefig(HERE / name, dpi=110)
+    plt.close(figure)
+
+
+def workspace() -> None:
+    """docs/workspace.md: manipulator I over x and y, at the height and orientation of home."""
+    machine = fx.load("mukherjee-i")
+    home = fx.home_pose(machine)
+    grid = fx.pose_grid(np.linspace(-0.1, 0.3, 121), np.linspace(0, 0.4, 121), home.position[2], *home.rpy)
+    plots_sweep.save(plots_sweep.index_map(fx.sweep(machine, grid)), HERE / "map.png")
+
+
+def simulation() -> None:
+    """docs/simulation.md: the positioner after a shock of its base."""
+    machine = fx.load("precision-positioner")
+    pose = fx.Pose.from_rpy(0.002, 0, 0.244, 0, 0, np.radians(2))
+    shock = fx.half_sine_shock("z", 5.0, 0.005, recovery=0.02)
+    run = fx.simulate(machine, pose, base_motion=shock, duration=0.1)
+    save(plots_response.displacements(run.time.values, run.relative_displacement.values), "shock.png")
+
+
+def vibration() -> None:
+    """docs/vibration.md: how much of the base's x reaches the positioner."""
+    machine = fx.load("precision-positioner")
+    pose = fx.Pose.from_rpy(0.002, 0, 0.244, 0, 0, np.radians(2))
+    passed = fx.transmissibility(machine, pose, np.geomspace(100, 5000, 1500), loss_factor=0.01)
+    natural = fx.natural_modes(machine, pose).omega
+    save(plots_response.frequency_response(passed, given="x", natural=natural), "response.png")
+
+
+def robustness() -> None:
+    """docs/robustness.md: how the positioner's index strays."""
+    machine = fx.load("precision-positioner")
+    uncertain = [
+        fx.Uncertain("legs.stiffness", 0.1),
+        fx.Payload((0, 5), ((-0.05, 0.05), (-0.05, 0.05), (0.1, 0.2))),
+    ]
+    found = fx.robustness(machine, uncertain, samples=2**14, sensitivity=1024)
+    save(plots_optimise.spread(found), "robust.png")
+    save(plots_optimise.importance(found), "importance.png")
+
+
+def optimal_design() -> None:
+    """docs/optimal-design.md: manipulator II before and after the search of the guide."""
+    machine = fx.load("mukherjee-ii")
+    better = fx.optimise(
+        machine,
+        [
+            fx.JointCircle("base", radius=(0.02, 0.03), half_angle=(0.1, 0.95)),
+            fx.JointCircle("platform", radius=(0.03, 0.06), half_angle=(0.1, 0.95)),
+            fx.Variable("home.position_mm[2]", 70, 100),
+        ],
+        fx.LeastIndex(fx.Workspace.about_home(0.005, np.radians(5))),
+        [fx.Footprint(), fx.Stroke()],
+    )
+    print(f"{better.start_index:.4g} -> {better.index:.4g} rad/s")
+    save(plots_optimise.plan(better), "better.png")
+
+
+if __name__ == "__main__":
+    for draw in (workspace, simulation, vibration, robustness, optimal_design):
+        draw()
