@@ -7,13 +7,22 @@ OUT    ?= out
 
 CORE := CMakeLists.txt $(wildcard src/core/*)
 
-.PHONY: report test build lint types bench clean web web-check
+.PHONY: report test coverage build lint types bench clean web web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
 
-test: build ## the whole test suite
+test: build ## the whole test suite; with COVERAGE=1 also how much of the Python code it runs
+ifdef COVERAGE
+	$(BIN)/coverage erase
+	$(BIN)/coverage run -m pytest
+	$(BIN)/python tests/covered.py
+else
 	$(BIN)/python -m pytest
+endif
+
+coverage: ## the same, counted: fails below 95 % of the branches
+	$(MAKE) test COVERAGE=1
 
 build: $(VENV)/.built
 
