@@ -1,7 +1,7 @@
 """How much of the Python code the tests ran, by lines and branches together and by branches alone: `make coverage`.
 
-Fails where either is below `fail_under` of pyproject.toml. The combined number is coverage's own; it flatters, since most
-lines are easy to reach and branches are not.
+Fails where either is below `fail_under` of pyproject.toml. The combined number is coverage's own; it flatters, since
+most lines are easy to reach and branches are not.
 """
 
 import json

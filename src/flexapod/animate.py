@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from flexapod.errors import ArgumentError, PoseError
+from flexapod.extras import needed
 from flexapod.hexapod import Hexapod
 from flexapod.modal import describe_modes, natural_modes
 from flexapod.plots import BASE, FAINT, INK, LEG, PLATFORM, VIEW
@@ -200,13 +201,9 @@ def _writer(path: Path) -> tuple[AbstractMovieWriter, Any]:
         return PillowWriter(fps=_FPS), nullcontext()
     if kind != ".mp4":
         raise ArgumentError(f"{path.name} is neither .gif nor .mp4; give the path one of these endings")
-    try:
-        from imageio_ffmpeg import get_ffmpeg_exe
-    except ImportError as error:
-        raise ImportError("an MP4 needs imageio-ffmpeg: pip install 'flexapod[video]'; a .gif does not") from error
-    return FFMpegWriter(fps=_FPS, codec="libx264", extra_args=["-pix_fmt", "yuv420p"]), rc_context(
-        {"animation.ffmpeg_path": get_ffmpeg_exe()}
-    )
+    ffmpeg = needed("imageio_ffmpeg", "video", "an MP4 needs imageio-ffmpeg, a .gif does not").get_ffmpeg_exe()
+    writer = FFMpegWriter(fps=_FPS, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
+    return writer, rc_context({"animation.ffmpeg_path": ffmpeg})
 
 
 def _simulated(dataset: xr.Dataset, hexapod: Hexapod, base: Pose) -> tuple[_Film, Array]:

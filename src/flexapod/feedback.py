@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.errors import ArgumentError, UnstableError
+from flexapod.extras import needed
 from flexapod.linear import Linearisation
 from flexapod.pose import Array
 
@@ -96,8 +97,6 @@ class Controller:
 
         delay: whole samples by which the computed force comes late (0 or more).
         """
-        import control
-
         if self.dt is not None:
             raise ArgumentError(f"this controller is sampled already, every {self.dt:.6g} s; sample the continuous one")
         if not (np.isfinite(dt) and dt > 0):
@@ -106,6 +105,7 @@ class Controller:
             raise ArgumentError(f"delay is {delay}; it must be a whole number of samples, 0 or more")
         found = Controller(self.A, self.B, self.C, self.D, self.measures, self.name, float(dt))
         if self.order:
+            control = needed("control", "control", "sampling a controller needs python-control")
             system = control.sample_system(control.ss(self.A, self.B, self.C, self.D), dt, method=method)
             found = replace(found, A=system.A, B=system.B, C=system.C, D=system.D)
         for _ in range(int(delay)):

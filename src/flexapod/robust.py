@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod.errors import ArgumentError
+from flexapod.extras import needed
 from flexapod.hexapod import Hexapod
 from flexapod.optimal.entries import HOME, PLACES, entries, numbers
 from flexapod.optimal.places import Places, places
@@ -236,8 +237,8 @@ def robustness(
     `Workspace`, of which `poses` poses are looked at; the index of a sample is the least over them. samples: designs
     drawn (a scrambled Sobol sequence). sensitivity: base samples of a Sobol analysis (SALib), a power of two such as
     1024, which takes sensitivity * (parameters + 2) designs more; 0: none. Options: joint, seed=0, threads, progress
-    (called with a stage and its share done). Raises ArgumentError for ranges that a design cannot have, and where SALib
-    is missing.
+    (called with a stage and its share done). Raises ArgumentError for ranges that a design cannot have,
+    MissingExtraError where SALib is missing.
     """
     settings = _Settings(**options)
     ensemble = Ensemble(hexapod, uncertain)
@@ -343,16 +344,10 @@ def _worst(index: _Index, u: Array, values: Array) -> tuple[float, Array]:
 
 def _sobol(ensemble: Ensemble, index: _Index, base: int, seed: int) -> xr.Dataset:
     """First-order and total Sobol indices with 95 % confidence half-widths."""
-    try:
-        from SALib.analyze import sobol as analyse
-        from SALib.sample import sobol as sample
-    except ImportError:
-        raise ArgumentError(
-            "the sensitivity analysis needs SALib. Install it with: pip install 'flexapod[optimise]', or leave "
-            "sensitivity out."
-        ) from None
     import xarray as xr
 
+    why = "the sensitivity analysis needs SALib; without it, leave sensitivity out"
+    sample, analyse = (needed(f"SALib.{part}.sobol", "optimise", why) for part in ("sample", "analyze"))
     if base < 16 or base & (base - 1):
         raise ArgumentError(f"sensitivity is {base}; it must be a power of two, at least 16, such as 1024.")
     p = len(ensemble.names)

@@ -51,10 +51,7 @@ def command(
     from flexapod.animate import animate_mode
 
     path = Path(f"{hexapod.name}-mode-{mode}.gif") if out is None else out
-    try:
-        factor = animate_mode(hexapod, where, mode, path, joint=joint, exaggeration=exaggeration)
-    except ImportError as error:
-        raise click.ClickException(str(error)) from error
+    factor = animate_mode(hexapod, where, mode, path, joint=joint, exaggeration=exaggeration)
     if as_json:
         found = {"design": hexapod.name, "mode": mode, "exaggeration": factor, "file": str(path)}
         common.print_json({**found, "pose_m_deg": common.pose_numbers(where)})
