@@ -190,20 +190,29 @@ def _stage(top: Array, feet: Array, width: float) -> tuple[Figure, Callable[[Arr
     return figure, draw
 
 
+def check_path(path: Path) -> None:
+    """Raises ArgumentError or MissingExtraError, before anything is computed, for a file that cannot be one."""
+    if not path.parent.is_dir():
+        raise ArgumentError(f"{path.parent} is not a directory; make it first, or choose another path")
+    if path.suffix.lower() not in (".gif", ".mp4"):
+        raise ArgumentError(f"{path.name} is neither .gif nor .mp4; give the path one of these endings")
+    if path.suffix.lower() == ".mp4":
+        _ffmpeg()
+
+
+def _ffmpeg() -> str:
+    return str(needed("imageio_ffmpeg", "video", "an MP4 needs imageio-ffmpeg, a .gif does not").get_ffmpeg_exe())
+
+
 def _writer(path: Path) -> tuple[AbstractMovieWriter, Any]:
     from matplotlib import rc_context
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
-    kind = path.suffix.lower()
-    if not path.parent.is_dir():
-        raise ArgumentError(f"{path.parent} is not a directory; make it first, or choose another path")
-    if kind == ".gif":
+    check_path(path)
+    if path.suffix.lower() == ".gif":
         return PillowWriter(fps=_FPS), nullcontext()
-    if kind != ".mp4":
-        raise ArgumentError(f"{path.name} is neither .gif nor .mp4; give the path one of these endings")
-    ffmpeg = needed("imageio_ffmpeg", "video", "an MP4 needs imageio-ffmpeg, a .gif does not").get_ffmpeg_exe()
     writer = FFMpegWriter(fps=_FPS, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
-    return writer, rc_context({"animation.ffmpeg_path": ffmpeg})
+    return writer, rc_context({"animation.ffmpeg_path": _ffmpeg()})
 
 
 def _simulated(dataset: xr.Dataset, hexapod: Hexapod, base: Pose) -> tuple[_Film, Array]:

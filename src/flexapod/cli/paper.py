@@ -68,10 +68,7 @@ def command(
     for number in figures or sorted(FIGURES):
         drawn = draw(number, Settings(points, seed, joint))
         path = out / f"figure-{number}.png"
-        try:
-            drawn.figure.savefig(path, dpi=160)
-        except OSError as error:
-            raise click.UsageError(f"{path} cannot be written: {error.strerror}. Choose another --out.") from error
+        common.save_figure(drawn.figure, path)
         record = {"caption": drawn.caption, "numbers": common.plain(drawn.numbers)}
         common.write_file(out / f"figure-{number}.json", json.dumps(record, indent=2) + "\n")
         if drawn.table is not None:

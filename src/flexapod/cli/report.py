@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,10 +14,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@common.design_argument
-@common.pose_option
-@common.set_option
-@common.joint_option
+@common.machine_options
 @common.characteristic_length_option
 @common.out_option("Where to write the HTML file; made if it is not there. Default: here; with --json: no file.")
 @common.json_option
@@ -35,15 +31,14 @@ def command(
 
     DESIGN is a packaged design's name (see `flexapod designs`) or the path of a .toml file.
     """
-    hexapod = common.load_design(design, changes)
-    where = common.chosen_pose(hexapod, pose)
+    hexapod, where = common.machine(design, changes, pose)
     from flexapod.report import findings
 
     found = findings.gather(hexapod, where, joint, characteristic_length, changes)
     file = None
     if out is not None or not as_json:
         directory = common.output_directory(Path() if out is None else out)
-        file = directory / f"{_file_name(hexapod.name)}.html"
+        file = directory / f"{common.file_name(hexapod.name)}.html"
     if not as_json:
         from flexapod.report.terminal import summary
 
@@ -56,8 +51,3 @@ def command(
         common.print_json({**findings.as_dict(found), "html": None if file is None else str(file)})
     else:
         click.echo(f"Report: {file}")
-
-
-def _file_name(name: str) -> str:
-    """A design's name as a file's: nothing in it that a file system or a shell could take amiss."""
-    return re.sub(r"[^\w.-]+", "-", name).strip("-.") or "hexapod"
