@@ -37,7 +37,7 @@ def command(
     out: Path | None,
     as_json: bool,
 ) -> None:
-    """Animate a mode of DESIGN at a pose, its largest joint motion taken as 1 um. For motion in time: simulate --animate."""
+    """Animate a mode of DESIGN at a pose, its largest joint motion taken as 1 um. (In time: simulate --animate.)"""
     hexapod, where = common.machine(design, changes, pose)
     from flexapod.animate import animate_mode
 

@@ -8,8 +8,8 @@ A command stacks the decorators it needs on a function whose parameters carry th
     @json_option          # as_json: bool      print with `print_json`
     def command(...): ...
 
-`machine_options` is design_argument, pose_option, set_option and joint_option, for commands that need
-only some of them. Nothing here imports NumPy before a command asks for a design, so that `flexapod --help` answers at once. A command
+`machine_options` is design_argument, pose_option, set_option and joint_option; some commands need only a part of them.
+Nothing here imports NumPy before a command asks for a design, so that `flexapod --help` answers at once. A command
 raises FlexapodError or click.UsageError for what the user can put right; `flexapod.cli.main` prints it and exits
 with 2.
 """

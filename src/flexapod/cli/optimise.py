@@ -247,7 +247,7 @@ def _show_front(found: ParetoFront, aim: Objective, options: Options) -> None:
     directory = _files(options)
     files: list[Path] = []
     if directory is not None:
-        name = common.file_name(found.history.attrs["design"])
+        name = common.file_name(found.hexapod.name)
         files = [directory / f"{name}-front.html", directory / f"{name}-front.png"]
         common.write_file(files[0], front_page(found, repr(aim)))
         common.save_figure(plots_optimise.front(found), files[1])
