@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -94,6 +94,8 @@ class Footprint(Constraint):
 
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
         """See `Constraint`."""
+        if self.plate not in get_args(Plate):
+            raise ArgumentError(f"footprint: the plate is {self.plate!r}; it must be 'base' or 'platform'.")
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints
         (x, y), radius = kinds.enclosing_circle(joints[:, :2])
         kind = kinds.Radius(self.plate, float(x), float(y))

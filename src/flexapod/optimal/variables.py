@@ -121,6 +121,8 @@ class JointCircle:
         """The map of this circle for a design. Raises ArgumentError for what cannot be one."""
         if self.plate not in ("base", "platform"):
             raise ArgumentError(f"a joint circle is on {self.plate!r}; it must be on 'base' or 'platform'.")
+        if self.axes not in ("tangent", "keep"):
+            raise ArgumentError(f"axes of a joint circle is {self.axes!r}; it must be 'tangent' or 'keep'.")
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints
         third, side, own = _pairs(joints)
         parameters: list[Parameter | float] = []
@@ -130,6 +132,8 @@ class JointCircle:
                 parameters.append(own[name])
             elif np.ndim(given) == 0:
                 parameters.append(float(given))
+            elif np.shape(given) != (2,):
+                raise ArgumentError(f"{self.plate}.{name} is {given!r}; give a number, or a pair (least, most).")
             else:
                 low, high = given
                 parameters.append(Parameter(f"{self.plate}.{name}", float(low), float(high), start=own[name]))
@@ -319,7 +323,8 @@ class DesignMap:
             part.put(x[first : first + count], found)
             first += count
         for axis in self._axes[self._turned]:
-            found[axis] = found[axis] / np.sqrt((found[axis] ** 2).sum())
+            with np.errstate(invalid="ignore"):  # an axis of length zero is NaN, which makes no hexapod
+                found[axis] = found[axis] / np.sqrt((found[axis] ** 2).sum())
         return found
 
     def jacobian(self, x: Array) -> Array:
