@@ -107,8 +107,8 @@ CASES = [
     (lambda: planned(timing=0.0), fx.PathError, "timing is 0.0; it must be a duration > 0 s, or a LegSpeed"),
     (lambda: fx.plan_slice(machine(), planned()), fx.PathError, "the planned path is straight; it spans no plane"),
     (lambda: fx.sampling_time(100.0, NEAR), A, "100.0 is a frequency and takes no place; give a Hexapod"),
-    (lambda: fx.sampling_time(coincident()[0], fx.Pose(np.zeros((2, 3)))), fx.PoseError, "no leg can take any of these"),
-    (lambda: fx.sampling_time(coincident()[0], stays(coincident()[1])), fx.PoseError, "no leg can take any of these"),
+    (lambda: fx.sampling_time(coincident()[0], fx.Pose(np.zeros((2, 3)))), fx.PoseError, "no leg can take any"),
+    (lambda: fx.sampling_time(coincident()[0], stays(coincident()[1])), fx.PoseError, "no leg can take any"),
     (
         lambda: fx.sampling_time(coincident()[0], fx.Box(x=0, y=0, z=0, roll=0, pitch=0, yaw=0)),
         fx.PoseError,
@@ -133,7 +133,7 @@ CASES = [
     (lambda: robust(samples=1), A, "samples is 1; at least 2 designs must be drawn"),
     (lambda: robust(fx.Payload((0, 1), ((0.1, -0.1), 0, 0))), A, r"the payload's x is \(0.1, -0.1\) m"),
     (lambda: robust(fx.Uncertain("platform.mass", 3.0, "lognormal")), A, "of the logarithm; it must be at most 2"),
-    (lambda: fx.robustness(machine(home=None), fx.Uncertain("legs.stiffness", 0.1)), A, "names no home pose. Give a pose"),
+    (lambda: fx.robustness(machine(home=None), fx.Uncertain("legs.stiffness", 0.1)), A, "names no home pose. Give"),
     (
         lambda: fx.robustness(coincident()[0], fx.Uncertain("legs.stiffness", 0.1), coincident()[1]),
         A,

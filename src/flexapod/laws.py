@@ -24,6 +24,7 @@ Space = Literal["joint", "task"]
 Actuator = Literal["force", "command"]
 Feedback = Literal["force", "velocity"]
 ALL = (1, 2, 3, 4, 5, 6)
+GAIN_UNIT = {"force": "rad/s", "velocity": "N s/m"}  # of damping laws by name
 _STILL = 1 - 1e-6  # damping ratio that counts as no vibration
 
 
