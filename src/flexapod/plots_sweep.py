@@ -121,10 +121,9 @@ def _plain_log_ticks(ax: Axes, low: float, high: float) -> None:
         return
     steps = (1, 2, 5) if high < 100 * low else (1, 3)
     ticks = [s * 10.0**e for e in range(-1, 16) for s in steps if low <= s * 10.0**e <= high]
-    if len(ticks) >= 2:
-        ax.xaxis.set_major_locator(FixedLocator(ticks))
-        ax.xaxis.set_minor_locator(NullLocator())
-        ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    ax.xaxis.set_major_locator(FixedLocator(ticks))
+    ax.xaxis.set_minor_locator(NullLocator())
+    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
 
 
 def index_map(sweep: xr.Dataset, quantity: str = "omega_1", ax: Axes | None = None) -> Axes:
