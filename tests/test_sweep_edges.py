@@ -27,7 +27,7 @@ def nowhere():
 def test_a_sweep_without_an_index_is_not_summed_up():
     found = fx.sweep(*nowhere())
     assert not np.isfinite(found.omega_1).any()
-    with pytest.raises(fx.PoseError, match="none of the 5 poses has an index. See the variable `status`"):
+    with pytest.raises(fx.PoseError, match=r"none of the 5 poses has an index\. See the variable `status`"):
         fx.summarise(found)
     with pytest.raises(fx.PoseError, match="no pose of this sweep has an index"):
         plots_sweep.index_scatter(found)
@@ -113,10 +113,12 @@ def test_a_block_that_kills_its_workers_is_told(monkeypatch):
     import distributed
 
     def killed():
-        raise distributed.KilledWorker("block 0", SimpleNamespace(name="tcp://one"), 3)
+        raise distributed.KilledWorker("block 0", SimpleNamespace(address="tcp://one"), 3)
 
     monkeypatch.setattr(distributed, "wait", lambda *given, **options: None)
-    with pytest.raises(fx.ClusterError, match="the cluster lost several workers over one block .* go on with --resume"):
+    with pytest.raises(
+        fx.ClusterError, match=r"the cluster lost several workers over one block .* go on with --resume"
+    ):
         submitted(monkeypatch, Client(killed))
 
 

@@ -151,8 +151,9 @@ def joined(plant: Plant, controller: Controller) -> Array:
 
 
 def _continuous(plant: Plant, controller: Controller, C: Array, D: Array) -> Array:
-    loop = np.eye(6) - controller.D @ D
-    if np.linalg.cond(loop) > 1e12:
+    through = controller.D @ D
+    loop = np.eye(6) - through
+    if np.linalg.svd(loop, compute_uv=False)[-1] < 1e-12 * (1 + np.linalg.norm(through, 2)):
         raise UnstableError(
             f"the loop of {controller.name} is not well posed: its measurement depends at once on its own force with "
             "gain one. Change the gain, or measure something else."
