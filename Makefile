@@ -7,7 +7,7 @@ OUT    ?= out
 
 CORE := CMakeLists.txt $(wildcard src/core/*)
 
-.PHONY: report paper test build lint types bench bench-readme docs validation clean web web-check
+.PHONY: report paper test coverage build lint types bench bench-readme docs validation clean web web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
@@ -15,8 +15,17 @@ report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 paper: build ## the paper reproduced on one page (OUT=...)
 	$(BIN)/flexapod paper --out $(OUT)
 
-test: build ## the whole test suite
+test: build ## the whole test suite; with COVERAGE=1 also how much of the Python code it runs
+ifdef COVERAGE
+	$(BIN)/coverage erase
+	$(BIN)/coverage run -m pytest
+	$(BIN)/python tests/covered.py
+else
 	$(BIN)/python -m pytest
+endif
+
+coverage: ## the same, counted: fails below 95 % of the branches
+	$(MAKE) test COVERAGE=1
 
 validation: build ## docs/validation.json from the tests' own numbers
 	$(BIN)/python -m pytest --record-validation=docs/validation.json

@@ -13,7 +13,7 @@ CORE = SOURCE.parent / "core"
 STUDIES = "studies"
 FLOORS = [
     ["_core", "errors", "units"],
-    ["pose", "schema"],
+    ["pose", "schema", "extras"],
     ["jointfile"],
     ["shorthands"],
     ["designfile"],

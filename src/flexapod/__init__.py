@@ -16,6 +16,7 @@ _HOMES = {
         "FlexapodError",
         "InfeasibleError",
         "KinematicsError",
+        "MissingExtraError",
         "OutputError",
         "PathError",
         "PoseError",
@@ -158,6 +159,7 @@ if TYPE_CHECKING:  # what type checkers and editors see
     from flexapod.errors import FlexapodError as FlexapodError
     from flexapod.errors import InfeasibleError as InfeasibleError
     from flexapod.errors import KinematicsError as KinematicsError
+    from flexapod.errors import MissingExtraError as MissingExtraError
     from flexapod.errors import OutputError as OutputError
     from flexapod.errors import PathError as PathError
     from flexapod.errors import PoseError as PoseError

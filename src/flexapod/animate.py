@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from flexapod.errors import ArgumentError, PoseError
+from flexapod.extras import needed
 from flexapod.hexapod import Hexapod
 from flexapod.modal import describe_modes, natural_modes
 from flexapod.plots import BASE, FAINT, INK, LEG, PLATFORM, VIEW
@@ -50,7 +51,7 @@ def animate_mode(
     in the picture.
 
     Raises: ArgumentError for a mode, an amplitude or an enlargement that cannot be shown, or another ending; PoseError
-    for a batch of poses; ImportError for .mp4 without the extra "video".
+    for a batch of poses; MissingExtraError for .mp4 without the extra "video".
     Source: own.
     """
     _check_pose(pose)
@@ -89,7 +90,7 @@ def animate_simulation(
     picture. base: the base's pose at rest, as it was simulated. window: first and last time, s; by default the last
     part in which the main oscillation has 16 frames a period. frames: how many.
 
-    Raises: ArgumentError for a dataset, window or enlargement that cannot be shown, or another ending; ImportError for
+    Raises: ArgumentError for a dataset, window or enlargement that cannot be shown, or another ending; MissingExtraError for
     .mp4 without the extra "video".
     Source: own.
     """
@@ -199,24 +200,29 @@ def _stage(top: Array, feet: Array, width: float) -> tuple[Figure, Callable[[Arr
     return figure, draw
 
 
+def check_path(path: Path) -> None:
+    """Raises ArgumentError or MissingExtraError, before anything is computed, for a file that cannot be one."""
+    if not path.parent.is_dir():
+        raise ArgumentError(f"{path.parent} is not a directory; make it first, or choose another path")
+    if path.suffix.lower() not in (".gif", ".mp4"):
+        raise ArgumentError(f"{path.name} is neither .gif nor .mp4; give the path one of these endings")
+    if path.suffix.lower() == ".mp4":
+        _ffmpeg()
+
+
+def _ffmpeg() -> str:
+    return str(needed("imageio_ffmpeg", "video", "an MP4 needs imageio-ffmpeg, a .gif does not").get_ffmpeg_exe())
+
+
 def _writer(path: Path) -> tuple[AbstractMovieWriter, Any]:
     from matplotlib import rc_context
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
-    kind = path.suffix.lower()
-    if not path.parent.is_dir():
-        raise ArgumentError(f"{path.parent} is not a directory; make it first, or choose another path")
-    if kind == ".gif":
+    check_path(path)
+    if path.suffix.lower() == ".gif":
         return PillowWriter(fps=_FPS), nullcontext()
-    if kind != ".mp4":
-        raise ArgumentError(f"{path.name} is neither .gif nor .mp4; give the path one of these endings")
-    try:
-        from imageio_ffmpeg import get_ffmpeg_exe
-    except ImportError as error:
-        raise ImportError("an MP4 needs imageio-ffmpeg: pip install 'flexapod[video]'; a .gif does not") from error
-    return FFMpegWriter(fps=_FPS, codec="libx264", extra_args=["-pix_fmt", "yuv420p"]), rc_context(
-        {"animation.ffmpeg_path": get_ffmpeg_exe()}
-    )
+    writer = FFMpegWriter(fps=_FPS, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
+    return writer, rc_context({"animation.ffmpeg_path": _ffmpeg()})
 
 
 def _simulated(dataset: xr.Dataset, hexapod: Hexapod, base: Pose) -> tuple[_Film, Array]:

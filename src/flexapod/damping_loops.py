@@ -15,7 +15,7 @@ from flexapod.assessment import least_damping
 from flexapod.errors import ArgumentError
 from flexapod.feedback import Complex, Plant, damping_ratios, poles
 from flexapod.hexapod import Hexapod
-from flexapod.laws import ALL, Feedback, best_gain, default_gains, make
+from flexapod.laws import ALL, GAIN_UNIT, Feedback, best_gain, default_gains, make
 from flexapod.linear import Linearisation, RestOptions, linearise
 from flexapod.pose import Array, Pose
 
@@ -71,7 +71,6 @@ def root_locus(
     pole = _followed(np.stack([poles(plant, make(feedback, g, leak, legs).on(plant.linear)) for g in row]))
     least = np.array([least_damping(p) for p in pole])
     gain, damping = best_gain(plant, lambda g: make(feedback, g, leak, legs), row)
-    unit = "rad/s" if feedback == "force" else "N s/m"
     zeros = open_zeros(plant.linear, feedback, legs)
     return xr.Dataset(
         {
@@ -81,7 +80,7 @@ def root_locus(
             "zero": ("zero_number", zeros, {"units": "rad/s", "long_name": "frequencies at infinite gain"}),
             "omega": ("mode", plant.omega, {"units": "rad/s", "long_name": "natural frequencies without control"}),
         },
-        {"gain": ("gain", row, {"units": unit})},
+        {"gain": ("gain", row, {"units": GAIN_UNIT[feedback]})},
         {
             "design": hexapod.name,
             "digest": hexapod.digest,

@@ -43,6 +43,10 @@ class OutputError(FlexapodError, OSError):
     """A file or store that cannot be written, read, or taken up again."""
 
 
+class MissingExtraError(FlexapodError, ImportError):
+    """A package that a part of Flexapod needs and that is not installed."""
+
+
 class ClusterError(FlexapodError, RuntimeError):
     """A cluster of computers that cannot be reached, or that gave up."""
 

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.errors import ArgumentError, UnstableError
+from flexapod.extras import needed
 from flexapod.linear import Linearisation
 from flexapod.pose import Array
 
@@ -100,7 +101,7 @@ class Controller:
         delay: whole samples by which the computed force comes late (0 or more).
 
         Raises: ArgumentError for a time that is not > 0, a delay that is no whole number, or a controller that is
-        sampled already.
+        sampled already; MissingExtraError without python-control.
         """
         if self.dt is not None:
             raise ArgumentError(f"this controller is sampled already, every {self.dt:.6g} s; sample the continuous one")
@@ -110,12 +111,7 @@ class Controller:
             raise ArgumentError(f"delay is {delay}; it must be a whole number of samples, 0 or more")
         found = Controller(self.A, self.B, self.C, self.D, self.measures, self.name, float(dt))
         if self.order:
-            try:
-                import control
-            except ImportError as error:
-                raise ImportError(
-                    "sampling this controller needs python-control: pip install 'flexapod[control]'"
-                ) from error
+            control = needed("control", "control", "sampling a controller needs python-control")
             system = control.sample_system(control.ss(self.A, self.B, self.C, self.D), dt, method=method)
             found = replace(found, A=system.A, B=system.B, C=system.C, D=system.D)
         for _ in range(int(delay)):
@@ -161,8 +157,9 @@ def joined(plant: Plant, controller: Controller) -> Array:
 
 
 def _continuous(plant: Plant, controller: Controller, C: Array, D: Array) -> Array:
-    loop = np.eye(6) - controller.D @ D
-    if np.linalg.cond(loop) > 1e12:
+    through = controller.D @ D
+    loop = np.eye(6) - through
+    if np.linalg.svd(loop, compute_uv=False)[-1] < 1e-12 * (1 + np.linalg.norm(through, 2)):
         raise UnstableError(
             f"the loop of {controller.name} is not well posed: its measurement depends at once on its own force with "
             "gain one. Change the gain, or measure something else."

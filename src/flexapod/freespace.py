@@ -7,10 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flexapod.errors import PathError
+from flexapod.extras import needed
 from flexapod.pose import Array
 
 BATCHES, BATCH = 40, 120
+_PARTS = ("base", "geometric", "util")
 _AFTER_FOUND = 6  # batches spent on shorter ways once there is one
 
 
@@ -33,9 +34,9 @@ def search(
 ) -> Search:
     """A short polyline from ends[0] to ends[1] within [low, high] whose every point meets met((n, k)) -> (n,) bool.
 
-    Lines are checked at points `step` apart. The same seed gives the same line. Raises PathError without OMPL.
+    Lines are checked at points `step` apart. The same seed gives the same line. Raises MissingExtraError without OMPL.
     """
-    base, geometric, util = _ompl()
+    base, geometric, util = (needed(f"ompl.{part}", "plan", "planning a path needs OMPL") for part in _PARTS)
     util.setLogLevel(util.LogLevel.LOG_NONE)
     util.RNG.setSeed(seed + 1)
     space = _space(base, low, high)
@@ -66,14 +67,6 @@ def search(
     if problem.hasExactSolution():
         points = np.array([_point(state, low.size) for state in problem.getSolutionPath().getStates()])
     return Search(points, int(planner.numBatches()))
-
-
-def _ompl() -> tuple[Any, Any, Any]:
-    try:
-        from ompl import base, geometric, util
-    except ImportError as error:
-        raise PathError("planning a path needs OMPL: pip install 'flexapod[plan]'") from error
-    return base, geometric, util
 
 
 def _space(base: Any, low: Array, high: Array) -> Any:

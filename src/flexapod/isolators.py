@@ -14,6 +14,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from flexapod.errors import ArgumentError, UnstableError
+from flexapod.extras import needed
 from flexapod.feedback import MEASURES, Complex, Controller, Law, Measure, Plant, is_stable, poles
 from flexapod.hexapod import Hexapod
 from flexapod.linear import AXES, RestOptions, linearise
@@ -38,12 +39,12 @@ def lqg(
     sensor noise relative to the shaken base's signal. Small weights ask for more of the machine. rest: `linearise`'s.
 
     Raises: ArgumentError for a measure that is none or a weight that is not > 0; UnstableError where no controller
-    exists; PoseError and SingularPoseError as `linearise`; ImportError without python-control.
+    exists; PoseError and SingularPoseError as `linearise`; MissingExtraError without python-control.
     Source: H. Kwakernaak and R. Sivan, Linear Optimal Control Systems (1972); the weights are our own.
     """
     task = _Task(Plant(linearise(hexapod, pose, **rest)), _measures(measure))
     _positive(effort=effort, stroke=stroke, noise=noise)
-    control = _control()
+    control = needed("control", "control", "LQG design needs python-control")
     drift = stroke * task.omega_1**2 / (task.plant.omega_0 * task.pace)
     held = np.hstack([np.diag(drift / task.axis), np.zeros((6, 6))])
     Q = task.C_a.T @ task.C_a + held.T @ held
@@ -78,7 +79,7 @@ def h_infinity(
     the weight at every frequency.
 
     Raises: ArgumentError for a measure that is none or a weight that is not > 0; UnstableError where no controller is
-    found; PoseError and SingularPoseError as `linearise`; ImportError without slycot.
+    found; PoseError and SingularPoseError as `linearise`; MissingExtraError without slycot.
     Source: J. C. Doyle, K. Glover, P. P. Khargonekar and B. A. Francis (1989), by SLICOT's SB10AD; the weights are our
     own.
     """
@@ -221,18 +222,14 @@ def _suboptimal(system: _Weighted, measurements: int) -> tuple[float, tuple[Arra
     SLICOT's SB10AD, the routine behind control.hinfsyn, but with gamma given: the optimal controllers that hinfsyn
     gives have poles near infinity, which no sampled controller can follow.
     """
-    try:
-        from slycot import sb10ad
-        from slycot.exceptions import SlycotError
-    except ImportError as error:
-        raise ImportError("H-infinity design needs slycot: pip install 'flexapod[control]'") from error
+    slycot = needed("slycot", "control", "H-infinity design needs slycot")
     A, B, C, D = system
     sizes = (len(A), B.shape[1], len(C), 6, measurements)
 
     def attempt(gamma: float) -> tuple[Array, ...] | None:
         try:
-            return tuple(np.asarray(m) for m in sb10ad(*sizes, gamma, A, B, C, D, job=4)[1:5])
-        except SlycotError:
+            return tuple(np.asarray(m) for m in slycot.sb10ad(*sizes, gamma, A, B, C, D, job=4)[1:5])
+        except slycot.exceptions.SlycotError:
             return None
 
     high = 1.0
@@ -308,14 +305,6 @@ def _riccati(control: Any, A: Array, B: Array, Q: Array, R: Array, S: Array) -> 
             "weight is zero; raise the weights."
         ) from error
     return np.asarray(gain)
-
-
-def _control() -> Any:
-    try:
-        import control
-    except ImportError as error:
-        raise ImportError("this design needs python-control: pip install 'flexapod[control]'") from error
-    return control
 
 
 def _measures(measure: Measure | Sequence[Measure]) -> tuple[Measure, ...]:

@@ -24,6 +24,7 @@ Space = Literal["joint", "task"]
 Actuator = Literal["force", "command"]
 Feedback = Literal["force", "velocity"]
 ALL = (1, 2, 3, 4, 5, 6)
+GAIN_UNIT = {"force": "rad/s", "velocity": "N s/m"}  # of damping laws by name
 _STILL = 1 - 1e-6  # damping ratio that counts as no vibration
 
 
@@ -166,9 +167,8 @@ def best_gain(plant: Plant, law: Callable[[float], Law], gains: Array) -> tuple[
     best = int(values.argmax())
     span = (logs[max(best - 1, 0)], logs[min(best + 1, len(logs) - 1)])
     refined = minimize_scalar(lambda x: -damping(x), bounds=span, method="bounded", options={"xatol": 1e-7})
-    if -refined.fun >= values[best]:
-        return float(np.exp(refined.x)), float(-refined.fun)
-    return float(gains[best]), float(values[best])
+    most, at = max((float(-refined.fun), float(refined.x)), (float(values[best]), float(logs[best])))
+    return float(np.exp(at)), most
 
 
 def _first_still(damping: Callable[[float], float], logs: Array, first: int) -> tuple[float, float]:

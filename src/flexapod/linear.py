@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod.errors import PoseError
+from flexapod.extras import needed
 from flexapod.hexapod import Hexapod
 from flexapod.pose import Array, Pose
 from flexapod.states import ZERO, JointModel, is_universal, states, wrench
@@ -137,12 +138,9 @@ class Linearisation:
     def to_control(self) -> control.StateSpace:
         """The state space as a `control.StateSpace` with named signals. Needs python-control (extra "control").
 
-        Raises: ImportError without python-control.
+        Raises: MissingExtraError without python-control.
         """
-        try:
-            import control
-        except ImportError as error:
-            raise ImportError("to_control needs python-control: pip install 'flexapod[control]'") from error
+        control = needed("control", "control", "to_control needs python-control")
         s = self.state_space()
         return control.ss(
             s.A, s.B, s.C, s.D, states=list(s.states), inputs=list(s.inputs), outputs=list(s.outputs), name="hexapod"

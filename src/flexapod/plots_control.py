@@ -187,7 +187,7 @@ def schedule(dataset: xr.Dataset) -> Figure:
         for ax, name in ((left, "gain"), (right, "fixed_damping")):
             x, y = (str(name) for name in cut.gain.dims)
             mesh = ax.pcolormesh(_shown(cut, x), _shown(cut, y), cut[name].values.T, cmap="viridis", shading="nearest")
-            figure.colorbar(mesh, ax=ax).set_label(str(cut[name].attrs["long_name"]), color=INK)
+            figure.colorbar(mesh, ax=ax).set_label(_named(cut[name]), color=INK)
             ax.set(xlabel=_label(cut, x), ylabel=_label(cut, y))
     for ax in (left, right):
         _dress(ax)
@@ -199,7 +199,7 @@ def _lines(dataset: xr.Dataset, name: str, left: Axes, right: Axes) -> None:
     x = _shown(dataset, name) if name in dataset.coords else np.arange(dataset.sizes[name])
     left.plot(x, dataset.gain, color=BLUE, lw=1.8, marker=".")
     left.axhline(dataset.attrs["fixed_gain"], color=FAINT, lw=1.0, ls=(0, (5, 2)))
-    left.set(ylabel="gain")
+    left.set(ylabel=_named(dataset.gain))
     right.plot(x, dataset.least_damping, color=BLUE, lw=1.8, marker=".", label="gain follows the pose")
     right.plot(x, dataset.fixed_damping, color=ORANGE, lw=1.4, ls=(0, (5, 2)), label="one gain")
     right.set(ylabel="least damping ratio")
@@ -211,6 +211,11 @@ def _lines(dataset: xr.Dataset, name: str, left: Axes, right: Axes) -> None:
 def _shown(dataset: xr.Dataset, name: str) -> Array:
     values = dataset[name].values
     return np.degrees(values) if dataset[name].attrs.get("units") == "rad" else values
+
+
+def _named(values: xr.DataArray) -> str:
+    """What it is, and its unit where it has one."""
+    return ", ".join(str(values.attrs[key]) for key in ("long_name", "units") if key in values.attrs)
 
 
 def _label(dataset: xr.Dataset, name: str) -> str:

@@ -8,7 +8,6 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from flexapod import plots
 from flexapod.kinematics import home_pose
 from flexapod.optimal.optimise import OptimalDesign
 from flexapod.optimal.pareto import ParetoFront
@@ -74,16 +73,6 @@ def plan(found: OptimalDesign) -> Figure:
     return figure
 
 
-def machines(found: OptimalDesign) -> Figure:
-    """Both designs in 3-D at home."""
-    figure = Figure(figsize=(10.0, 4.8), layout="constrained", dpi=130)
-    for k, (hexapod, index) in enumerate(((found.start, found.start_index), (found.hexapod, found.index))):
-        ax = figure.add_subplot(1, 2, k + 1, projection="3d")
-        plots.machine(hexapod, ax=ax)
-        ax.set_title(f"{hexapod.name}: {index:.5g} rad/s", color=INK, fontsize=10)
-    return figure
-
-
 def front(found: ParetoFront) -> Figure:
     """The Pareto front among all trials, and the design one began with."""
     figure, ax = _figure(7.2, 4.6)
@@ -108,7 +97,7 @@ def front(found: ParetoFront) -> Figure:
     ax.set(xlabel=f"{found.name}{f', {found.unit}' if found.unit else ''}", ylabel=INDEX)
     ax.set_ylim(bottom=0)
     ax.legend(fontsize=9, framealpha=0.9, edgecolor="none", loc="best")
-    figure.suptitle(f"{told.attrs['design']}: index against {found.name}", color=INK, fontsize=11)
+    figure.suptitle(f"{found.hexapod.name}: index against {found.name}", color=INK, fontsize=11)
     return figure
 
 

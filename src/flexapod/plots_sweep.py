@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.errors import OutputError, PoseError
+from flexapod.extras import needed
 from flexapod.pose import Array
 from flexapod.posesets import COORDINATES
 from flexapod.quantities import QUANTITIES
@@ -120,10 +121,9 @@ def _plain_log_ticks(ax: Axes, low: float, high: float) -> None:
         return
     steps = (1, 2, 5) if high < 100 * low else (1, 3)
     ticks = [s * 10.0**e for e in range(-1, 16) for s in steps if low <= s * 10.0**e <= high]
-    if len(ticks) >= 2:
-        ax.xaxis.set_major_locator(FixedLocator(ticks))
-        ax.xaxis.set_minor_locator(NullLocator())
-        ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
+    ax.xaxis.set_major_locator(FixedLocator(ticks))
+    ax.xaxis.set_minor_locator(NullLocator())
+    ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
 
 
 def index_map(sweep: xr.Dataset, quantity: str = "omega_1", ax: Axes | None = None) -> Axes:
@@ -196,15 +196,10 @@ def iso_surface(
 
 
 def _marching_cubes(numbers: Array, level: float, axes: list[Array]) -> tuple[Array, np.ndarray]:
-    try:
-        from skimage.measure import marching_cubes
-    except ImportError:
-        raise OutputError(
-            "a surface of equal index needs the package scikit-image. Install it with: pip install 'flexapod[sweep]'"
-        ) from None
+    measure = needed("skimage.measure", "sweep", "a surface of equal index needs scikit-image")
     filled = np.where(np.isfinite(numbers), numbers, np.nanmax(numbers[np.isfinite(numbers)]))
     inside = np.isfinite(numbers)
-    points, faces, _, _ = marching_cubes(filled, level, mask=inside)
+    points, faces, _, _ = measure.marching_cubes(filled, level, mask=inside)
     placed = [np.interp(p, np.arange(len(axis)), axis) for p, axis in zip(points.T, axes, strict=True)]
     return np.stack(placed, axis=-1), faces
 

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod.errors import ArgumentError
+from flexapod.extras import needed
 from flexapod.hexapod import Hexapod
 from flexapod.optimal.entries import HOME, PLACES, entries, numbers
 from flexapod.optimal.places import Places, places
@@ -251,8 +252,8 @@ def robustness(
     1024, which takes sensitivity * (parameters + 2) designs more; 0: none. Options: joint, seed=0, threads, progress
     (called with a stage and its share done).
 
-    Raises: ArgumentError for ranges that a design cannot have, and where SALib is missing; PoseError for what names no
-    poses.
+    Raises: ArgumentError for ranges that a design cannot have; MissingExtraError where SALib is missing; PoseError for
+    what names no poses.
     Source: own; I. M. Sobol (2001) and A. Saltelli (2002) for the sensitivity.
     """
     settings = _Settings(**options)
@@ -359,16 +360,10 @@ def _worst(index: _Index, u: Array, values: Array) -> tuple[float, Array]:
 
 def _sobol(ensemble: Ensemble, index: _Index, base: int, seed: int) -> xr.Dataset:
     """First-order and total Sobol indices with 95 % confidence half-widths."""
-    try:
-        from SALib.analyze import sobol as analyse
-        from SALib.sample import sobol as sample
-    except ImportError:
-        raise ArgumentError(
-            "the sensitivity analysis needs SALib. Install it with: pip install 'flexapod[optimise]', or leave "
-            "sensitivity out."
-        ) from None
     import xarray as xr
 
+    why = "the sensitivity analysis needs SALib; without it, leave sensitivity out"
+    sample, analyse = (needed(f"SALib.{part}.sobol", "optimise", why) for part in ("sample", "analyze"))
     if base < 16 or base & (base - 1):
         raise ArgumentError(f"sensitivity is {base}; it must be a power of two, at least 16, such as 1024.")
     p = len(ensemble.names)

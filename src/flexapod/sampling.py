@@ -55,6 +55,8 @@ def sampling_time(
 def _on_path(highest: Callable[[Pose], Array], path: Path) -> float:
     times = path.grid(400)
     values = highest(path(times).pose)
+    if not np.isfinite(values).any():
+        return np.nan
     peak = int(np.nanargmax(values))
     span = (times[max(peak - 1, 0)], times[min(peak + 1, len(times) - 1)])
     refined = minimize_scalar(lambda t: -highest(path([t]).pose)[0], bounds=span, method="bounded")

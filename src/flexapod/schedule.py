@@ -14,7 +14,7 @@ from flexapod.assessment import least_damping
 from flexapod.errors import ArgumentError, PoseError, SingularPoseError
 from flexapod.feedback import Law, Plant, poles
 from flexapod.hexapod import Hexapod
-from flexapod.laws import best_gain, default_gains, make
+from flexapod.laws import GAIN_UNIT, best_gain, default_gains, make
 from flexapod.linear import RestOptions, linearise
 from flexapod.pose import Array, Pose, rpy_matrix
 from flexapod.posesets import COORDINATES, UNITS, GridPoses, PoseSet, pose_set
@@ -59,7 +59,10 @@ def gain_schedule(
     found = _search(hexapod, rows, rule, progress or (lambda share: None), rest)
     gain = found.gain
     fixed = float(np.nanmedian(gain)) if np.isfinite(gain).any() else np.nan
-    return _dataset(points, rows, found).assign_attrs(
+    dataset = _dataset(points, rows, found)
+    if isinstance(law, str):
+        dataset.gain.attrs["units"] = GAIN_UNIT[law]
+    return dataset.assign_attrs(
         design=hexapod.name,
         digest=hexapod.digest,
         law=law if isinstance(law, str) else "own",

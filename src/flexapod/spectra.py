@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -195,7 +195,9 @@ def _lines(spectrum: Spectrum, seed: int, lines: int) -> tuple[Array, Array, Arr
     density = np.asarray(spectrum.density(omega), dtype=float)
     if not np.isfinite(density).all() or (density < 0).any():
         raise ArgumentError("the density holds NaN, infinity or negative numbers; it must be >= 0 and finite.")
-    power = {"displacement": 0, "velocity": 1, "acceleration": 2}[spectrum.quantity]
+    if spectrum.quantity not in get_args(Quantity):
+        raise ArgumentError(f"the spectrum is of {spectrum.quantity!r}; it must be of {', '.join(get_args(Quantity))}.")
+    power = get_args(Quantity).index(spectrum.quantity)
     amplitude = np.sqrt(2 * density * np.diff(edges)) / omega**power
     return omega, amplitude, rng.uniform(0, 2 * np.pi, lines)
 

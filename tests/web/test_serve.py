@@ -40,13 +40,6 @@ def test_a_taken_port_is_told() -> None:
     assert "--port 0" in found.output
 
 
-def test_without_the_extra_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "uvicorn", None)
-    found = CliRunner().invoke(group, ["serve"])
-    assert found.exit_code != 0
-    assert "pip install 'flexapod[web]'" in found.output
-
-
 def ended(group: int) -> bool:
     """Whether a process group is gone within ten seconds."""
     deadline = time.monotonic() + 10

@@ -14,19 +14,11 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@common.design_argument
-@common.pose_option
-@common.set_option
-@common.joint_option
+@common.machine_options
 @click.option(
     "--mode", type=click.IntRange(1, 6), default=1, show_default=True, help="Number of the mode, lowest first."
 )
-@click.option(
-    "--exaggeration",
-    type=click.FloatRange(min=0, min_open=True),
-    default=None,
-    help="How many times larger a joint motion of 1 um is shown. Default: so that it is seen well.",
-)
+@common.exaggeration_option
 @click.option(
     "--out",
     type=click.Path(path_type=Path, dir_okay=False),
@@ -45,16 +37,12 @@ def command(
     out: Path | None,
     as_json: bool,
 ) -> None:
-    """Animate a mode of DESIGN at a pose. (A simulation: `animate_simulation` of the library.)"""
-    hexapod = common.load_design(design, changes)
-    where = common.chosen_pose(hexapod, pose)
+    """Animate a mode of DESIGN at a pose, its largest joint motion taken as 1 um. (In time: simulate --animate.)"""
+    hexapod, where = common.machine(design, changes, pose)
     from flexapod.animate import animate_mode
 
-    path = Path(f"{hexapod.name}-mode-{mode}.gif") if out is None else out
-    try:
-        factor = animate_mode(hexapod, where, mode, path, joint=joint, exaggeration=exaggeration)
-    except ImportError as error:
-        raise click.ClickException(str(error)) from error
+    path = Path(f"{common.file_name(hexapod.name)}-mode-{mode}.gif") if out is None else out
+    factor = animate_mode(hexapod, where, mode, path, joint=joint, exaggeration=exaggeration)
     if as_json:
         found = {"design": hexapod.name, "mode": mode, "exaggeration": factor, "file": str(path)}
         common.print_json({**found, "pose_m_deg": common.pose_numbers(where)})

@@ -62,12 +62,5 @@ def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:
             f"  legs {lengths.min():.4g} to {lengths.max():.4g} m, axes at least {found['leg_distance_m']:.4g} m apart"
         )
         out.print(f"  condition number of H {found['condition_number']:.4g} (in metres)")
-    for text in (*found["warnings"], *(found["limits_exceeded"] or ())):
-        out.print(f"[bold yellow]Warning:[/bold yellow] {_escaped(text)}")
+    common.print_warnings((*found["warnings"], *(found["limits_exceeded"] or ())))
     out.print("[bold green]OK[/bold green]" if found["ok"] else "A valid design, with warnings.")
-
-
-def _escaped(text: str) -> str:
-    from rich.markup import escape
-
-    return escape(text)

@@ -3,13 +3,12 @@
 A command stacks the decorators it needs on a function whose parameters carry the option's name:
 
     @click.command()
-    @design_argument      # design: str      turn into a Hexapod with `load_design(design, changes)`
-    @set_option           # changes: tuple[str, ...]
-    @pose_option          # pose: tuple[float, ...] | None      turn into a Pose with `chosen_pose(hexapod, pose)`
-    @joint_option         # joint: JointModel
+    @machine_options      # design: str, changes: tuple[str, ...], pose: tuple[float, ...] | None, joint: JointModel
+                          #     turn the first three into a Hexapod and a Pose with `machine(design, changes, pose)`
     @json_option          # as_json: bool      print with `print_json`
     def command(...): ...
 
+`machine_options` is design_argument, pose_option, set_option and joint_option; some commands need only a part of them.
 Nothing here imports NumPy before a command asks for a design, so that `flexapod --help` answers at once. A command
 raises FlexapodError or click.UsageError for what the user can put right; `flexapod.cli.main` prints it and exits
 with 2.
@@ -28,6 +27,7 @@ import click
 from click.shell_completion import CompletionItem
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.figure import Figure
     from rich.console import Console
 
@@ -91,6 +91,13 @@ characteristic_length_option = click.option(
     metavar="M",
     help="Divide the moment rows of H by this length before its condition number is taken.",
 )
+exaggeration_option = click.option(
+    "--exaggeration",
+    type=click.FloatRange(min=0, min_open=True),
+    default=None,
+    metavar="FACTOR",
+    help="How many times larger a moving picture shows the motion. Default: so that it is seen well.",
+)
 json_option = click.option("--json", "as_json", is_flag=True, help="Print the results as JSON, in SI units.")
 
 
@@ -110,6 +117,15 @@ def stack(*decorators: Callable[[Any], Any]) -> Callable[[Any], Any]:
         return function
 
     return decorate
+
+
+machine_options = stack(design_argument, pose_option, set_option, joint_option)
+
+
+def machine(design: str, changes: Iterable[str], pose: tuple[float, ...] | None) -> tuple[Hexapod, Pose]:
+    """The design with its changes, and the pose given or else its home. Raises DesignError, UsageError."""
+    hexapod = load_design(design, changes)
+    return hexapod, chosen_pose(hexapod, pose)
 
 
 def load_design(design: str, changes: Iterable[str] = ()) -> Hexapod:
@@ -156,6 +172,11 @@ def output_directory(path: Path) -> Path:
     return path
 
 
+def file_name(name: str) -> str:
+    """A design's name as a file's: nothing in it that a file system or a shell could take amiss."""
+    return re.sub(r"[^\w.-]+", "-", name).strip("-.") or "hexapod"
+
+
 def write_file(path: Path, text: str) -> None:
     """Write text. Raises UsageError where that cannot be."""
     try:
@@ -164,17 +185,20 @@ def write_file(path: Path, text: str) -> None:
         raise click.UsageError(f"{path} cannot be written: {error.strerror}. Choose another place.") from error
 
 
-def file_name(name: str) -> str:
-    """A design's name as a file's: nothing in it that a file system or a shell could take amiss."""
-    return re.sub(r"[^\w.-]+", "-", name).strip("-.") or "hexapod"
-
-
 def save_figure(figure: Figure, path: Path) -> None:
     """Write a figure to a file of the kind that its name ends with. Raises UsageError where that cannot be."""
     try:
         figure.savefig(path, dpi=160)
     except (OSError, ValueError) as error:
         raise click.UsageError(f"{path} cannot be written: {error}. Choose another place.") from error
+
+
+def save_netcdf(dataset: xr.Dataset, path: Path) -> None:
+    """Write a dataset as NetCDF. Raises UsageError where that cannot be."""
+    try:
+        dataset.to_netcdf(path)
+    except OSError as error:
+        raise click.UsageError(f"{path} cannot be written: {error.strerror or error}. Choose another place.") from error
 
 
 def print_json(result: Mapping[str, Any]) -> None:
@@ -201,3 +225,11 @@ def console() -> Console:
     from rich.console import Console
 
     return Console(highlight=False)
+
+
+def print_warnings(texts: Iterable[str]) -> None:
+    """What to beware of, on standard output with the results; brackets in it are no markup."""
+    from rich.markup import escape
+
+    for text in texts:
+        console().print(f"[bold yellow]Warning:[/bold yellow] {escape(text)}", soft_wrap=True)

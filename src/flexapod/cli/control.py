@@ -24,12 +24,9 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@common.design_argument
+@common.machine_options
 @law_options
 @run_options
-@common.pose_option
-@common.set_option
-@common.joint_option
 @common.json_option
 def command(**given: Any) -> None:
     """A control law on DESIGN at a pose: its poles, how near they come to the natural frequencies, how it isolates.
@@ -42,8 +39,7 @@ def command(**given: Any) -> None:
     flexapod control motion-base pid --kp 2e6 --kd 2e5 --out control
     """
     options = Options(**given)
-    hexapod = common.load_design(options.design, options.changes)
-    pose = common.chosen_pose(hexapod, options.pose)
+    hexapod, pose = common.machine(options.design, options.changes, options.pose)
     with stages(options.as_json) as report, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the findings say what the library warns of
         found = _find(hexapod, pose, options, report)
@@ -261,7 +257,6 @@ def _show(hexapod: Hexapod, found: ControlFindings, files: list[str]) -> None:
             ]
             table.add_row(str(axis), *(f"{float(cell):.4g} {at.acceleration_unit.values}" for cell in cells))
         out.print(table)
-    for text in cautions(found):
-        out.print(f"[bold yellow]Warning:[/bold yellow] {text}", soft_wrap=True)
+    common.print_warnings(cautions(found))
     for file in files:
         click.echo(f"Wrote {file}")

@@ -50,8 +50,6 @@ class Quantity(click.ParamType):
     name = "number"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        if isinstance(value, float):
-            return value
         match = NUMBER.fullmatch(str(value).strip())
         if match is None or match[2] not in UNITS:
             self.fail(f"{value!r} is not a number with a unit of {', '.join(u for u in UNITS if u)}.", param, ctx)

@@ -16,10 +16,7 @@ TURN = 6.283185307179586
 
 
 @click.command()
-@common.design_argument
-@common.pose_option
-@common.set_option
-@common.joint_option
+@common.machine_options
 @common.characteristic_length_option
 @common.json_option
 def command(
@@ -36,8 +33,7 @@ def command(
     """
     from flexapod import kinematics, modal
 
-    hexapod = common.load_design(design, changes)
-    where = common.chosen_pose(hexapod, pose)
+    hexapod, where = common.machine(design, changes, pose)
     omega, shape = modal.natural_modes(hexapod, where, joint)
     condition = float(kinematics.condition_number(hexapod, where, characteristic_length))
     lengths = kinematics.inverse_kinematics(hexapod, where)

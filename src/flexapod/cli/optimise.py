@@ -202,11 +202,11 @@ def _show_design(found: OptimalDesign, aim: Objective, options: Options) -> None
     directory = _files(options)
     files = []
     if directory is not None:
-        name = found.hexapod.name
+        name = common.file_name(found.hexapod.name)
         files = [directory / f"{name}.toml", directory / f"{name}.html", directory / f"{name}.png"]
         common.write_file(files[0], found.hexapod.to_toml())
         common.write_file(files[1], optimal_page(found, repr(aim)))
-        plots_optimise.plan(found).savefig(files[2])
+        common.save_figure(plots_optimise.plan(found), files[2])
     if options.as_json:
         common.print_json(
             {
@@ -247,12 +247,12 @@ def _show_front(found: ParetoFront, aim: Objective, options: Options) -> None:
     directory = _files(options)
     files: list[Path] = []
     if directory is not None:
-        name = found.history.attrs["design"]
+        name = common.file_name(found.hexapod.name)
         files = [directory / f"{name}-front.html", directory / f"{name}-front.png"]
         common.write_file(files[0], front_page(found, repr(aim)))
-        plots_optimise.front(found).savefig(files[1])
+        common.save_figure(plots_optimise.front(found), files[1])
         for hexapod in found.designs:
-            files.append(directory / f"{hexapod.name}.toml")
+            files.append(directory / f"{common.file_name(hexapod.name)}.toml")
             common.write_file(files[-1], hexapod.to_toml())
     if options.as_json:
         common.print_json(

@@ -12,7 +12,7 @@ from flexapod.cli import common
 from flexapod.cli.stages import stages
 
 if TYPE_CHECKING:
-    from flexapod.paper import Part, Settings
+    from flexapod.paper import Part
     from flexapod.states import JointModel
 
 PAGE = "index.html"
@@ -68,7 +68,7 @@ def command(
     equations, each with a number; on one page, beside what the paper says. What the paper leaves open, such as the
     ranges of the poses, is chosen here and told in the captions.
     """
-    from flexapod.paper import PARTS, Settings
+    from flexapod.paper import PARTS, Settings, draw
 
     common.output_directory(out)
     settings = Settings(points, seed, joint)
@@ -77,7 +77,7 @@ def command(
     with stages(quiet=as_json) as report:
         for name in names:
             report(name, 0.0)
-            parts.append(_drawn(name, settings))
+            parts.append(draw(name, settings))
             _write(parts[-1], out)
             report(name, 1.0)
         told = {
@@ -94,16 +94,6 @@ def command(
         _print(part, out)
     if not figures:
         click.echo(f"{told['page']['file']}\n  {told['page']['statements']}")
-
-
-def _drawn(name: str, settings: Settings) -> Part:
-    """A part of the paper. Raises UsageError where it needs an extra that is not installed."""
-    from flexapod.paper import draw
-
-    try:
-        return draw(name, settings)
-    except ImportError as error:
-        raise click.UsageError(str(error)) from error
 
 
 def _write(part: Part, out: Path) -> None:

@@ -252,7 +252,6 @@ def _show(hexapod: Hexapod, found: PathFindings, written: list[str]) -> None:
     loads = found.loads
     travel, force = 1e3 * float(loads.stroke.max()), float(loads.peak_force.max())
     out.print(f"  legs: travel up to {travel:.4g} mm, force up to {force:.5g} N")
-    for text in cautions(found):
-        out.print(f"[bold yellow]Warning:[/bold yellow] {text}")
+    common.print_warnings(cautions(found))
     for file in written:
         click.echo(f"Wrote {file}")

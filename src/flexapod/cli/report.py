@@ -14,10 +14,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@common.design_argument
-@common.pose_option
-@common.set_option
-@common.joint_option
+@common.machine_options
 @common.characteristic_length_option
 @common.out_option("Where to write the HTML file; made if it is not there. Default: here; with --json: no file.")
 @common.json_option
@@ -34,8 +31,7 @@ def command(
 
     DESIGN is a packaged design's name (see `flexapod designs`) or the path of a .toml file.
     """
-    hexapod = common.load_design(design, changes)
-    where = common.chosen_pose(hexapod, pose)
+    hexapod, where = common.machine(design, changes, pose)
     from flexapod.report import findings
 
     found = findings.gather(hexapod, where, joint, characteristic_length, changes)

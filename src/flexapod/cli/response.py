@@ -106,10 +106,7 @@ class _Case(NamedTuple):
 
 
 @click.command()
-@common.design_argument
-@common.pose_option
-@common.set_option
-@common.joint_option
+@common.machine_options
 @_response_options
 @common.json_option
 def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...], as_json: bool, **given: Any) -> None:
@@ -119,8 +116,7 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
     (compliance) or per leg command. With --amplitude also by the complete non-linear equations; with --psd also the RMS
     on a base that moves at random.
     """
-    hexapod = common.load_design(design, changes)
-    case = _case(hexapod, common.chosen_pose(hexapod, pose), given)
+    case = _case(*common.machine(design, changes, pose), given)
     studies: dict[str, xr.Dataset] = {"response": _linear(case)}
     if given["amplitude"] is not None:
         studies["stepped"] = _stepped(case, quiet=as_json)
@@ -239,8 +235,8 @@ def _write(case: _Case, studies: dict[str, xr.Dataset], directory: Path) -> list
             "random": lambda: _random_table(dataset),  # noqa: B023
         }[name]()
         common.write_file(directory / f"{name}.csv", table.to_csv())
-        real_parts(dataset).to_netcdf(directory / f"{name}.nc")
-        _figure(case, name, dataset, studies["response"]).savefig(directory / f"{name}.png")
+        common.save_netcdf(real_parts(dataset), directory / f"{name}.nc")
+        common.save_figure(_figure(case, name, dataset, studies["response"]), directory / f"{name}.png")
         files += [directory / f"{name}.{kind}" for kind in ("csv", "nc", "png")]
     return files
 

@@ -9,6 +9,7 @@ import click
 
 from flexapod.cli import common, problemarg
 from flexapod.cli.optimise import out_option, threads_option, where_options
+from flexapod.cli.stages import stages
 
 if TYPE_CHECKING:
     from flexapod.robust import Robustness
@@ -64,8 +65,8 @@ def command(design: str, changes: tuple[str, ...], out: Path | None, as_json: bo
     if not straying:
         raise click.UsageError("nothing strays. Give --uncertain KEY=SPREAD or --payload LEAST:LARGEST.")
     options = {name: given[name] for name in ("samples", "poses", "sensitivity", "joint", "seed", "threads")}
-    with _Bar() as bar:
-        found = robustness(hexapod, straying, over, progress=bar, **options)
+    with stages(as_json) as report:
+        found = robustness(hexapod, straying, over, progress=report, **options)
     files = []
     words = "home" if over is None else repr(over)
     if out is not None or not as_json:
@@ -80,36 +81,13 @@ def command(design: str, changes: tuple[str, ...], out: Path | None, as_json: bo
         click.echo(f"wrote {file}")
 
 
-class _Bar:
-    """Called with a stage and the share of it that is done."""
-
-    def __init__(self) -> None:
-        from rich.console import Console
-        from rich.progress import Progress
-
-        self._progress = Progress(console=Console(stderr=True))
-        self._tasks: dict[str, Any] = {}
-
-    def __enter__(self) -> _Bar:
-        self._progress.start()
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        self._progress.stop()
-
-    def __call__(self, stage: str, share: float) -> None:
-        if stage not in self._tasks:
-            self._tasks[stage] = self._progress.add_task(stage, total=1.0)
-        self._progress.update(self._tasks[stage], completed=share)
-
-
 def _write(found: Robustness, hexapod: Any, over: str, directory: Path) -> list[str]:
     from flexapod import plots_optimise
     from flexapod.report.optimised import robust_page
 
-    page, figure = directory / f"{hexapod.name}-robust.html", directory / f"{hexapod.name}-robust.png"
+    page, figure = (directory / f"{common.file_name(hexapod.name)}-robust.{kind}" for kind in ("html", "png"))
     common.write_file(page, robust_page(found, hexapod, f"at {over}"))
-    plots_optimise.spread(found).savefig(figure)
+    common.save_figure(plots_optimise.spread(found), figure)
     return [str(page), str(figure)]
 
 

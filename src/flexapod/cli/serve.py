@@ -13,8 +13,7 @@ import click
 from flexapod import designfile
 from flexapod.cli import common
 from flexapod.errors import FlexapodError
-
-_MISSING = "`flexapod serve` needs starlette and uvicorn: pip install 'flexapod[web]'"
+from flexapod.extras import needed
 
 
 @click.command()
@@ -30,12 +29,10 @@ def command(design: str | None, port: int, host: str, allow_host: tuple[str, ...
     It listens on this computer only unless --host says otherwise, and asks nothing of the network. Ctrl-C ends it.
     """
     start = None if design is None else _checked(design)
-    try:
-        import uvicorn
+    why = "`flexapod serve` needs uvicorn and starlette"
+    uvicorn, _ = needed("uvicorn", "web", why), needed("starlette", "web", why)
+    from flexapod.web.app import application
 
-        from flexapod.web.app import application
-    except ImportError as error:
-        raise click.ClickException(_MISSING) from error
     bound = _listen(host, port)
     port = bound.getsockname()[1]
     shown = f"[{host}]" if ":" in host else host

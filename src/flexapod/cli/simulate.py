@@ -37,14 +37,19 @@ _options = common.stack(
     click.option("--rtol", type=float, default=1e-9, show_default=True, help="Relative error of a step."),
     click.option("--reactions", is_flag=True, help="Forces and moments in all joints too."),
     common.out_option("Write figures, .csv and .nc here."),
+    click.option(
+        "--animate",
+        type=click.Path(path_type=Path, dir_okay=False),
+        default=None,
+        metavar="FILE",
+        help="Write a moving picture of the last periods: a .gif, or an .mp4 with the extra 'video'.",
+    ),
+    common.exaggeration_option,
 )
 
 
 @click.command()
-@common.design_argument
-@common.pose_option
-@common.set_option
-@common.joint_option
+@common.machine_options
 @_options
 @common.json_option
 def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...], as_json: bool, **given: Any) -> None:
@@ -58,10 +63,13 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
     """
     from flexapod.errors import SimulationError
 
-    hexapod = common.load_design(design, changes)
-    where = common.chosen_pose(hexapod, pose)
+    hexapod, where = common.machine(design, changes, pose)
     import flexapod.simulation  # noqa: F401  # loading it takes longer than most runs: not part of the time told
 
+    if given["animate"] is not None:
+        from flexapod.animate import check_path
+
+        check_path(given["animate"])
     began = time.perf_counter()
     try:
         dataset = _simulate(hexapod, where, given, quiet=as_json)
@@ -72,6 +80,8 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
         raise
     took = time.perf_counter() - began
     files = [] if given["out"] is None else _write(dataset, given["out"])
+    if given["animate"] is not None:
+        files.append(_animate(hexapod, dataset, given))
     if as_json:
         common.print_json(_as_json(hexapod, where, dataset, took, files))
         return
@@ -124,12 +134,20 @@ def _write(dataset: xr.Dataset, directory: Path) -> list[Path]:
         "leg_forces": leg_forces(few),
     }
     for name, figure in figures.items():
-        figure.savefig(out / f"{name}.png")
+        common.save_figure(figure, out / f"{name}.png")
     stored = dataset.copy()
     stored.attrs = {key: "; ".join(value) if isinstance(value, list) else value for key, value in dataset.attrs.items()}
-    stored.to_netcdf(out / "simulation.nc")
+    common.save_netcdf(stored, out / "simulation.nc")
     common.write_file(out / "simulation.csv", _table(dataset))
     return [out / "simulation.nc", out / "simulation.csv", *(out / f"{name}.png" for name in figures)]
+
+
+def _animate(hexapod: Hexapod, dataset: xr.Dataset, given: dict[str, Any]) -> Path:
+    from flexapod.animate import animate_simulation
+
+    animate_simulation(dataset, hexapod, given["animate"], exaggeration=given["exaggeration"])
+    path: Path = given["animate"]
+    return path
 
 
 def _table(dataset: xr.Dataset) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -100,8 +100,10 @@ class Footprint(Constraint):
     def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
         """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
 
-        Raises: ArgumentError for a bound that none can keep.
+        Raises: ArgumentError for a plate that is none and a bound that none can keep.
         """
+        if self.plate not in get_args(Plate):
+            raise ArgumentError(f"footprint: the plate is {self.plate!r}; it must be 'base' or 'platform'.")
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints
         (x, y), radius = kinds.enclosing_circle(joints[:, :2])
         kind = kinds.Radius(self.plate, float(x), float(y))

@@ -98,8 +98,5 @@ def entries(key: str) -> tuple[NDArray[np.int64], Key, float]:
 
 def describe(number: int) -> str:
     """The key of one of the 217 numbers, such as platform.joints[0][2]."""
-    for key, place in PLACES.items():
-        if number in place:
-            index = np.argwhere(place == number)[0]
-            return key + "".join(f"[{i}]" for i in index)
-    raise IndexError(number)
+    key, place = next((key, place) for key, place in PLACES.items() if number in place)
+    return key + "".join(f"[{i}]" for i in np.argwhere(place == number)[0])

@@ -196,9 +196,6 @@ class Whole(Kind):
     def measure(self, found: Found, numbers: Array, side: Side) -> Array:
         return self.columns(found, numbers).max(axis=0)
 
-    def held(self, found: Found, numbers: Array, side: Side) -> Array:
-        return np.zeros(0, dtype=np.int64)
-
 
 class Mass(Whole):
     unit = "kg"

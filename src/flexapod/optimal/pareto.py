@@ -31,9 +31,9 @@ _HOPELESS = 1e12  # of what is made small, where a design has none
 class ParetoFront:
     """Designs from the least of `against` to the highest index.
 
-    designs: m hexapods. index: (m,) rad/s, verified. against: (m,), SI. variables: (m, n), SI; names: of the variables.
-    start: (index, against) of the design one began with. name, unit: of `against`. history: Dataset of all finished
-    trials.
+    designs: m hexapods. index: (m,) rad/s, verified. against: (m,), SI. variables: (m, n), in the unit of each one's
+    key, SI where it has none; names: of the variables. hexapod: the design one began with; start: its (index, against).
+    name, unit: of `against`. history: Dataset of all finished trials.
 
     Source: conclusion 1.
     """
@@ -43,6 +43,7 @@ class ParetoFront:
     against: Array
     variables: Array
     names: tuple[str, ...]
+    hexapod: Hexapod
     start: tuple[float, float]
     name: str
     unit: str
@@ -134,13 +135,17 @@ def _refined(problem: Problem, front: Sequence[Trial], count: int, settings: Set
 
 def _front(problem: Problem, xs: Sequence[Array], trials: xr.Dataset, settings: Settings) -> ParetoFront:
     """Every candidate judged anew, on poses that the search has not seen, and those kept that none beats."""
-    problem.requirements[-1] = replace(problem.requirements[-1], bound=np.array(np.inf))
     start, judged = problem.hexapod, []
     for x in xs:
         design = problem.map.hexapod_at(x)
         seen = verify(problem, design, 4 * settings.points)
         if seen.holds:
             judged.append((x, design, seen.index, seen.checks[-1].value))
+    if not judged:
+        raise InfeasibleError(
+            f"none of {len(xs)} designs on the front keeps every constraint on poses that the search has not seen. "
+            "Search with more poses (points)."
+        )
     kept = [judged[i] for i in _nondominated([(index, value) for _, _, index, value in judged])]
     begun = verify(problem, start, 4 * settings.points)
     last = problem.requirements[-1]
@@ -148,8 +153,9 @@ def _front(problem: Problem, xs: Sequence[Array], trials: xr.Dataset, settings: 
         designs=tuple(d.replace({"name": f"{start.name}-{i + 1}"}) for i, (_, d, _, _) in enumerate(kept)),
         index=np.array([index for _, _, index, _ in kept]),
         against=np.array([value for _, _, _, value in kept]),
-        variables=np.array([x for x, _, _, _ in kept]),
+        variables=np.array([list(problem.map.values(x).values()) for x, _, _, _ in kept]),
         names=tuple(problem.map.names),
+        hexapod=start,
         start=(begun.index, begun.checks[-1].value),
         name=last.name,
         unit=last.kind.unit,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from hashlib import sha256
 from typing import Any
 
 import numpy as np
@@ -178,8 +177,3 @@ class Problem:
             "constraints": [r.describe() for r in self.requirements],
             "joint": self.joint,
         }
-
-    @property
-    def digest(self) -> str:
-        told = {**self.describe(), "design": self.hexapod.digest}
-        return sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]

@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from flexapod.errors import ArgumentError, OutputError
+from flexapod.extras import needed
 from flexapod.optimal.problem import Assessment, Problem
 from flexapod.pose import Array
 
@@ -173,13 +174,7 @@ def _short(value: Any, most: int = 300) -> str:
 
 
 def _optuna() -> Any:
-    try:
-        import optuna
-    except ImportError:
-        raise ArgumentError(
-            "the search needs Optuna. Install it with: pip install 'flexapod[optimise]', or leave the search out "
-            "(trials=0)."
-        ) from None
+    optuna = needed("optuna", "optimise", "the search needs Optuna; without it, leave the search out (trials=0)")
     optuna.logging.set_verbosity(optuna.logging.ERROR)
     return optuna
 

@@ -131,6 +131,8 @@ class JointCircle:
         """
         if self.plate not in ("base", "platform"):
             raise ArgumentError(f"a joint circle is on {self.plate!r}; it must be on 'base' or 'platform'.")
+        if self.axes not in ("tangent", "keep"):
+            raise ArgumentError(f"axes of a joint circle is {self.axes!r}; it must be 'tangent' or 'keep'.")
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints
         third, side, own = _pairs(joints)
         parameters: list[Parameter | float] = []
@@ -140,6 +142,8 @@ class JointCircle:
                 parameters.append(own[name])
             elif np.ndim(given) == 0:
                 parameters.append(float(given))
+            elif np.shape(given) != (2,):
+                raise ArgumentError(f"{self.plate}.{name} is {given!r}; give a number, or a pair (least, most).")
             else:
                 low, high = given
                 parameters.append(Parameter(f"{self.plate}.{name}", float(low), float(high), start=own[name]))
@@ -329,7 +333,8 @@ class DesignMap:
             part.put(x[first : first + count], found)
             first += count
         for axis in self._axes[self._turned]:
-            found[axis] = found[axis] / np.sqrt((found[axis] ** 2).sum())
+            with np.errstate(invalid="ignore"):  # an axis of length zero is NaN, which makes no hexapod
+                found[axis] = found[axis] / np.sqrt((found[axis] ** 2).sum())
         return found
 
     def jacobian(self, x: Array) -> Array:

@@ -96,7 +96,12 @@ def front_page(found: ParetoFront, objective: str) -> str:
         [str(k + 1), shown(found.index[k], 5), shown(found.against[k], 5), *(shown(v, 5) for v in found.variables[k])]
         for k in range(len(found.designs))
     ]
-    head = ["design", "index, rad/s", escape(f"{found.name} {found.unit}"), *map(escape, found.names)]
+    head = [
+        "design",
+        "index, rad/s",
+        escape(", ".join(filter(None, (found.name, found.unit)))),
+        *map(escape, found.names),
+    ]
     sections = [
         drawing(
             lambda: plots_optimise.front(found),
@@ -104,10 +109,9 @@ def front_page(found: ParetoFront, objective: str) -> str:
             f"Index against {found.name}",
             "Of the designs on the line none is better in both.",
         ),
-        f"<h2>Designs</h2>\n{table(head, rows, 'Variables in SI units.')}",
+        f"<h2>Designs</h2>\n{table(head, rows, 'Variables in the unit of each key; SI where it has none.')}",
     ]
-    start = found.designs[best]
-    return short(start, "Pareto front", f"Index against {found.name}: {objective}.", cards, sections)
+    return short(found.hexapod, "Pareto front", f"Index against {found.name}: {objective}.", cards, sections)
 
 
 def robust_page(found: Robustness, hexapod: Hexapod, objective: str) -> str:

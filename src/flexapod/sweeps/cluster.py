@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from flexapod.errors import ClusterError
+from flexapod.extras import needed
 from flexapod.posesets import GivenPoses
 from flexapod.sweeps.job import Finished, Job, compute_block
 
@@ -101,17 +102,15 @@ def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
     Raises: ClusterError where no scheduler answers within `timeout` seconds, or where it has no worker.
     Source: own, with Dask.
     """
-    try:
-        from distributed import Client, LocalCluster
-    except ImportError:
-        raise ClusterError("a cluster needs dask.distributed. Install it with: pip install 'flexapod[sweep]'") from None
+    dask = needed("distributed", "sweep", "a cluster needs dask.distributed")
     if address == LOCAL:
-        with LocalCluster(threads_per_worker=1, dashboard_address="localhost:0") as own, Client(own) as client:
+        local = dask.LocalCluster(threads_per_worker=1, dashboard_address="localhost:0")
+        with local, dask.Client(local) as client:
             yield Cluster(client)
         return
     try:
         _knock(address, timeout)
-        client = Client(address, timeout=timeout)
+        client = dask.Client(address, timeout=timeout)
     except (OSError, ValueError, OverflowError) as error:
         raise ClusterError(
             f"no Dask scheduler answers at {address} ({str(error) or 'timed out'}). Start one with "

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.errors import OutputError
+from flexapod.extras import needed
 from flexapod.posesets import COORDINATES
 from flexapod.quantities import QUANTITIES
 
@@ -26,7 +27,7 @@ def save(sweep: xr.Dataset, path: str | Path) -> None:
     """Write a sweep. The file is there when it is whole: until then it has another name.
 
     Parquet and CSV have a row for each pose; CSV begins with lines `# name: value` that tell units and provenance.
-    Raises OutputError for another ending, a missing package, or where nothing can be written.
+    Raises OutputError for another ending or where nothing can be written, MissingExtraError for a missing package.
     """
     path = Path(path)
     write = _writer(path)
@@ -34,10 +35,6 @@ def save(sweep: xr.Dataset, path: str | Path) -> None:
     try:
         write(sweep, making)
         os.replace(making, path)
-    except ImportError as error:
-        raise OutputError(
-            f"a {path.suffix} file needs the package {error.name}. Install it with: pip install 'flexapod[sweep]'"
-        ) from None
     except OSError as error:
         raise OutputError(f"{path} cannot be written: {error.strerror or error}. Choose another place.") from error
     finally:
@@ -64,18 +61,16 @@ def _writer(path: Path) -> Callable[[xr.Dataset, Path], None]:
 
 
 def _netcdf(sweep: xr.Dataset, path: Path) -> None:
-    import h5netcdf  # noqa: F401 - for its absence to be told by name
-
+    needed("h5netcdf", "sweep", "a .nc file needs h5netcdf")
     sweep.to_netcdf(path, engine="h5netcdf")
 
 
 def _parquet(sweep: xr.Dataset, path: Path) -> None:
-    import pyarrow
-    import pyarrow.parquet
-
+    why = "a .parquet file needs PyArrow"
+    pyarrow, parquet = needed("pyarrow", "sweep", why), needed("pyarrow.parquet", "sweep", why)
     table = pyarrow.Table.from_pandas(rows(sweep), preserve_index=False)
     told = {"flexapod": json.dumps(_about(sweep))}
-    pyarrow.parquet.write_table(table.replace_schema_metadata({**(table.schema.metadata or {}), **told}), path)
+    parquet.write_table(table.replace_schema_metadata({**(table.schema.metadata or {}), **told}), path)
 
 
 def _csv(sweep: xr.Dataset, path: Path) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 
 from flexapod import _core
 from flexapod.errors import OutputError
+from flexapod.extras import needed
 from flexapod.hexapod import Hexapod
 from flexapod.pose import Array, Pose
 from flexapod.posesets import COORDINATES, PoseSet
@@ -90,14 +91,8 @@ def _pose_columns(rows: Array) -> dict[str, Array]:
 
 
 def zarr_package() -> Any:
-    """The module zarr. Raises OutputError where it is not installed."""
-    try:
-        import zarr
-    except ImportError:
-        raise OutputError(
-            "a .zarr store needs the package zarr. Install it with: pip install 'flexapod[sweep]'"
-        ) from None
-    return zarr
+    """The module zarr. Raises MissingExtraError where it is not installed."""
+    return needed("zarr", "sweep", "a .zarr store needs zarr")
 
 
 @lru_cache(maxsize=8)

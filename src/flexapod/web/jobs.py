@@ -76,6 +76,15 @@ class Jobs:
         while self._idle:
             self._idle.pop().stop()
 
+    async def _worker(self) -> Worker:
+        """An idle process, or a new one; those that have died meanwhile are given up."""
+        while self._idle:
+            worker = self._idle.pop()
+            if worker.process.is_alive():
+                return worker
+            worker.stop()
+        return await anyio.to_thread.run_sync(Worker.start)
+
     def running(self) -> list[str]:
         """Names of the jobs that run or wait."""
         return list(self._cancelled)
@@ -100,7 +109,7 @@ class Jobs:
             del self._cancelled[name]
 
     async def _frames(self, name: str, kind: str, spec: dict[str, Any]) -> AsyncIterator[bytes]:
-        worker = self._idle.pop() if self._idle else await anyio.to_thread.run_sync(Worker.start)
+        worker = await self._worker()
         finished = False
         try:
             worker.pipe.send((kind, spec))
