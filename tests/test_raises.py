@@ -6,7 +6,9 @@ SHOWN with the test that shows them where a call takes long.
 """
 
 import re
+import sys
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -67,7 +69,29 @@ CALLS = {
     "write_urdf": lambda h, p: fx.write_urdf("no-such-folder/machine.urdf", h, p),
 }
 
+
+def without(package, call):
+    """The call where a package is not installed."""
+
+    def called():
+        with patch.dict(sys.modules, {package: None}):
+            call()
+
+    return called
+
+
 PROVOKED = {
+    ("animate_mode", "MissingExtraError"): without(
+        "imageio_ffmpeg", lambda: fx.animate_mode(MACHINE, HOME, 1, "a.mp4")
+    ),
+    ("animate_simulation", "MissingExtraError"): without(
+        "imageio_ffmpeg", lambda: fx.animate_simulation(fx.simulate(MACHINE, HOME, duration=1e-3), MACHINE, "a.mp4")
+    ),
+    ("h_infinity", "MissingExtraError"): without("slycot", lambda: fx.h_infinity(MACHINE, HOME)),
+    ("lqg", "MissingExtraError"): without("control", lambda: fx.lqg(MACHINE, HOME)),
+    ("robustness", "MissingExtraError"): without(
+        "SALib", lambda: fx.robustness(MACHINE, [fx.Uncertain("legs.stiffness", 0.1)], samples=16, sensitivity=16)
+    ),
     ("animate_mode", "ArgumentError"): lambda: fx.animate_mode(MACHINE, HOME, 7, "never.gif"),
     ("animate_simulation", "ArgumentError"): lambda: fx.animate_simulation(None, MACHINE, "never.gif", frames=1),
     ("closed_loop", "UnstableError"): lambda: fx.closed_loop(

@@ -90,8 +90,8 @@ def animate_simulation(
     picture. base: the base's pose at rest, as it was simulated. window: first and last time, s; by default the last
     part in which the main oscillation has 16 frames a period. frames: how many.
 
-    Raises: ArgumentError for a dataset, window or enlargement that cannot be shown, or another ending; MissingExtraError for
-    .mp4 without the extra "video".
+    Raises: ArgumentError for a dataset, window or enlargement that cannot be shown, or another ending;
+    MissingExtraError for .mp4 without the extra "video".
     Source: own.
     """
     if frames < 2:
