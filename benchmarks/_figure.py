@@ -33,7 +33,8 @@ def save(results: Results, directory: Path) -> None:
         _frame(ax, results, y)
         for kind in ("png", "svg"):
             metadata = {"Date": None} if kind == "svg" else None
-            figure.savefig(directory / f"{FIGURE}.{kind}", dpi=160, facecolor="white", metadata=metadata)
+            path = directory / f"{FIGURE}.{kind}"
+            figure.savefig(path, dpi=160, facecolor="white", bbox_inches="tight", metadata=metadata)
 
 
 def _task(ax: Any, y: float, task: str, records: list[Any]) -> float:

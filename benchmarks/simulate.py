@@ -90,7 +90,7 @@ def _against_simulators(plan: Plan) -> Contest:
 
 
 def _lost(share: float) -> str:
-    return f"amplitude off by {share - 1:+.1%}"
+    return f"amplitude {share - 1:+.1%}"
 
 
 def _mujoco(v: Vibration, trial: Vibration, amplitude: float) -> Contender:
@@ -150,7 +150,7 @@ def _candidates(run: fx.Run, sundials: bool) -> list[Candidate]:
     eq = equations(run)
     y0, scale = eq.start(), _scale(run)
     candidates = [
-        Candidate("flexapod", 0.5, flexapod),
+        Candidate("flexapod", 0.25, flexapod),
         Candidate("flexapod with energy balance", 0.25, lambda T: flexapod(T, works=True)),
     ]
     written = _written_in_python(run)

@@ -89,7 +89,7 @@ class Crew {
   std::condition_variable finished_;
 };
 
-/// The machine of row i, and the excitations of its base, wrench and leg command.
+/// A machine for the kernel, with the excitations of its base, wrench and leg command.
 simulation_task::Machine machine(const double* design, bool universal, const double* setup, bool works,
                                  const Input& base, const Input& wrench, const Input& command) {
   const auto series = [](const Input& e) {
