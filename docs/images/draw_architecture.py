@@ -22,6 +22,7 @@ ROOMS = {
             ("one machine", "report/ paper/"),
             ("command line", "cli/"),
             ("browser page", "web/"),
+            ("other tools", "interchange/"),
         ]
     ],
     LIBRARY: [
@@ -44,7 +45,7 @@ ROOMS = {
         [
             ("one pose or many", "kinematics dynamics statics modal"),
             ("rows for the core", "states pose"),
-            ("a design", "hexapod designfile schema shorthands units errors"),
+            ("a design", "hexapod designfile shorthands\njointfile schema units errors extras"),
         ],
     ],
     CORE: [
