@@ -7,7 +7,7 @@ OUT    ?= out
 
 CORE := CMakeLists.txt $(wildcard src/core/*)
 
-.PHONY: report test build lint types bench clean web web-check
+.PHONY: report test build lint types bench clean sanitize web web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
@@ -26,6 +26,24 @@ types: build
 
 bench: build ## ratios from one interleaved run
 	$(BIN)/python -m benchmarks
+
+# The core compiled with AddressSanitizer and UBSan, in a place of its own, and the tests that exercise it most. The
+# interpreter is that behind the virtual environment: it does not see the editable install.
+SANITIZED  := $(CURDIR)/build/sanitize
+CORE_TESTS := $(addprefix tests/test_,$(addsuffix .py,golden kinematics statics modal linear hexapod excitation \
+                sweep_kernel simulate stepped optimise control))
+PRELOADED   = $(shell $(CXX) -print-file-name=libasan.so) $(shell $(CXX) -print-file-name=libstdc++.so)
+PACKAGES    = $(shell $(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+
+sanitize: $(SANITIZED)/.built ## any finding ends the run
+	LD_PRELOAD="$(PRELOADED)" ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=$(SANITIZED)/site:$(PACKAGES) \
+	$(realpath $(BIN)/python) -m pytest -p no:cacheprovider $(CORE_TESTS)
+
+$(SANITIZED)/.built: $(VENV)/.built $(CORE)
+	rm -rf $(SANITIZED)/site
+	$(BIN)/python -m pip install -q --no-deps --no-build-isolation --target $(SANITIZED)/site \
+	  -C build-dir=$(SANITIZED)/cmake -C cmake.define.FLEXAPOD_SANITIZE=ON .
+	touch $@
 
 WEB := web/package.json web/package-lock.json web/index.html web/vite.config.ts web/tsconfig.json \
        $(wildcard web/src/* web/public/*)
