@@ -4,10 +4,11 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 DESIGN ?= mukherjee-ii
 OUT    ?= out
+SECONDS ?= 300
 
 CORE := CMakeLists.txt $(wildcard src/core/*)
 
-.PHONY: report test build lint types bench clean sanitize web web-check
+.PHONY: report test build lint types bench clean sanitize fuzz dist web web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
@@ -33,7 +34,7 @@ SANITIZED  := $(CURDIR)/build/sanitize
 CORE_TESTS := $(addprefix tests/test_,$(addsuffix .py,golden kinematics statics modal linear hexapod excitation \
                 sweep_kernel simulate stepped optimise control))
 PRELOADED   = $(shell $(CXX) -print-file-name=libasan.so) $(shell $(CXX) -print-file-name=libstdc++.so)
-PACKAGES    = $(shell $(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
+PACKAGES    = $(shell $(BIN)/python -c 'import sys; print(*(p for p in sys.path if "site-packages" in p), sep=":")')
 
 sanitize: $(SANITIZED)/.built ## any finding ends the run
 	LD_PRELOAD="$(PRELOADED)" ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=$(SANITIZED)/site:$(PACKAGES) \
@@ -43,6 +44,28 @@ $(SANITIZED)/.built: $(VENV)/.built $(CORE)
 	rm -rf $(SANITIZED)/site
 	$(BIN)/python -m pip install -q --no-deps --no-build-isolation --target $(SANITIZED)/site \
 	  -C build-dir=$(SANITIZED)/cmake -C cmake.define.FLEXAPOD_SANITIZE=ON .
+	touch $@
+
+fuzz: $(VENV)/.fuzz ## the design reader, for SECONDS; what it finds is kept in build/fuzz
+	mkdir -p build/fuzz
+	cd build/fuzz && $(abspath $(BIN))/python $(CURDIR)/tests/fuzz/designs.py corpus -max_total_time=$(SECONDS)
+
+$(VENV)/.fuzz: $(VENV)/.built
+	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[fuzz]'
+	touch $@
+
+dist: $(VENV)/.dist ## source distribution and wheel in dist/, checked, installed in a new environment and tried there
+	rm -rf dist build/dist
+	PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/python -m build
+	$(BIN)/twine check --strict dist/*
+	$(BIN)/check-wheel-contents dist/*.whl
+	$(BIN)/python tests/distribution.py dist
+	$(PYTHON) -m venv build/dist/venv
+	build/dist/venv/bin/python -m pip install -q -c constraints.txt dist/*.whl
+	cd build/dist && venv/bin/python $(CURDIR)/tests/smoke.py
+
+$(VENV)/.dist: $(VENV)/.built
+	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[dist]'
 	touch $@
 
 WEB := web/package.json web/package-lock.json web/index.html web/vite.config.ts web/tsconfig.json \
@@ -74,4 +97,4 @@ $(VENV)/.built: $(VENV)/.tools $(CORE)
 	touch $@
 
 clean:
-	rm -rf $(VENV) build out
+	rm -rf $(VENV) build dist out
