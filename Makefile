@@ -4,10 +4,12 @@ VENV   ?= .venv
 BIN    := $(VENV)/bin
 DESIGN ?= mukherjee-ii
 OUT    ?= out
+SECONDS ?= 300
 
 CORE := CMakeLists.txt $(wildcard src/core/*)
 
-.PHONY: report paper test coverage build lint types bench bench-readme docs validation clean web web-check
+.PHONY: report paper test coverage build lint types bench bench-readme docs validation sanitize fuzz dist clean web \
+        web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
@@ -53,6 +55,46 @@ $(VENV)/.docs: $(VENV)/.built
 	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[docs]'
 	touch $@
 
+# The core compiled with AddressSanitizer and UBSan, in a place of its own, and the tests that exercise it most. The
+# interpreter is that behind the virtual environment: it does not see the editable install.
+SANITIZED  := $(CURDIR)/build/sanitize
+CORE_TESTS := $(addprefix tests/test_,$(addsuffix .py,golden kinematics statics modal linear hexapod excitation \
+                sweep_kernel simulate stepped optimise control))
+PRELOADED   = $(shell $(CXX) -print-file-name=libasan.so) $(shell $(CXX) -print-file-name=libstdc++.so)
+PACKAGES    = $(shell $(BIN)/python -c 'import sys; print(*(p for p in sys.path if "site-packages" in p), sep=":")')
+
+sanitize: $(SANITIZED)/.built ## any finding ends the run
+	LD_PRELOAD="$(PRELOADED)" ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=$(SANITIZED)/site:$(PACKAGES) \
+	$(realpath $(BIN)/python) -m pytest -p no:cacheprovider $(CORE_TESTS)
+
+$(SANITIZED)/.built: $(VENV)/.built $(CORE)
+	rm -rf $(SANITIZED)/site
+	$(BIN)/python -m pip install -q --no-deps --no-build-isolation --target $(SANITIZED)/site \
+	  -C build-dir=$(SANITIZED)/cmake -C cmake.define.FLEXAPOD_SANITIZE=ON .
+	touch $@
+
+fuzz: $(VENV)/.fuzz ## the design reader, for SECONDS; what it finds is kept in build/fuzz
+	mkdir -p build/fuzz
+	cd build/fuzz && $(abspath $(BIN))/python $(CURDIR)/tests/fuzz/designs.py corpus -max_total_time=$(SECONDS)
+
+$(VENV)/.fuzz: $(VENV)/.built
+	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[fuzz]'
+	touch $@
+
+dist: $(VENV)/.dist ## source distribution and wheel in dist/, checked, installed in a new environment and tried there
+	rm -rf dist build/dist
+	PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/python -m build
+	$(BIN)/twine check --strict dist/*
+	$(BIN)/check-wheel-contents dist/*.whl
+	$(BIN)/python tests/distribution.py dist
+	$(PYTHON) -m venv build/dist/venv
+	build/dist/venv/bin/python -m pip install -q -c constraints.txt dist/*.whl
+	cd build/dist && venv/bin/python $(CURDIR)/tests/smoke.py
+
+$(VENV)/.dist: $(VENV)/.built
+	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[dist]'
+	touch $@
+
 WEB := web/package.json web/package-lock.json web/index.html web/vite.config.ts web/tsconfig.json \
        $(wildcard web/src/* web/public/*)
 
@@ -86,4 +128,4 @@ $(VENV)/.bench: $(VENV)/.built
 	touch $@
 
 clean:
-	rm -rf $(VENV) build out site
+	rm -rf $(VENV) build dist out site

@@ -1,5 +1,5 @@
 // Many poses at once: a scalar made of lanes. `Pack<V, N>` is N hardware vectors V; more than one hides the latency of
-// square roots and quotients. V may be `double` itself, where a compiler has no vector types.
+// square roots and quotients. V is `double` itself where the compiler has no vector types, or FLEXAPOD_PLAIN is defined.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,23 @@
 #include <immintrin.h>
 #endif
 
-#if defined(__GNUC__)
+#if defined(FLEXAPOD_SANITIZE)  // calls stay calls: the checks of all that is inlined would take minutes to compile
+#define FLEXAPOD_INLINE inline
+#define FLEXAPOD_FLAT
+#define FLEXAPOD_COLD
+#elif defined(__GNUC__) || defined(__clang__)  // clang-cl is the second only
 #define FLEXAPOD_INLINE inline __attribute__((always_inline))
 #define FLEXAPOD_FLAT __attribute__((flatten, noinline))  // with all that it calls inlined
 #define FLEXAPOD_COLD __attribute__((noinline, cold))
 #else
-#define FLEXAPOD_INLINE inline
+#define FLEXAPOD_INLINE __forceinline
 #define FLEXAPOD_FLAT
 #define FLEXAPOD_COLD
 #endif
 
 namespace flexapod {
 
-#if defined(__GNUC__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(FLEXAPOD_PLAIN)
 #if defined(__AVX512F__)
 using Vector = double __attribute__((vector_size(64)));
 #elif defined(__AVX2__)
@@ -148,7 +152,7 @@ template <class V> FLEXAPOD_INLINE V sqrt_vector(V a) {
 #endif
   double x[sizeof(V) / sizeof(double)];
   std::memcpy(x, &a, sizeof(V));
-  for (double& number : x) number = __builtin_sqrt(number);
+  for (double& number : x) number = std::sqrt(number);
   std::memcpy(&a, x, sizeof(V));
   return a;
 }

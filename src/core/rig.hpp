@@ -118,7 +118,6 @@ class Rig {
     const Mat3<double>& R_b = now.base.motion.pose.R;
     const Vec6<double> force = now.leg_force.six();
     const Geometry<double> g = geometry(y), rest(machine_.design, rest_, Pose<double>());
-    const Vec6<double> leg_force = now.leg_force.six();
     for (int i = 0; i < 6; ++i) {
       const double L = norm(g.S[i]);
       out[i] = dot(g.S[i] + rest.S[i], g.S[i] - rest.S[i]) / (L + norm(rest.S[i]));

@@ -6,7 +6,7 @@
 #include <limits>
 #include <type_traits>
 
-#if defined(__GNUC__)
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(FLEXAPOD_SANITIZE)
 #define FLEXAPOD_UNROLL _Pragma("GCC unroll 16")
 #else
 #define FLEXAPOD_UNROLL

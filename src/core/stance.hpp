@@ -24,7 +24,7 @@ struct SweptMachine {
         size(0.0) {
     weightless.design.gravity = Vec3<double>();
     for (int i = 0; i < 6; ++i) {
-      root_K[i] = __builtin_sqrt(machine.design.leg[i].stiffness);
+      root_K[i] = std::sqrt(machine.design.leg[i].stiffness);
       size += norm(machine.design.p[i]) / 6.0;
     }
   }

@@ -32,7 +32,10 @@ double peak(size_t rounds) {
     FLEXAPOD_UNROLL for (int i = 0; i < chains; ++i) x[i] = x[i] * a + b;
   Vector sum = x[0];
   for (int i = 1; i < chains; ++i) sum += x[i];
-  asm volatile("" : : "x"(sum));  // the sum is needed
+  double lane[sizeof(Vector) / sizeof(double)];
+  std::memcpy(lane, &sum, sizeof(sum));
+  [[maybe_unused]] volatile double needed;  // or a compiler would leave all of it out
+  for (const double number : lane) needed = number;
   return 2.0 * chains * static_cast<double>(rounds) * (sizeof(Vector) / sizeof(double));
 }
 

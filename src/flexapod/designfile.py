@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from flexapod.errors import DesignError
+from flexapod.errors import DesignError, shown
 from flexapod.schema import KEYS, TABLES, TEXT_KEYS, check_value, resolve, unknown_key
 from flexapod.shorthands import Values, expand
 from flexapod.units import printed, si_unit
@@ -117,9 +117,7 @@ def flatten(tables: Mapping[str, Any], table: str = "") -> Values:
     for key, value in tables.items():
         full = f"{table}.{key}" if table else key
         if full in TABLES:
-            if not isinstance(value, Mapping):
-                raise DesignError(f"{full} is {value!r}; it must be a table. Write [{full}] and its keys below it.")
-            values |= flatten(value, full)
+            values |= flatten(_table(value, full), full)
             continue
         canonical, unit = resolve(table, key)
         if canonical in written:
@@ -134,7 +132,7 @@ def _check(name: str, canonical: str, value: Any, unit: str) -> Any:
         return check_value(name, value, KEYS[canonical], unit)
     if not isinstance(value, str) or not value.strip():
         example = "my hexapod" if canonical == "name" else "joints.csv"
-        raise DesignError(f'{name} is {value!r}; it must be text. Write {name} = "{example}".')
+        raise DesignError(f'{name} is {shown(value)}; it must be text. Write {name} = "{example}".')
     return value
 
 
@@ -192,7 +190,7 @@ def changed(values: Values, changes: Mapping[str, Any]) -> Values:
     places: list[tuple[str, Any]] = []
     for key, value in changes.items():
         if not isinstance(key, str):
-            raise DesignError(f"{key!r} is no key; keys of a change are text such as 'platform.mass'.")
+            raise DesignError(f"{shown(key)} is no key; keys of a change are text such as 'platform.mass'.")
         if "[" in key:
             places.append((key, _parsed(key, value)))
         elif value is None:
@@ -232,7 +230,8 @@ def _parsed(key: str, value: Any) -> Any:
     except (ValueError, RecursionError):
         parsed = {}
     if list(parsed) != ["value"]:
-        raise DesignError(f"{key} is {value!r}; it must be a TOML value: a number such as 400 or a list [1, 2, 3].")
+        must = "it must be a TOML value: a number such as 400 or a list [1, 2, 3]"
+        raise DesignError(f"{key} is {shown(value)}; {must}.")
     return parsed["value"]
 
 
@@ -242,8 +241,14 @@ def _nest(tables: dict[str, Any], key: str, value: Any) -> None:
     for depth, name in enumerate(path):
         if ".".join(path[: depth + 1]) not in TABLES:
             unknown_key(".".join(path[:depth]), name)
-        here = here.setdefault(name, {})
-    here[last] = {**here.get(last, {}), **value} if isinstance(value, Mapping) else value
+        here = _table(here.setdefault(name, {}), ".".join(path[: depth + 1]))
+    here[last] = {**_table(here.get(last, {}), key), **value} if isinstance(value, Mapping) else value
+
+
+def _table(value: Any, name: str) -> Any:
+    if not isinstance(value, Mapping):
+        raise DesignError(f"{name} is {shown(value)}; it must be a table. Write [{name}] and its keys below it.")
+    return value
 
 
 def _take_out(values: Values, key: str) -> None:
@@ -265,7 +270,7 @@ def _canonical(key: str) -> tuple[str, str]:
 
 def _set_place(values: Values, key: str, value: Any) -> None:
     """One entry, row or matrix of a value: `legs.stiffness[2]`, `base.joints[0][2]`."""
-    match = re.fullmatch(r"([^\[\]]+)((?:\[\d+\])+)", key)
+    match = re.fullmatch(r"([^\[\]]+)((?:\[\d{1,9}\])+)", key)
     if match is None:
         raise DesignError(f"{key!r} is no key; write an index as in legs.stiffness[2], counting from 0.")
     canonical, unit = _canonical(match[1])

@@ -1,6 +1,21 @@
 """What can go wrong, by name. Every message says the thing, its value, what is required and the remedy."""
 
+import reprlib
 from typing import Any
+
+
+class _Short(reprlib.Repr):
+    """Values in messages: the start of what is long or nested deeply, and integers of any size."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.maxlevel, self.maxstring, self.maxother = 4, 80, 80
+
+    def repr_int(self, x: int, level: int) -> str:
+        return repr(x) if x.bit_length() < 256 else f"an integer of {x.bit_length()} bits"
+
+
+shown = _Short().repr
 
 
 class FlexapodError(Exception):

@@ -6,7 +6,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.errors import DesignError
+from flexapod.errors import DesignError, shown
 from flexapod.units import ALL_UNITS, UNITS, printed, si_unit, to_si
 
 FloatArray = NDArray[np.float64]
@@ -46,6 +46,7 @@ _LEGS: tuple[tuple[int, ...], ...] = ((), (6,))
 _VECTOR = ((3,),)
 _JOINTS = ((6, 3),)
 _LARGEST = 1e100  # squares and products of such numbers still do not overflow
+_DEEPEST = max(len(shape) for shape in SHAPES) + 2  # a little more than any value has: the shape is checked later
 _FLAT_ANGLE = 3.141592653589793
 _ROW_REMEDY = "Give one row [x, y, z] for each of the six legs."
 _ANGLE_REMEDY = "If the number is in degrees, put _deg at the end of the key."
@@ -278,7 +279,7 @@ def _numbers(name: str, value: Any, rule: Key) -> FloatArray:
         path, item = found
         kind = "text" if isinstance(item, str) else type(item).__name__
         must = "it must be a number" if path else f"it must be {rule.shape_text}"
-        raise DesignError(f"{name}{path} is {item!r} ({kind}); {must}. {rule.remedy}")
+        raise DesignError(f"{name}{path} is {shown(item)} ({kind}); {must}. {rule.remedy}")
     try:
         return np.array(value, dtype=np.float64)
     except OverflowError:
@@ -291,12 +292,12 @@ def _numbers(name: str, value: Any, rule: Key) -> FloatArray:
         ) from None
 
 
-def _not_a_number(value: Any, path: str) -> tuple[str, Any] | None:
+def _not_a_number(value: Any, path: str, depth: int = 0) -> tuple[str, Any] | None:
     """Where a nested list holds something that is not a number, and what; None if nowhere."""
     if isinstance(value, np.ndarray):
         return None if value.dtype.kind in "iuf" else (path, value.tolist())
-    if isinstance(value, list | tuple):
-        found = (_not_a_number(item, f"{path}[{index}]") for index, item in enumerate(value))
+    if isinstance(value, list | tuple) and depth <= _DEEPEST:
+        found = (_not_a_number(item, f"{path}[{index}]", depth + 1) for index, item in enumerate(value))
         return next((item for item in found if item is not None), None)
     is_number = isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
     return None if is_number else (path, value)
