@@ -88,12 +88,14 @@ def draw(name: str, settings: Settings) -> Part:
     words = dict.fromkeys(("text.color", "axes.labelcolor", "axes.edgecolor", "xtick.color", "ytick.color"), INK)
     with matplotlib.rc_context(words):  # type: ignore[arg-type]
         found: Part = module.draw(name, settings)
-    _lighten(found.figure)
+        _ready(found.figure)
     return found
 
 
-def _lighten(figure: Figure) -> None:
-    """Lines of very many points become pixels in vector files, which would be megabytes otherwise."""
+def _ready(figure: Figure) -> None:
+    """Laid out once for the files to come; lines of very many points as pixels, or vector files would be megabytes."""
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
     for ax in figure.axes:
         for line in ax.get_lines():
             line.set_rasterized(np.size(line.get_xdata()) > _MANY)
