@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 _MANY = 1500  # points of a line
+_MARGIN = 0.08  # inches round a figure: words are a little wider at some resolutions
 
 #: Number of the figure -> module of this package that draws it.
 FIGURES = {2: "scatter", 3: "scatter", 4: "scatter", 5: "scatter", 7: "vibration", 8: "vibration", 9: "vibration"}
@@ -88,12 +89,19 @@ def draw(name: str, settings: Settings) -> Part:
     words = dict.fromkeys(("text.color", "axes.labelcolor", "axes.edgecolor", "xtick.color", "ytick.color"), INK)
     with matplotlib.rc_context(words):  # type: ignore[arg-type]
         found: Part = module.draw(name, settings)
-    _lighten(found.figure)
+        _ready(found.figure)
     return found
 
 
-def _lighten(figure: Figure) -> None:
-    """Lines of very many points become pixels in vector files, which would be megabytes otherwise."""
+def _ready(figure: Figure) -> None:
+    """Laid out once for the files to come; lines of very many points as pixels, or vector files would be megabytes."""
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    engine = figure.get_layout_engine()
+    if isinstance(engine, ConstrainedLayoutEngine):
+        engine.set(w_pad=_MARGIN, h_pad=_MARGIN)
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")
     for ax in figure.axes:
         for line in ax.get_lines():
             line.set_rasterized(np.size(line.get_xdata()) > _MANY)
