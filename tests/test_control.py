@@ -8,6 +8,7 @@ from scipy.linalg import eigh
 
 import flexapod as fx
 from flexapod.feedback import Plant, poles
+from flexapod.laws import best_gain, default_gains, make
 from flexapod.linear import linearise
 
 # The isolator in orbit, without friction: every mode a pure spring, so that Preumont's closed forms hold.
@@ -315,3 +316,18 @@ def test_no_loop_at_all_leaves_the_machine_as_it_is(isolator):
         loop = fx.closed_loop(isolator, pose, fx.PID())
     modes = linearise(isolator, pose).modes()
     matched(loop.pole, np.concatenate([modes.pole, modes.pole.conj()]), 1e-10)
+
+
+def test_best_sampled_gain_leaves_the_machine_its_stiffness(isolator):
+    """The most damping lies where force feedback all but takes the static stiffness away: short of that it is stable."""
+    pose, tangent = fx.home_pose(isolator), fx.linearise(isolator, fx.home_pose(isolator))
+    plant, dt = Plant(tangent), fx.sampling_time(isolator, pose)
+    for leak in (3.0, 0.1 * float(tangent.modes().omega[0])):
+        gain, _ = best_gain(
+            plant,
+            lambda g, leak=leak: make("force", g, leak).on(tangent).sampled(dt),
+            default_gains(plant, "force")[::5],
+        )
+        loop = fx.closed_loop(isolator, pose, make("force", gain, leak).on(tangent).sampled(dt))
+        assert loop.stable
+        assert loop.pole.real.max() < -1e-3 * loop.omega[0]

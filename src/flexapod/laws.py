@@ -26,6 +26,7 @@ Feedback = Literal["force", "velocity"]
 ALL = (1, 2, 3, 4, 5, 6)
 GAIN_UNIT = {"force": "rad/s", "velocity": "N s/m"}  # of damping laws by name
 _STILL = 1 - 1e-6  # damping ratio that counts as no vibration
+_CREEP = 1e-3  # of the lowest natural frequency: a pole that decays more slowly comes of stiffness taken away
 
 
 @dataclass(frozen=True)
@@ -153,11 +154,14 @@ def make(feedback: Feedback, gain: float, leak: float, legs: tuple[int, ...] = A
 def best_gain(plant: Plant, law: Callable[[float], Law], gains: Array) -> tuple[float, float]:
     """The gain with the largest least damping, refined between those given, and that damping.
 
-    Where nothing vibrates any more at high gain, the least gain at which that is so: more only slows the machine.
+    Where nothing vibrates any more at high gain, the least gain at which that is so: more only slows the machine. A gain
+    that all but takes the machine's static stiffness away, as force feedback may, is none: a pole then hardly decays.
     """
 
     def damping(log_gain: float) -> float:
-        return least_damping(poles(plant, law(float(np.exp(log_gain))).on(plant.linear)))
+        pole = poles(plant, law(float(np.exp(log_gain))).on(plant.linear))
+        creeps = (pole.real > -_CREEP * plant.omega[0]) & (np.abs(pole) > 1e-9 * np.abs(pole).max())
+        return least_damping(pole) if not creeps.any() else -1.0
 
     logs = np.log(gains)
     values = np.array([damping(x) for x in logs])
