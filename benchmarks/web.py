@@ -22,18 +22,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-]
+from tests.web.browser import CHROMIUM, FLAGS
+
 MOVES = 100
 PAGES = 20
 SECONDS = 10.0
@@ -150,7 +140,7 @@ def main() -> None:
         time.sleep(3)
         print(f"server at rest: {memory(pid):.0f} MB with its idle job process; load average {os.getloadavg()[0]:.1f}")
         with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path="/usr/bin/chromium", args=FLAGS)
+            browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
             page_ready(browser, url)
             ready = [page_ready(browser, url) for _ in range(5)]
             print(f"page ready with 100 000 poses: median {statistics.median(ready):.2f} s, worst {max(ready):.2f} s")
