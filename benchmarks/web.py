@@ -23,24 +23,13 @@ from itertools import cycle
 from pathlib import Path
 from typing import Any
 
+from tests.web.browser import CHROMIUM, FLAGS
+
 from benchmarks._contest import OURS, Contender, Contest, Plan
 from benchmarks._machine import all_cores
 
-FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-]
 MOVES = 100
 SHARES = [0.3 + 0.4 * ((i * 37) % MOVES) / MOVES for i in range(MOVES)]  # where the slider goes
-CHROMIUM = Path("/usr/bin/chromium")
 PAGES = 20
 SECONDS = 10.0
 

@@ -108,6 +108,14 @@ def test_objectives_tell_themselves_apart(positioner, aim):
     ]
 
 
+def test_limits_that_begin_at_nothing_bound_one_side(positioner):
+    limited = positioner.replace({"limits.leg_length": [0.0, 0.5]})
+    asked = problem(limited, heavier(), constraints=[fx.DesignLimits()])
+    names = [r.name for r in asked.requirements]
+    assert "longest leg" in names
+    assert "shortest leg" not in names
+
+
 @pytest.mark.parametrize("name", ["scattered", "on a line", "repeated"])
 def test_the_least_circle_holds_all_points_and_no_smaller_one_does(name):
     rng = np.random.default_rng(3)

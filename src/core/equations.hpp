@@ -180,6 +180,18 @@ template <class T> Vec6<T> external_wrench(const Mat3<T>& R, const Vec6<double>&
   return Vec6<T>::of(R * load.top(), R * load.bottom());
 }
 
+/// Leg forces that give the accelerations of `platform` under an external wrench, from H F = wrench; NaN where H is
+/// singular.
+inline Vec6<double> inverse_dynamics(const Machine<double>& machine, const Geometry<double>& g,
+                                     const Motion<double>& platform, const Motion<double>& base,
+                                     const Vec6<double>& external) {
+  Vec6<double> needed = inverse_wrench(machine, g, platform, base), F;
+  for (int j = 0; j < 6; ++j) needed[j] -= external[j];
+  if (!solve_general(force_transformation(g), needed, F))
+    for (double& force : F.a) force = std::numeric_limits<double>::quiet_NaN();
+  return F;
+}
+
 template <class T> Motion<T> unaccelerated(Motion<T> motion) {
   motion.a = motion.alpha = Vec3<T>();
   return motion;

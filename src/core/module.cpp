@@ -128,7 +128,7 @@ nb::object forward_dynamics_(const Input& design, bool universal, const Input& p
 }
 
 /// Leg forces for the accelerations given; NaN where H is singular.
-nb::object inverse_dynamics(const Input& design, bool universal, const Input& platforms, const Input& bases,
+nb::object inverse_dynamics_(const Input& design, bool universal, const Input& platforms, const Input& bases,
                             const Input& wrenches) {
   const Machine<double> machine = machine_of(design, universal);
   const States s(platforms, bases);
@@ -138,11 +138,7 @@ nb::object inverse_dynamics(const Input& design, bool universal, const Input& pl
   for (size_t i = 0; i < s.n; ++i) {
     const Geometry<double> g = geometry(machine, s, i);
     const Vec6<double> external = external_wrench(s.platform[i].pose.R, vec6(load + 6 * i));
-    Vec6<double> needed = inverse_wrench(machine, g, s.platform[i], s.base[i]), F;
-    for (int j = 0; j < 6; ++j) needed[j] -= external[j];
-    if (!solve_general(force_transformation(g), needed, F))
-      for (double& force : F.a) force = std::numeric_limits<double>::quiet_NaN();
-    write(out, F);
+    write(out, inverse_dynamics(machine, g, s.platform[i], s.base[i], external));
   }
   return nb::cast(forces.array());
 }
@@ -277,7 +273,7 @@ NB_MODULE(_core, m) {
   m.def("force_transformation", &force_transformation_);
   m.def("equations_of_motion", &equations_of_motion);
   m.def("forward_dynamics", &forward_dynamics_);
-  m.def("inverse_dynamics", &inverse_dynamics);
+  m.def("inverse_dynamics", &inverse_dynamics_);
   m.def("joint_reactions", &joint_reactions);
   m.def("energy", &energy_);
   m.def("natural_modes", &natural_modes_);

@@ -158,7 +158,7 @@ def _describe(twist: Array, J: Array, mass_center: Array) -> ModeDescription:
     speed, spin = np.linalg.norm(v), np.linalg.norm(w)
     first = int(np.argmax(share))
     others = [i for i in np.argsort(-share) if i != first and share[i] > 0.1]
-    words = f"mostly {DIRECTIONS[first]} ({share[first]:.0%})"
+    words = f"mostly {DIRECTIONS[first]} ({min(share[first], 1.0):.0%})"  # coupling may give a direction more than all
     if others:
         words += " with " + ", ".join(f"{DIRECTIONS[i]} ({share[i]:.0%})" for i in others)
     if spin == 0 or (first < 3 and spin * 1e6 < speed):

@@ -372,8 +372,8 @@ def _sobol(ensemble: Ensemble, index: _Index, base: int, seed: int) -> xr.Datase
     found = index(u, "sensitivity")
     spread = found.std()
     result = analyse.analyze(
-        problem, (found - found.mean()) / (spread if spread > 0 else 1.0), calc_second_order=False, seed=seed
-    )
+        problem, (found - found.mean()) / (spread if spread > 0 else 1.0), calc_second_order=False, seed=seed + 1
+    )  # SALib takes a seed of 0 for none
     axis = ("parameter",)
     return xr.Dataset(
         {

@@ -2,27 +2,14 @@
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from tests.web.browser import CHROMIUM, FLAGS
 
-CHROMIUM = shutil.which("chromium") or "/usr/bin/chromium"
-FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",  # WebGL in software: what every machine has
-    "--enable-unsafe-swiftshader",
-]
 # What a page may do to a design is bounded by no network: these are the messages that a browser itself writes.
 QUIET = ("GPU stall due to ReadPixels", "status of 422", "status of 421", "status of 403")
 
