@@ -157,3 +157,11 @@ def test_bad_input_is_told_by_name(words):
     assert words in str(error.value)
     with pytest.raises(fx.ArgumentError, match="power of two"):
         fx.robustness(fx.load("motion-base"), [fx.Uncertain("legs.stiffness", 0.1)], samples=16, sensitivity=100)
+
+
+def test_the_same_seed_gives_the_same_shares_and_confidence():
+    parts = [fx.Uncertain("legs.stiffness", 0.1), fx.Uncertain("platform.mass", 0.1)]
+    first, again = (
+        fx.robustness(fx.load("motion-base"), parts, samples=16, sensitivity=16, seed=0).sensitivity for _ in range(2)
+    )
+    assert first.identical(again)

@@ -155,7 +155,8 @@ def best_gain(plant: Plant, law: Callable[[float], Law], gains: Array) -> tuple[
     """The gain with the largest least damping, refined between those given, and that damping.
 
     Where nothing vibrates any more at high gain, the least gain at which that is so: more only slows the machine. A
-    gain that all but takes the machine's static stiffness away, as force feedback may, is none: a pole then hardly decays.
+    gain that all but takes the machine's static stiffness away, as force feedback may, is none: a pole then hardly
+    decays.
     """
 
     def damping(log_gain: float) -> float:
