@@ -93,7 +93,9 @@ def command(
     for part in parts:
         _print(part, out)
     if not figures:
-        click.echo(f"{told['page']['file']}\n  {told['page']['statements']}")
+        page = told["page"]
+        counts = ", ".join(f"{count} {verdict}" for verdict, count in page["statements"].items())
+        click.echo(f"{page['file']}\n  the paper's statements: {counts}")
 
 
 def _write(part: Part, out: Path) -> None:
