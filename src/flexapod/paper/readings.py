@@ -10,6 +10,7 @@ import pandas as pd
 
 from flexapod.dynamics import equations_of_motion
 from flexapod.hexapod import Hexapod, load
+from flexapod.interchange.bodies import nearest_physical
 from flexapod.kinematics import inverse_kinematics
 from flexapod.linear import linearise
 from flexapod.modal import natural_modes
@@ -74,15 +75,8 @@ def _from_base_joint(hexapod: Hexapod) -> Changes:
 
 
 def _possible(hexapod: Hexapod) -> Changes:
-    """The nearest inertias that a rigid body can have: second moments of mass that are not negative."""
-    return {f"legs.{n}.inertia": _nearest_body(getattr(hexapod.legs, n).inertia) for n in ("lower", "upper")}
-
-
-def _nearest_body(inertia: Array) -> Array:
-    trace = np.trace(inertia, axis1=1, axis2=2)[:, None, None]
-    moments, axes = np.linalg.eigh(0.5 * trace * np.eye(3) - inertia)
-    kept = (axes * np.maximum(moments, 0.0)[:, None, :]) @ axes.swapaxes(1, 2)
-    return np.asarray(np.trace(kept, axis1=1, axis2=2)[:, None, None] * np.eye(3) - kept)
+    legs = nearest_physical(hexapod).legs
+    return {f"legs.{n}.inertia": getattr(legs, n).inertia for n in ("lower", "upper")}
 
 
 def _third_row(coupling: float) -> Callable[[Hexapod], Changes]:
@@ -121,16 +115,16 @@ READINGS = (
     ),
     Reading(
         "II",
-        "I_u0, third row",
+        "I_u0, row 3",
         "10⁻⁵·[0.2, 0.1, 0.3]: symmetric",
-        "[0.2, 100, 300] printed, its 100 in the second row too",
+        "[0.2, 100, 300], 100 in row 2 too",
         _third_row(100.0),
     ),
     Reading(
         "II",
-        "I_u0, third row",
+        "I_u0, row 3",
         "10⁻⁵·[0.2, 0.1, 0.3]: symmetric",
-        "[0.2, 100, 300] printed, symmetric part",
+        "[0.2, 100, 300], symmetric part",
         _third_row(50.05),
     ),
     Reading("II", "I_d0, I_u0", _BODY, "the nearest that a body can have", _possible),
