@@ -39,7 +39,11 @@ def main(directory: Path) -> None:
     with zipfile.ZipFile(wheel) as file:
         names = set(file.namelist())
     version = wheel.name.split("-")[1]
-    check(wheel, names, {name.removeprefix("src/") for name in package} | {f"flexapod-{version}.dist-info/licenses/LICENSE"})
+    check(
+        wheel,
+        names,
+        {name.removeprefix("src/") for name in package} | {f"flexapod-{version}.dist-info/licenses/LICENSE"},
+    )
     if not any(name.startswith("flexapod/_core.") and not name.endswith(".pyi") for name in names):
         sys.exit(f"{wheel.name} has no compiled core")
 
