@@ -196,7 +196,6 @@ class Rig {
       for (int i = 0; i < 6; ++i) change[i] = now.command[i].x;
       command = PerLeg(change);
     }
-    const PerLeg held_forces(held);
     const Vec3<double> d = get(y, 0) - d_chart_, theta = get(y, 3);
     for (int g = 0; g < leg_groups; ++g) {
       const Chart& chart = chart_legs_[g];

@@ -1,0 +1,68 @@
+// The core without Python, for compilers and processors that the tests do not run on: reads a machine and its motions as
+// raw doubles, writes what the lanes of this build make of them. See compare.py.
+#include <cstdio>
+#include <memory>
+#include <vector>
+
+#include "six_legs.hpp"
+#include "sweep_task.hpp"
+
+namespace flexapod {
+extern const sweep_task::Kernel sweep_kernel;
+}
+
+namespace {
+
+using namespace flexapod;
+
+std::vector<double> read() {
+  std::vector<double> numbers(1);
+  while (std::fread(&numbers.back(), sizeof(double), 1, stdin) == 1) numbers.push_back(0.0);
+  numbers.pop_back();
+  return numbers;
+}
+
+void write(const std::vector<double>& numbers) { std::fwrite(numbers.data(), sizeof(double), numbers.size(), stdout); }
+
+void sweep(const double* design, const double* limits, const double* poses, std::size_t n) {
+  std::vector<double> omega(6 * n), cond(n), length(6 * n), distance(n), force(n), stiffness(n);
+  std::vector<double> universal(6 * n), spherical(6 * n), gradient(6 * n), lowest(n);
+  std::vector<std::uint8_t> status(n);
+  const std::unique_ptr<bool[]> within(new bool[n]);
+  sweep_task::Task task{};
+  task.design = design, task.universal = true, task.poses = poses, task.width = 6, task.quantities = 1023;
+  task.limits = reinterpret_cast<const sweep_task::Limits*>(limits);
+  task.omega_1_ = lowest.data(), task.omega_ = omega.data(), task.cond_H_ = cond.data();
+  task.leg_length_ = length.data(), task.leg_distance_ = distance.data(), task.leg_force_ = force.data();
+  task.lowest_stiffness_ = stiffness.data(), task.universal_angle_ = universal.data();
+  task.spherical_angle_ = spherical.data(), task.omega_1_gradient_ = gradient.data();
+  task.within_limits_ = within.get(), task.status_ = status.data();
+  sweep_kernel.sweep(task, 0, n);
+  for (const auto* result :
+       {&omega, &cond, &length, &distance, &force, &stiffness, &universal, &spherical, &gradient})
+    write(*result);
+  write({status.begin(), status.end()});
+  write({within.get(), within.get() + n});
+}
+
+void dynamics(const Design<double>& design, const Motion<double>* platform, std::size_t n) {
+  const Machine<double> machine(design, Joint::universal);
+  const SixLegs legs(machine);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec6<double> a = forward_dynamics(legs, platform[i], Motion<double>(), Vec6<double>(), Vec6<double>());
+    write({a.a, a.a + 6});
+  }
+}
+
+}  // namespace
+
+int main() {
+  const std::vector<double> numbers = read();
+  constexpr std::size_t head = design_size + sweep_task::limits_size;
+  const std::size_t n = (numbers.size() - head) / (6 + motion_size);
+  const double* design = numbers.data();
+  const double* poses = design + head;
+  sweep(design, design + design_size, poses, n);
+  dynamics(*reinterpret_cast<const Design<double>*>(design), reinterpret_cast<const Motion<double>*>(poses + 6 * n), n);
+  std::fprintf(stderr, "%d lanes in a vector\n", Lanes::lanes);
+}
