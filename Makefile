@@ -55,19 +55,23 @@ $(VENV)/.docs: $(VENV)/.built
 	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[docs]'
 	touch $@
 
+# The interpreter behind the virtual environment with its packages: it does not see the editable install, but what
+# PYTHONPATH names first.
+PACKAGES = $(shell $(BIN)/python -c 'import sys; print(*(p for p in sys.path if "site-packages" in p), sep=":")')
+BARE     = $(realpath $(BIN)/python)
+
 # The core compiled with AddressSanitizer and UBSan, in a place of its own, and the tests that exercise it, but for long
-# runs and searches. The interpreter is that behind the virtual environment: it does not see the editable install.
+# runs and searches.
 SANITIZED  := $(CURDIR)/build/sanitize
 CORE_TESTS := $(addprefix tests/test_,$(addsuffix .py,golden kinematics statics modal linear excitation sweep_kernel \
                 simulate stepped optimise control))
 LONG       := thousand_periods or keeps_its_energy or progress_goes or settles_to or run_from_rest or better_design or \
               mean_over or angles_and_deflection or holds_up or bad_input or symmetric_family or pareto
 PRELOADED   = $(shell $(CXX) -print-file-name=libasan.so) $(shell $(CXX) -print-file-name=libstdc++.so)
-PACKAGES    = $(shell $(BIN)/python -c 'import sys; print(*(p for p in sys.path if "site-packages" in p), sep=":")')
 
 sanitize: $(SANITIZED)/.built ## any finding ends the run
 	LD_PRELOAD="$(PRELOADED)" ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=$(SANITIZED)/site:$(PACKAGES) \
-	$(realpath $(BIN)/python) -m pytest -p no:cacheprovider $(CORE_TESTS) -k 'not ($(LONG))'
+	$(BARE) -m pytest -p no:cacheprovider $(CORE_TESTS) -k 'not ($(LONG))'
 
 $(SANITIZED)/.built: $(VENV)/.built $(CORE)
 	rm -rf $(SANITIZED)/site
@@ -80,7 +84,7 @@ portable: build ## the core by other compilers and for Arm, as far as this machi
 
 fuzz: $(VENV)/.fuzz ## the design reader, for SECONDS; what it finds is kept in build/fuzz
 	mkdir -p build/fuzz
-	cd build/fuzz && $(abspath $(BIN))/python $(CURDIR)/tests/fuzz/designs.py corpus -max_total_time=$(SECONDS)
+	cd build/fuzz && PYTHONPATH=$(CURDIR)/src:$(PACKAGES) $(BARE) $(CURDIR)/tests/fuzz/designs.py corpus -max_total_time=$(SECONDS)
 
 $(VENV)/.fuzz: $(VENV)/.built
 	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[fuzz]'
