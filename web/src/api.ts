@@ -50,12 +50,14 @@ export class Live<T> {
     this.busy = true
     while (this.stale) {
       this.stale = false
+      const asked = this.body()
       try {
-        const answer = await ask<T>(this.path, this.body())
+        const answer = await ask<T>(this.path, asked)
         this.answered(answer)
       } catch (error) {
-        if (error instanceof Refused) this.failed(error)
-        else throw error
+        if (!(error instanceof Refused)) throw error
+        const meant = JSON.stringify(asked) === JSON.stringify(this.body()) // else it is of numbers that are gone
+        if (meant) this.failed(error)
       } finally {
         if (!this.stale) this.busy = false
       }

@@ -30,6 +30,7 @@ class NumberRow {
   private readonly number: HTMLInputElement
   private readonly undo: HTMLButtonElement
   private readonly wrong = h('p', { class: 'wrong', role: 'alert', hidden: true })
+  private typing = false // a number that is being typed stays, whatever is answered meanwhile
 
   constructor(private chief: ChiefNumber) {
     const id = freshId('number')
@@ -38,10 +39,12 @@ class NumberRow {
     this.slider.setAttribute('aria-label', `${chief.label} slider`)
     this.slider.addEventListener('input', () => change(chief.key, scaleOf(this.chief).value(Number(this.slider.value))))
     const put = () => {
+      this.typing = false
       const value = parsed(this.number.value)
       if (Number.isNaN(value)) this.fail(`${this.number.value || 'nothing'} is not a number.`)
       else if (value !== this.current()) change(chief.key, value)
     }
+    this.number.addEventListener('input', () => (this.typing = true))
     this.number.addEventListener('change', put)
     this.element = h(
       'div',
@@ -70,7 +73,7 @@ class NumberRow {
     this.chief = chief
     const value = this.current()
     this.slider.value = String(scaleOf(chief).at(value))
-    if (document.activeElement !== this.number || parsed(this.number.value) !== value) this.number.value = field(Number(value.toPrecision(6)))
+    if (!this.typing && (document.activeElement !== this.number || parsed(this.number.value) !== value)) this.number.value = field(Number(value.toPrecision(6)))
     this.undo.style.visibility = chief.key in page.changes ? 'visible' : 'hidden'
     this.fail('')
   }

@@ -31,7 +31,9 @@ function row(i: number): Row {
   const slider = h('input', { type: 'range', step: 'any', 'aria-label': `${name} slider`, tabindex: 0 })
   const number = h('input', { type: 'text', inputmode: 'decimal', id, class: 'number', autocomplete: 'off', spellcheck: 'false' })
   const suffix = h('span', { class: 'unit' })
+  let typing = false // a number that is being typed stays, whatever is answered meanwhile
   const put = () => {
+    typing = false
     const value = parsed(number.value)
     const good = Number.isFinite(value)
     number.setAttribute('aria-invalid', String(!good))
@@ -50,6 +52,7 @@ function row(i: number): Row {
     const step = (page.box.high[i] - page.box.low[i]) / 200
     setOne(i, Math.min(Math.max(page.pose[i] + way * step, page.box.low[i]), page.box.high[i]))
   })
+  number.addEventListener('input', () => (typing = true))
   number.addEventListener('change', put)
   number.addEventListener('keydown', (event) => {
     if (event.key === 'Enter') put()
@@ -64,7 +67,7 @@ function row(i: number): Row {
       slider.value = String(page.pose[i])
       const shown = field(page.pose[i] * factor(i))
       slider.setAttribute('aria-valuetext', `${shown} ${unit(i)}`)
-      if (document.activeElement !== number || parsed(number.value) !== parsed(shown)) number.value = shown
+      if (!typing && (document.activeElement !== number || parsed(number.value) !== parsed(shown))) number.value = shown
       number.removeAttribute('aria-invalid')
       const outside = page.pose[i] < low - 1e-12 || page.pose[i] > high + 1e-12
       element.classList.toggle('outside', outside)
