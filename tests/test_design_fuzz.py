@@ -145,5 +145,14 @@ def test_a_table_and_a_value_in_its_place(changes):
     assert "is 3; it must be a table" in message
 
 
+@pytest.mark.parametrize(("radius", "words"), [("1e-320", "coincide"), ("1e-200", "coincide"), ("1e-150", "")])
+def test_joints_too_close_together_for_squares_of_numbers(radius, words):
+    text = designfile.find("precision-positioner").read_text(encoding="utf-8")
+    assert "radius_mm = 175.5" in text
+    message = message_of(lambda: Hexapod.from_toml(text.replace("radius_mm = 175.5", f"radius_mm = {radius}")))
+    assert bool(words) == bool(message)
+    assert words in message
+
+
 def test_an_index_of_thousands_of_digits():
     assert "is no key" in message_of(lambda: load("mukherjee-ii").replace({f"legs.stiffness[{'1' * 5000}]": 1e7}))

@@ -34,9 +34,10 @@ def expand(values: Values, directory: Path | None = None) -> Values:
 def tangent_axes(base_joints: FloatArray) -> FloatArray:
     """Unit vectors z x (b_i - centroid): the default axes of the universal joints, shape (6, 3)."""
     out = base_joints - base_joints.mean(axis=0)
+    out = np.ldexp(out, -np.frexp(np.abs(out).max())[1])  # a power of two: exact, and squares do not vanish
     axes = np.stack([-out[:, 1], out[:, 0], np.zeros(len(out))], axis=1)
     length = np.linalg.norm(axes, axis=1, keepdims=True)
-    if (length < 1e-9 * np.abs(out).max()).any():
+    if (length < 1e-9).any():
         leg = int(np.argmin(length))
         raise DesignError(
             f"base.universal_axes is left out, but base.joints[{leg}] is at {base_joints[leg].tolist()} m, straight "

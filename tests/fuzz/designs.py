@@ -2,9 +2,9 @@
 
     python tests/fuzz/designs.py CORPUS [libFuzzer's options]
 
-CORPUS is a directory; the packaged designs are put into it, and what the search finds is kept there for the next run. It
-learns from the code's own branches, so `flexapod` must be found in the sources (see `make fuzz`): what an editable
-install's finder loads it cannot follow.
+CORPUS is a directory; the packaged designs are put into it, and what the search finds is kept there for the next run.
+The search learns from the code's own branches, so `flexapod` must be found in the sources (see `make fuzz`): what an
+editable install's finder loads it cannot follow.
 """
 
 import random
