@@ -2,7 +2,7 @@
 PYTHON ?= python3
 VENV   ?= .venv
 BIN    := $(VENV)/bin
-DESIGN ?= mukherjee-ii
+DESIGN ?= motion-base
 OUT    ?= out
 SECONDS ?= 300
 
@@ -122,6 +122,7 @@ web/node_modules/.built: web/node_modules/.installed $(WEB)
 	touch $@
 
 $(VENV)/.tools: pyproject.toml constraints.txt
+	@echo "Setting up $(VENV): packages, then the compiler. A few minutes, the first time only."
 	$(PYTHON) -c 'import sys; assert sys.version_info >= (3, 11), "Python 3.11 or newer is needed; pass PYTHON=python3.x"'
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install -q -c constraints.txt pip scikit-build-core nanobind cmake ninja

@@ -230,3 +230,18 @@ def test_designs_and_keys_complete():
     assert names[:2] == ["mukherjee-i", "mukherjee-ii"]
     keys = [item.value for item in Assignment().shell_complete(None, None, "legs.st")]
     assert keys == ["legs.stiffness="]
+
+
+def test_check_says_that_a_pose_is_singular(run):
+    code, out, _ = run("check", "motion-base", "--pose", 0, 0, 2.4, 0, 0, 90)
+    assert code == 0
+    assert "The pose is singular" in " ".join(out.split())
+    assert "OK" not in out
+    code, out, _ = run("check", "motion-base")
+    assert "singular" not in out.lower()
+
+
+def test_simulate_says_that_nothing_drives(run):
+    assert "Nothing drives the machine" in " ".join(run("simulate", "motion-base", "--duration", 0.01)[1].split())
+    driven = run("simulate", "motion-base", "--harmonic", "z", "1um", 20, "--duration", 0.01)[1]
+    assert "Nothing drives" not in driven

@@ -26,7 +26,7 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
     hexapod = common.load_design(design, changes)
     where = common.pose_or_none(hexapod, pose)
     found = {"design": hexapod.name, "digest": hexapod.digest, "warnings": hexapod.warnings, **_at(hexapod, where)}
-    found["ok"] = not found["warnings"] and not found["limits_exceeded"]
+    found["ok"] = not (found["warnings"] or found["singularity"] or found["limits_exceeded"])
     if as_json:
         common.print_json(found)
     else:
@@ -35,16 +35,18 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
 
 def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
     """What holds at a pose; null without one."""
-    keys = ("pose_m_deg", "leg_lengths_m", "leg_distance_m", "condition_number", "limits_exceeded")
+    keys = ("pose_m_deg", "leg_lengths_m", "leg_distance_m", "condition_number", "singularity", "limits_exceeded")
     if pose is None:
         return dict.fromkeys(keys)
     from flexapod import kinematics
+    from flexapod.conditioning import platform_radius, singularity
 
     values = (
         common.pose_numbers(pose),
         kinematics.inverse_kinematics(hexapod, pose),
         kinematics.leg_distance(hexapod, pose),
         kinematics.condition_number(hexapod, pose),
+        singularity(float(kinematics.condition_number(hexapod, pose, platform_radius(hexapod)))),
         kinematics.check_limits(hexapod, pose).exceeded,
     )
     return dict(zip(keys, values, strict=True))
@@ -62,5 +64,5 @@ def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:
             f"  legs {lengths.min():.4g} to {lengths.max():.4g} m, axes at least {found['leg_distance_m']:.4g} m apart"
         )
         out.print(f"  condition number of H {found['condition_number']:.4g} (in metres)")
-    common.print_warnings((*found["warnings"], *(found["limits_exceeded"] or ())))
+    common.print_warnings((*(found["singularity"] or ()), *found["warnings"], *(found["limits_exceeded"] or ())))
     out.print("[bold green]OK[/bold green]" if found["ok"] else "A valid design, with warnings.")

@@ -86,6 +86,10 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
         common.print_json(_as_json(hexapod, where, dataset, took, files))
         return
     _show(hexapod, where, dataset, took)
+    if not drives(given) and not given["unloaded"]:
+        common.print_warnings(
+            ["Nothing drives the machine: what moves is rounding. Give --harmonic, --shock or the like."]
+        )
     for file in files:
         click.echo(f"Wrote {file}")
 

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexapod.conditioning import SINGULAR, singularity
 from flexapod.hexapod import Hexapod
 from flexapod.kinematics import check_limits
 from flexapod.linear import DampedModes
 from flexapod.pose import Array, Pose
 
-SINGULAR = 1e12  # condition number without units from which H is singular to rounding
-NEAR_SINGULAR = 100.0  # a leg force up to a hundred times the load; stiffness 1e4 times less in some direction
 TANGENT_DIFFERS = 0.01  # of a frequency: more than this, and gravity and preload must not be left out
 
 
@@ -27,7 +26,8 @@ def cautions(
     clusters: modes, near-repeated ones together. condition: of H without units. damped: modes of the tangent, if any.
     """
     return [
-        *_singularity(condition, damped),
+        *singularity(condition),
+        *_no_rest(condition, damped),
         *_stability(damped),
         *(f"Limit exceeded: {text}." for text in check_limits(hexapod, pose).exceeded),
         *_angles_without_home(hexapod),
@@ -37,22 +37,10 @@ def cautions(
     ]
 
 
-def _singularity(condition: float, damped: DampedModes | None) -> list[str]:
-    if not condition < SINGULAR:
-        return [
-            "The pose is singular: the platform can move without stretching any leg, so the index is 0, and no leg "
-            "forces hold it against every load. Leg forces, the tangent and sensitivities are not available here. "
-            "Choose another pose, or move the joints."
-        ]
-    found = []
-    if condition > NEAR_SINGULAR:
-        found.append(
-            f"Near a singular pose: the condition number of H is {condition:.3g} without units, so some load needs "
-            f"leg forces about {condition:.1g} times as large. Keep away from here, or move the joints."
-        )
-    if damped is None:
-        found.append("No leg forces hold this pose: the tangent is not available.")
-    return found
+def _no_rest(condition: float, damped: DampedModes | None) -> list[str]:
+    if damped is None and condition < SINGULAR:
+        return ["No leg forces hold this pose: the tangent is not available."]
+    return []
 
 
 def _stability(damped: DampedModes | None) -> list[str]:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from flexapod.conditioning import SINGULAR, platform_radius
 from flexapod.errors import SingularPoseError
 from flexapod.hexapod import Hexapod
 from flexapod.kinematics import JointAngles, condition_number, inverse_kinematics, joint_angles, leg_distance
@@ -22,12 +23,13 @@ from flexapod.modal import (
     near_repeated,
 )
 from flexapod.pose import Array, Pose
-from flexapod.report.caution import SINGULAR, cautions
+from flexapod.report.caution import cautions
 from flexapod.report.influence import Influence, influences
 from flexapod.states import JointModel
 from flexapod.statics import Equilibrium, hold
 
 TURN = 2 * np.pi
+_NOTHING = 1e-12  # of the highest frequency: what is below is rounding at a singular pose
 
 
 class Conditioning(NamedTuple):
@@ -89,7 +91,7 @@ def gather(
     singular = not conditioning.scaled < SINGULAR
     if singular:  # what is left of the lowest mode is rounding: say so with plain zeros and infinities
         conditioning = Conditioning(np.inf, np.inf, length)
-        omega = np.where(np.arange(6) == 0, 0.0, omega)
+        omega = np.where((np.arange(6) == 0) | (omega < _NOTHING * omega[-1]), 0.0, omega)
         shares = EnergyShares(np.where(omega > 0, shares.strain, np.nan), shares.kinetic)
     rest, damped = (None, None) if singular else _at_rest(hexapod, pose, joint)
     clusters = mode_clusters(omega)
@@ -119,12 +121,6 @@ def _at_rest(hexapod: Hexapod, pose: Pose, joint: JointModel) -> tuple[Equilibri
         return hold(hexapod, pose), linearise(hexapod, pose, joint=joint).modes()
     except SingularPoseError:
         return None, None
-
-
-def platform_radius(hexapod: Hexapod) -> float:
-    """Mean distance of the platform joints from their centre, m."""
-    p = hexapod.platform_joints
-    return float(np.linalg.norm(p - p.mean(axis=0), axis=1).mean())
 
 
 def mode_clusters(omega: Array) -> list[list[int]]:
