@@ -548,3 +548,14 @@ def test_a_hexapod_checks_itself(field, value, parts):
         Hexapod(**{name: getattr(good, name) for name in names} | {field: value})
     for part in parts:
         assert part in str(caught.value)
+
+
+def test_a_key_of_another_table_is_named_with_its_unit():
+    with pytest.raises(DesignError, match=r"Did you mean base\.circle\.radius_mm"):
+        Hexapod.from_toml("[base]\nradius_mm = 220\n[platform]\n[legs]\n")
+
+
+def test_principal_moments_are_told_where_they_stand():
+    text = GOOD.replace("inertia = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]", "inertia = [0.2, 0.2, 0.4]", 1)
+    with pytest.raises(DesignError, match=r"platform\.inertia .*three rows of three numbers.*principal moments"):
+        Hexapod.from_toml(text)

@@ -45,6 +45,7 @@ _ONE: tuple[tuple[int, ...], ...] = ((),)
 _LEGS: tuple[tuple[int, ...], ...] = ((), (6,))
 _VECTOR = ((3,),)
 _JOINTS = ((6, 3),)
+_INERTIA = "Write the same number on both sides of the diagonal; principal moments alone stand on it, zeros beside."
 _LARGEST = 1e100  # squares and products of such numbers still do not overflow
 _DEEPEST = max(len(shape) for shape in SHAPES) + 2  # a little more than any value has: the shape is checked later
 _FLAT_ANGLE = 3.141592653589793
@@ -67,7 +68,7 @@ def _part(joint: str) -> dict[str, Key]:
             "inertia about the part's own mass centre, leg axes",
             "inertia",
             ((3, 3), (6, 3, 3)),
-            "Write the same number on both sides of the diagonal.",
+            _INERTIA,
             symmetric=True,
         ),
         "rod.mass": Key("mass of a uniform round rod", "mass", _LEGS, "A rod has a mass > 0.", least=0.0, open_=True),
@@ -126,7 +127,7 @@ KEYS: dict[str, Key] = {
         "inertia about the mass centre, platform axes",
         "inertia",
         ((3, 3),),
-        "Write the same number on both sides of the diagonal.",
+        _INERTIA,
         symmetric=True,
     ),
     "legs.stiffness": Key(
@@ -244,10 +245,19 @@ def unknown_key(table: str, key: str) -> NoReturn:
     here = children(table)
     start = f"{table}." if table else ""
     near = [start + match for match in _near(key, here)]
-    elsewhere = sorted(full for full in {*KEYS, *TABLES} if full.split(".")[-1] == key)
-    near += [full for full in elsewhere if full not in near]
+    near += [full for full in _elsewhere(key) if full not in near]
     hint = f"Did you mean {' or '.join(near)}? " if near else ""
     raise DesignError(f"{name} is not a key of a design. {hint}Keys of {where}: {', '.join(here)}.")
+
+
+def _elsewhere(key: str) -> list[str]:
+    """Keys of this name in other tables, with the unit that it carries."""
+    found = []
+    for full in sorted({*KEYS, *TABLES}):
+        last = full.split(".")[-1]
+        if key == last or (key.startswith(f"{last}_") and key[len(last) + 1 :] in ALL_UNITS):
+            found.append(full + key[len(last) :])
+    return found
 
 
 def _near(word: str, known: list[str]) -> list[str]:
