@@ -74,7 +74,8 @@ def without(package, call):
     """The call where a package is not installed."""
 
     def called():
-        with patch.dict(sys.modules, {package: None}):
+        loaded = [name for name in sys.modules if name.partition(".")[0] == package]
+        with patch.dict(sys.modules, dict.fromkeys([package, *loaded])):
             call()
 
     return called

@@ -39,14 +39,15 @@ def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
     if pose is None:
         return dict.fromkeys(keys)
     from flexapod import kinematics
-    from flexapod.conditioning import platform_radius, singularity
+    from flexapod.conditioning import SINGULAR, platform_radius, singularity
 
+    condition = float(kinematics.condition_number(hexapod, pose, platform_radius(hexapod)))
     values = (
         common.pose_numbers(pose),
         kinematics.inverse_kinematics(hexapod, pose),
         kinematics.leg_distance(hexapod, pose),
         kinematics.condition_number(hexapod, pose),
-        singularity(float(kinematics.condition_number(hexapod, pose, platform_radius(hexapod)))),
+        [] if condition < SINGULAR else singularity(condition),
         kinematics.check_limits(hexapod, pose).exceeded,
     )
     return dict(zip(keys, values, strict=True))
