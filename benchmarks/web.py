@@ -140,7 +140,7 @@ def percentile(values: list[float], share: float) -> float:
 
 def contests(plan: Plan) -> Iterator[Contest]:
     """The page by itself: no other tool does this."""
-    if plan.quick or not CHROMIUM.exists() or not plan.has("playwright"):
+    if plan.quick or not Path(CHROMIUM).exists() or not plan.has("playwright"):
         return
     from playwright.sync_api import sync_playwright
 
