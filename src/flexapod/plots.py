@@ -248,3 +248,13 @@ def _strain_colour(part: float) -> Any:
     end = np.array(to_rgb(STRETCHED if part > 0 else SHORTENED))
     weight = min(1.0, abs(part)) ** 0.7
     return tuple((1 - weight) * np.array(to_rgb(FAINT)) + weight * end)
+
+
+def dress(ax: Axes) -> None:
+    """Quiet axes, as in all figures."""
+    ax.grid(True, which="major", color=FAINT, lw=0.3, alpha=0.6)
+    for side in ("top", "right"):
+        ax.spines[side].set_visible(False)
+    ax.tick_params(which="both", color=FAINT, labelcolor=INK, labelsize=9)
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.label.set_color(INK)

@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from flexapod.plots import FAINT, INK
+from flexapod.plots import FAINT, INK, dress
 from flexapod.pose import Array
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ def gain_map(dataset: xr.Dataset) -> Figure:
         rows, columns = np.nonzero(unstable)
         ax.plot(kd[columns], kp[rows], ls="none", marker="x", ms=3, mew=0.8, color=INK)
         ax.set_xlabel(f"derivative gain kd, {dataset.kd.attrs['units']}")
-        _dress(ax)
+        dress(ax)
         _spread(ax, kd, kp)
     left.set_ylabel(f"proportional gain kp, {dataset.kp.attrs['units']}")
     words = f"{dataset.attrs['design']}: {dataset.attrs['space']} space, {dataset.attrs['actuator']}"
@@ -95,7 +95,7 @@ def root_locus(dataset: xr.Dataset) -> Figure:
         right.annotate(words, peak, xytext=(-8, 4), textcoords="offset points", ha="right", color=INK, fontsize=9)
     right.set(xlabel=f"gain, {dataset.gain.attrs['units']}", ylabel="least damping ratio")
     for ax in (left, right):
-        _dress(ax)
+        dress(ax)
     kind = {"force": "integral force feedback", "velocity": "direct velocity feedback"}[dataset.attrs["feedback"]]
     leak = dataset.attrs["leak_rad_s"]
     legs = dataset.attrs["legs"]
@@ -128,7 +128,7 @@ def isolation(dataset: xr.Dataset, axes: tuple[str, ...] = ("x", "z")) -> Figure
         ax.set(xlabel="frequency, Hz", title=f"{axis} of platform per {axis} of base")
         ax.title.set(color=INK, fontsize=10)
         ax.legend(fontsize=9, framealpha=0.9, edgecolor="none")
-        _dress(ax)
+        dress(ax)
     figure.axes[0].set_ylabel("transmissibility")
     figure.suptitle(f"{dataset.attrs['design']}: {dataset.attrs['controller']}", color=INK, fontsize=11)
     return figure
@@ -160,7 +160,7 @@ def controlled_run(dataset: xr.Dataset, axis: str = "z") -> Figure:
     right.set_ylim(0, 1.3 * max(1.0, right.get_ylim()[1] / 1.05))
     right.legend(fontsize=9, ncols=3, loc="upper center", framealpha=0.9, edgecolor="none", columnspacing=1.2)
     for ax in (left, right):
-        _dress(ax)
+        dress(ax)
     attrs = dataset.attrs
     limited = f", force limited in {attrs['saturated']:.1%} of samples" if attrs["saturated"] else ""
     figure.suptitle(
@@ -190,7 +190,7 @@ def schedule(dataset: xr.Dataset) -> Figure:
             figure.colorbar(mesh, ax=ax).set_label(_named(cut[name]), color=INK)
             ax.set(xlabel=_label(cut, x), ylabel=_label(cut, y))
     for ax in (left, right):
-        _dress(ax)
+        dress(ax)
     figure.suptitle(f"{dataset.attrs['design']}: schedule of {dataset.attrs['law']} feedback", color=INK, fontsize=11)
     return figure
 
@@ -228,12 +228,3 @@ def _spread(ax: Axes, kd: Array, kp: Array) -> None:
     for values, scale in ((kd, ax.set_xscale), (kp, ax.set_yscale)):
         if values.size > 2 and values.min() > 0 and values.max() > 30 * values.min():
             scale("log")
-
-
-def _dress(ax: Axes) -> None:
-    ax.grid(True, which="major", color=FAINT, lw=0.3, alpha=0.6)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
-    ax.tick_params(which="both", color=FAINT, labelcolor=INK, labelsize=9)
-    for axis in (ax.xaxis, ax.yaxis):
-        axis.label.set_color(INK)

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from flexapod.kinematics import home_pose
 from flexapod.optimal.optimise import OptimalDesign
 from flexapod.optimal.pareto import ParetoFront
-from flexapod.plots import FAINT, INK
+from flexapod.plots import FAINT, INK, dress
 from flexapod.robust import Robustness
 
 if TYPE_CHECKING:
@@ -149,10 +149,5 @@ def _figure(width: float, height: float) -> tuple[Figure, Axes]:
 
 
 def _dress(ax: Axes) -> None:
-    ax.grid(True, which="major", color=FAINT, lw=0.3, alpha=0.6)
+    dress(ax)
     ax.set_axisbelow(True)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
-    ax.tick_params(which="both", color=FAINT, labelcolor=INK, labelsize=9)
-    for axis in (ax.xaxis, ax.yaxis):
-        axis.label.set_color(INK)

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
 from flexapod.path import PathIndex
-from flexapod.plots import FAINT, INK
+from flexapod.plots import FAINT, INK, dress
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,7 +54,7 @@ def index_along(found: PathIndex, beside: PathIndex | None = None, ax: Axes | No
     above.legend(fontsize=9, framealpha=0.9, edgecolor="none", loc="best")
     below.set(ylabel="cond(H)", xlabel="share of the path's time" if shared else "time, s")
     for ax in (above, below):
-        _dress(ax)
+        dress(ax)
     figure.suptitle(f"{found.samples.attrs['design']}: index along the path", color=INK, fontsize=11)
     return figure
 
@@ -113,16 +113,7 @@ def loads(dataset: xr.Dataset) -> Figure:
     right.set(ylabel="leg length, m", xlabel="time, s")
     left.yaxis.set_major_formatter(EngFormatter())
     for ax in (left, right):
-        _dress(ax)
+        dress(ax)
     figure.legend(loc="outside lower center", ncols=6, fontsize=9, frameon=False)
     figure.suptitle(f"{dataset.attrs['design']}: legs along the path", color=INK, fontsize=11)
     return figure
-
-
-def _dress(ax: Axes) -> None:
-    ax.grid(True, which="major", color=FAINT, lw=0.3, alpha=0.6)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
-    ax.tick_params(which="both", color=FAINT, labelcolor=INK, labelsize=9)
-    for axis in (ax.xaxis, ax.yaxis):
-        axis.label.set_color(INK)

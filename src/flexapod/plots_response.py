@@ -14,7 +14,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
-from flexapod.plots import FAINT, INK
+from flexapod.plots import FAINT, INK, dress
 from flexapod.pose import Array
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def frequency_response(
         _span(above)
         below.set(ylabel="phase, deg", ylim=(-190, 190), yticks=[-180, -90, 0, 90, 180], xlabel="frequency, Hz")
         for ax in (above, below):
-            _dress(ax)
+            dress(ax)
             _mark(ax, natural)
             _plain_decades(ax)
         above.legend(loc="best", frameon=True, framealpha=0.85, edgecolor="none", fontsize=9)
@@ -99,7 +99,7 @@ def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figur
         grid[0, column].set_ylabel(f"density, {unit if unit == 'N' else f'({unit})'}²/Hz")
         grid[1, column].set(ylabel=f"RMS below, {unit}", xlabel="frequency, Hz")
         for ax in grid[:, column]:
-            _dress(ax)
+            dress(ax)
             _span(ax)
             _plain_decades(ax)
         grid[1, column].legend(loc="best", fontsize=9, framealpha=0.85, edgecolor="none", title=f"total RMS, {unit}")
@@ -137,7 +137,7 @@ def stepped_ratio(
         if scale == "log":
             _plain_decades(ax)
         _mark(ax, natural, hertz=False)
-        _dress(ax)
+        dress(ax)
         _name(ax, i, name)
         unit = "rad" if i > 2 else "m"
         ax.set_ylabel(f"ratio, {_ratio_unit(unit, dataset.attrs['amplitude_unit'])}")
@@ -159,7 +159,7 @@ def displacements(times: Array, displacement: Array, bound: Array | None = None,
         if bound is not None:
             ax.plot(times, bound[:, i], color=COLOURS[1], lw=1.1, label=bound_name)
             ax.plot(times, -bound[:, i], color=COLOURS[1], lw=1.1)
-        _dress(ax)
+        dress(ax)
         _name(ax, i, name)
         ax.yaxis.set_major_formatter(EngFormatter(unit="rad" if i > 2 else "m"))
         ax.yaxis.set_major_locator(MaxNLocator(5))
@@ -177,15 +177,6 @@ def _figure(width: float, height: float) -> Figure:
 
 def _name(ax: Axes, i: int, output: str) -> None:
     ax.set_title(f"({'abcdef'[i]}) {OUTPUT_NAMES[output]}", loc="left", fontsize=10, color=INK)
-
-
-def _dress(ax: Axes) -> None:
-    ax.grid(True, which="major", color=FAINT, lw=0.3, alpha=0.6)
-    for side in ("top", "right"):
-        ax.spines[side].set_visible(False)
-    ax.tick_params(which="both", color=FAINT, labelcolor=INK, labelsize=9)
-    for axis in (ax.xaxis, ax.yaxis):
-        axis.label.set_color(INK)
 
 
 def _mark(ax: Axes, natural: Iterable[float], hertz: bool = True) -> None:

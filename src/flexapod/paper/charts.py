@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from matplotlib.figure import Figure
 
-from flexapod.plots import FAINT, INK
+from flexapod.plots import FAINT, dress
 from flexapod.pose import Array
 
 if TYPE_CHECKING:
@@ -43,13 +43,6 @@ def rows_of_dots(names: Sequence[str], dots: Iterable[Dots], label: str) -> tupl
     ax.spines["left"].set_visible(False)
     ax.tick_params(axis="y", length=0)
     return figure, ax
-
-
-def dress(ax: Axes) -> None:
-    """Quiet axes."""
-    ax.grid(True, which="major", color=FAINT, lw=0.3, alpha=0.6)
-    ax.spines[["top", "right"]].set_visible(False)
-    ax.tick_params(which="both", color=FAINT, labelcolor=INK, labelsize=9)
 
 
 def percent(share: float) -> str:

@@ -20,7 +20,8 @@ from flexapod.optimal.objectives import Dexterity, LeastIndex, MeanIndex, Object
 from flexapod.optimal.optimise import optimise
 from flexapod.optimal.variables import Variable
 from flexapod.paper import Claim, Part, Settings, agrees
-from flexapod.paper.charts import BLUE, FAINT, GREEN, INK, ORANGE, dress
+from flexapod.paper.charts import BLUE, GREEN, ORANGE
+from flexapod.plots import FAINT, INK, dress
 from flexapod.pose import Array, Pose
 from flexapod.states import JointModel
 

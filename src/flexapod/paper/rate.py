@@ -22,8 +22,9 @@ from flexapod.laws import PID
 from flexapod.linear import linearise
 from flexapod.modal import advised_sampling_time
 from flexapod.paper import Claim, Part, Settings, agrees
-from flexapod.paper.charts import BLUE, FAINT, INK, ORANGE, dress
+from flexapod.paper.charts import BLUE, ORANGE
 from flexapod.paper.frequencies import home
+from flexapod.plots import FAINT, INK, dress
 from flexapod.pose import Array
 from flexapod.sampled import simulate_control
 from flexapod.spectra import flat_spectrum, random_motion
