@@ -6,7 +6,7 @@ DESIGN ?= motion-base
 OUT    ?= out
 SECONDS ?= 300
 
-CORE := CMakeLists.txt $(wildcard src/core/*)
+CORE := CMakeLists.txt $(wildcard src/core/*/*)
 
 .PHONY: report paper test coverage build lint types bench bench-readme docs validation sanitize portable fuzz dist \
         clean web web-check
@@ -21,7 +21,7 @@ test: build ## the whole test suite; with COVERAGE=1 also how much of the Python
 ifdef COVERAGE
 	$(BIN)/coverage erase
 	$(BIN)/coverage run -m pytest
-	$(BIN)/python tests/covered.py
+	$(BIN)/python tests/helpers/covered.py
 else
 	$(BIN)/python -m pytest
 endif
@@ -63,8 +63,8 @@ BARE     = $(realpath $(BIN)/python)
 # The core compiled with AddressSanitizer and UBSan, in a place of its own, and the tests that exercise it, but for long
 # runs and searches.
 SANITIZED  := $(CURDIR)/build/sanitize
-CORE_TESTS := $(addprefix tests/test_,$(addsuffix .py,golden kinematics statics modal linear excitation sweep_kernel \
-                simulate stepped optimise control))
+CORE_TESTS := $(addprefix tests/,core mechanics excitation simulation workspace/test_sweep_kernel.py \
+                vibration/test_stepped.py optimisation/test_optimise.py control/test_control.py)
 LONG       := thousand_periods or keeps_its_energy or progress_goes or settles_to or run_from_rest or better_design or \
               mean_over or angles_and_deflection or holds_up or bad_input or symmetric_family or pareto
 PRELOADED   = $(shell $(CXX) -print-file-name=libasan.so) $(shell $(CXX) -print-file-name=libstdc++.so)
@@ -95,17 +95,17 @@ dist: $(VENV)/.dist ## source distribution and wheel in dist/, checked, installe
 	PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/python -m build
 	$(BIN)/twine check --strict dist/*
 	$(BIN)/check-wheel-contents dist/*.whl
-	$(BIN)/python tests/distribution.py dist
+	$(BIN)/python tests/helpers/distribution.py dist
 	$(PYTHON) -m venv build/dist/venv
 	build/dist/venv/bin/python -m pip install -q -c constraints.txt dist/*.whl
-	cd build/dist && venv/bin/python $(CURDIR)/tests/smoke.py
+	cd build/dist && venv/bin/python $(CURDIR)/tests/helpers/smoke.py
 
 $(VENV)/.dist: $(VENV)/.built
 	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[dist]'
 	touch $@
 
 WEB := web/package.json web/package-lock.json web/index.html web/vite.config.ts web/tsconfig.json \
-       $(wildcard web/src/* web/public/*)
+       $(wildcard web/src/*/* web/public/*)
 
 web: web/node_modules/.built ## the page's bundle, which is committed: needs Node 20
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from benchmarks._contest import OURS
 from benchmarks._results import FIGURE, Results, duration, times
-from flexapod.plots import FAINT, INK, PLATFORM, STRETCHED
+from flexapod.plots.style import FAINT, INK, PLATFORM, STRETCHED
 
 SLOWER, QUICKER, OWN = "#6b7785", STRETCHED, PLATFORM
 STYLE = {"svg.hashsalt": "flexapod", "svg.fonttype": "none", "font.size": 9, "font.family": "sans-serif"}

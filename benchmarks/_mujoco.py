@@ -1,7 +1,7 @@
 """MuJoCo on manipulator II: the step it needs for natural frequencies to 1 %, and its time then.
 
-The model is that of `fx.write_mjcf` without its drawing, constraints as stiff as the step allows. A constant wrench
-along a mode is put on the resting machine; the frequency is that of what follows.
+The model is that of `fx.interchange.write_mjcf` without its drawing, constraints as stiff as the step allows. A
+constant wrench along a mode is put on the resting machine; the frequency is that of what follows.
 """
 
 from __future__ import annotations

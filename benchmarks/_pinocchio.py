@@ -1,15 +1,10 @@
-"""Pinocchio on the same machine: natural frequencies pose by pose, on the model of tests/engine.py."""
-
-import sys
-from pathlib import Path
+"""Pinocchio on the same machine: natural frequencies pose by pose, on the model of tests/oracles/closed_chain.py."""
 
 import numpy as np
 import pinocchio as pin
+from tests.oracles.closed_chain import _add_legs, _add_platform, bench_constraint_dynamics
 
 import flexapod as fx
-
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
-from engine import _add_legs, _add_platform, bench_constraint_dynamics
 
 __all__ = ["PinocchioModes", "bench_constraint_dynamics"]
 

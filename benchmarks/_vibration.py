@@ -30,7 +30,7 @@ def machine() -> tuple[fx.Hexapod, fx.Pose]:
     """Manipulator II with leg parts that a rigid body can have, as other tools refuse the paper's; without friction in
     the spherical joints, for which MuJoCo would need six more bodies.
     """
-    hexapod = fx.nearest_physical(fx.load("mukherjee-ii")).replace({"legs.damping.spherical": 0.0})
+    hexapod = fx.interchange.nearest_physical(fx.load("mukherjee-ii")).replace({"legs.damping.spherical": 0.0})
     return hexapod, fx.home_pose(hexapod)
 
 
@@ -59,8 +59,8 @@ def ring(seen: Any, step: float) -> tuple[float, float]:
     return omega, float(np.hypot(*parts[:2]))
 
 
-def own_run(v: Vibration) -> fx.Run:
+def own_run(v: Vibration) -> fx.simulation.Run:
     """The experiment for Flexapod."""
-    x, y, z = (fx.polynomial(channel, [1.0]) for channel in "xyz")
+    x, y, z = (fx.excitation.polynomial(channel, [1.0]) for channel in "xyz")
     force, moment = (a * x + b * y + c * z for a, b, c in np.split(v.wrench, 2))
-    return fx.Run(v.hexapod, v.pose, force=force, moment=moment)
+    return fx.simulation.Run(v.hexapod, v.pose, force=force, moment=moment)

@@ -15,7 +15,7 @@ import time
 from pathlib import Path
 
 import flexapod as fx
-from flexapod.sweeps.cluster import Cluster
+from flexapod.workspace.store.dask_cluster import Cluster
 
 
 def run(points: int, workers: int, directory: Path, by_dask: bool) -> float:
@@ -27,7 +27,7 @@ def run(points: int, workers: int, directory: Path, by_dask: bool) -> float:
     assert home is not None
     poses = fx.random_poses(fx.Box.about(home, 0.1, 0.35), points)
     with tempfile.TemporaryDirectory(dir=directory) as place:
-        store = fx.SweepStore.create(Path(place) / "map.zarr", hexapod, poses)
+        store = fx.workspace.SweepStore.create(Path(place) / "map.zarr", hexapod, poses)
         if not by_dask:
             start = time.perf_counter()
             store.run(workers)

@@ -5,20 +5,16 @@ wrench, the exact joint model. Pinocchio's is one call of `constraintDynamics` f
 included, on a fixed base, with its model, data and joint coordinates ready. Both take turns.
 """
 
-import sys
 import time
-from pathlib import Path
 from statistics import median
 
 import numpy as np
+from tests.helpers.states import draw_state
 
 import flexapod as fx
 from benchmarks._contest import OURS, Contender, Contest, Plan, cpu_seconds
 from benchmarks._vibration import machine, vibration
 from flexapod import _core
-
-sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
-from states import draw_state
 
 LIMIT = 1.5  # us
 STATES, COPIES = 200, 10  # short calls, so that a busy machine leaves some of them undisturbed

@@ -13,9 +13,9 @@ import numpy as np
 import flexapod as fx
 from benchmarks._arrays import array_matrices
 from benchmarks._contest import OURS, Contender, Contest, Plan, cpu_seconds
-from flexapod.optimal.finish import finish
-from flexapod.optimal.problem import Problem
-from flexapod.optimal.search import Study
+from flexapod.optimisation.global_search import Study
+from flexapod.optimisation.local_search import finish
+from flexapod.optimisation.problem import Problem
 
 POSES = int(float(os.environ.get("FLEXAPOD_BENCH_POSES", "1e6")))
 TRIALS = int(os.environ.get("FLEXAPOD_BENCH_TRIALS", "30"))
@@ -28,11 +28,11 @@ def problem() -> Problem:
     """Radii, half angles and turn of the joint circles, height: least index within the same footprint and stroke."""
     workspace = fx.Workspace.about_home(HALF, ANGLE)
     variables = [
-        fx.JointCircle("base", radius=(0.02, 0.03), half_angle=(0.1, 0.95)),
-        fx.JointCircle("platform", radius=(0.03, 0.06), half_angle=(0.1, 0.95), turn=(-1.4, -0.6)),
+        fx.optimisation.JointCircle("base", radius=(0.02, 0.03), half_angle=(0.1, 0.95)),
+        fx.optimisation.JointCircle("platform", radius=(0.03, 0.06), half_angle=(0.1, 0.95), turn=(-1.4, -0.6)),
         fx.Variable("home.position[2]", 0.07, 0.1),
     ]
-    limits = [fx.Footprint(), fx.Stroke()]
+    limits = [fx.optimisation.Footprint(), fx.optimisation.Stroke()]
     return Problem(fx.load("mukherjee-ii"), variables, fx.LeastIndex(workspace), limits, "universal", None)
 
 
@@ -53,7 +53,7 @@ def contests(plan: Plan) -> list[Contest]:
     p = problem()
     start = p.map.from_values({})
     hexapod = p.map.hexapod_at(start)
-    rows = fx.low_discrepancy(p.box(hexapod), poses).rows(0, max(poses // SHARE, 100))
+    rows = fx.workspace.low_discrepancy(p.box(hexapod), poses).rows(0, max(poses // SHARE, 100))
     ours = float(fx.sweep(hexapod, rows, "omega_1").omega_1.values.min())
     error = abs(numpy_index(hexapod, rows) / ours - 1)
     trial = cpu_seconds(lambda: p.assess_at(start, poses), poses / 1e6)
@@ -70,7 +70,7 @@ def main() -> None:
     start = p.map.from_values({})
     hexapod = p.map.hexapod_at(start)
     box = p.box(hexapod)
-    rows = fx.low_discrepancy(box, POSES).rows(0, POSES)
+    rows = fx.workspace.low_discrepancy(box, POSES).rows(0, POSES)
     few = rows[: POSES // SHARE]
     assert abs(numpy_index(hexapod, few) / fx.sweep(hexapod, few, "omega_1").omega_1.values.min() - 1) < 1e-6
     rounds = [(timed(lambda: p.assess_at(start, POSES)), timed(lambda: numpy_index(hexapod, few))) for _ in range(3)]

@@ -1,9 +1,9 @@
 """Time per simulated second of the complete machine, against SciPy, SUNDIALS and MuJoCo.
 
 Manipulators I and II, base shaken by 1e-6 m in z at the third mode, relative tolerance 1e-9. SciPy and SUNDIALS call
-the very same compiled equations (`flexapod.trajectory.equations`) from Python; one line more is SciPy with them written
-in Python around `fx.forward_dynamics`. The candidates take turns and the least CPU time of each counts, so that a busy
-machine slows all alike. scikit-sundae and mujoco are optional: pip install scikit-sundae mujoco.
+the very same compiled equations (`flexapod.simulation.integrator.equations`) from Python; one line more is SciPy with
+them written in Python around `fx.forward_dynamics`. The candidates take turns and the least CPU time of each counts,
+so that a busy machine slows all alike. scikit-sundae and mujoco are optional: pip install scikit-sundae mujoco.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import flexapod as fx
 from benchmarks._contest import OURS, Contender, Contest, Plan, cpu_seconds
 from benchmarks._machine import missing
 from benchmarks._vibration import WANTED, Vibration, machine, own_run, ring, vibration
-from flexapod.trajectory import Method, equations, integrate
+from flexapod.simulation.integrator import Method, equations, integrate
 
 TURNS = 5
 RTOL = 1e-9
@@ -55,7 +55,7 @@ TOLD = {  # the candidates of the table of all tools, and in which words
 def _against_integrators(plan: Plan) -> Contest:
     name = "mukherjee-ii"
     hexapod, pose = fx.load(name), fx.Pose(MACHINES[name])
-    run = fx.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, fx.natural_modes(hexapod, pose).omega[2]))
+    run = fx.simulation.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, fx.natural_modes(hexapod, pose).omega[2]))
     found = {c.name: c for c in _candidates(run, plan.has("scikit-sundae"))}
     contenders = []
     for name, how in TOLD.items():
@@ -130,7 +130,7 @@ def main() -> None:
     for name, position in MACHINES.items():
         hexapod, pose = fx.load(name), fx.Pose(position)
         omega = fx.natural_modes(hexapod, pose).omega
-        run = fx.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, omega[2]))
+        run = fx.simulation.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, omega[2]))
         print(f"{name}: modes {omega[0]:.4g} to {omega[-1]:.5g} rad/s, rtol {RTOL:g}")
         _table(run, _candidates(run, not missing("scikit-sundae")))
     print("mukherjee-ii with damped legs")
@@ -142,7 +142,7 @@ def main() -> None:
         _mujoco.main()
 
 
-def _candidates(run: fx.Run, sundials: bool) -> list[Candidate]:
+def _candidates(run: fx.simulation.Run, sundials: bool) -> list[Candidate]:
     def flexapod(duration: float, **options: Any) -> Any:
         found = integrate([run], [duration], method=Method(rtol=RTOL, threads=1), motions=False, **options)
         return found.relative[0, 0]
@@ -174,7 +174,7 @@ def _candidates(run: fx.Run, sundials: bool) -> list[Candidate]:
     return candidates + (_sundials(eq, y0, scale) if sundials else [])
 
 
-def _written_in_python(run: fx.Run) -> Callable[[float, Any], Any]:
+def _written_in_python(run: fx.simulation.Run) -> Callable[[float, Any], Any]:
     """Eq. 35 as a user writes it: absolute position, quaternion, velocities."""
     hexapod = run.hexapod
     unstretched = fx.hold(hexapod, run.pose).unstretched_length
@@ -190,13 +190,13 @@ def _written_in_python(run: fx.Run) -> Callable[[float, Any], Any]:
     return rates
 
 
-def _seen(run: fx.Run, t: float, z: Any) -> Any:
+def _seen(run: fx.simulation.Run, t: float, z: Any) -> Any:
     """Displacement from rest seen from the base, for a base that does not turn."""
     base = run.base_motion.motion(t)
     return np.concatenate([z[:3] - base.pose.position - run.pose.position, Rotation.from_quat(z[3:7]).as_rotvec()])
 
 
-def _scale(run: fx.Run) -> Any:
+def _scale(run: fx.simulation.Run) -> Any:
     """Largest displacement, rotation, velocity, angular velocity, each three times: what absolute errors refer to."""
     found = integrate([run], np.linspace(0, 0.02, 2000))
     x, rate = found.relative[0], np.gradient(found.relative[0], 1e-5, axis=0)
@@ -216,7 +216,7 @@ def _sundials(eq: Any, y0: Any, scale: Any) -> list[Candidate]:
     return [Candidate(f"SUNDIALS {m}", 0.02, lambda T, m=m: solve(T, m)) for m in ("Adams", "BDF")]
 
 
-def _table(run: fx.Run, candidates: list[Candidate]) -> None:
+def _table(run: fx.simulation.Run, candidates: list[Candidate]) -> None:
     least = dict.fromkeys((c.name for c in candidates), np.inf)
     error = {}
     for turn in range(TURNS):
@@ -234,7 +234,7 @@ def _table(run: fx.Run, candidates: list[Candidate]) -> None:
         )
 
 
-def _error(run: fx.Run, duration: float, end: Any) -> float:
+def _error(run: fx.simulation.Run, duration: float, end: Any) -> float:
     exact = integrate([run], [0.5 * duration, duration], method=Method(rtol=1e-13)).relative[0, -1]
     return max(np.abs(end[i] - exact[i]).max() / np.abs(exact[i]).max() for i in (slice(0, 3), slice(3, 6)))
 
@@ -243,7 +243,7 @@ def _damped() -> None:
     """Where an implicit method would be better: legs with ever more damping, 0.02 s at rtol 1e-6."""
     for damping in (1e-3, 1e4, 1e5, 1e6):
         hexapod = fx.load("mukherjee-ii").replace({"legs.damping.prismatic": damping})
-        run = fx.Run(hexapod, fx.Pose(MACHINES["mukherjee-ii"]), base_motion=fx.harmonic("z", 1e-6, 750.0))
+        run = fx.simulation.Run(hexapod, fx.Pose(MACHINES["mukherjee-ii"]), base_motion=fx.harmonic("z", 1e-6, 750.0))
         eq, scale = equations(run), _scale(run)
         began = time.process_time()
         integrate([run], [0.02], method=Method(rtol=1e-6, threads=1), motions=False)
@@ -256,7 +256,7 @@ def _damped() -> None:
 
 def _many() -> None:
     hexapod, pose = fx.load("mukherjee-ii"), fx.Pose(MACHINES["mukherjee-ii"])
-    runs = [fx.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, w)) for w in np.linspace(300, 900, 200)]
+    runs = [fx.simulation.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, w)) for w in np.linspace(300, 900, 200)]
     for threads in (1, None):
         began = time.perf_counter()
         integrate(runs, [0.1], method=Method(rtol=RTOL, threads=threads), motions=False)

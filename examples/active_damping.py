@@ -15,15 +15,15 @@ def main() -> float:
     """RMS vertical acceleration with control over that without."""
     machine = fx.load("cubic-isolator")
     home = fx.home_pose(machine)
-    locus = fx.root_locus(machine, home, "force", gains=np.geomspace(2, 200, 40), leak=LEAK)
+    locus = fx.control.root_locus(machine, home, "force", gains=np.geomspace(2, 200, 40), leak=LEAK)
     gain = locus.attrs["best_gain"]
     passive = fx.linearise(machine, home).modes().damping_ratio.min()
     print(f"damping ratio: {passive:.3f} without, at best {locus.attrs['best_damping']:.3f} with gain {gain:.1f} rad/s")
 
-    controller = fx.ForceFeedback(gain, LEAK).on(fx.linearise(machine, home)).sampled(2e-3)
-    base = fx.random_motion("z", fx.flat_spectrum(0.01, 5.0, 200.0), seed=1)
-    hardware = fx.Hardware(force_limit=5.0, noise={"leg_force": 1e-3})
-    run = fx.simulate_control(machine, home, controller, base, 6.0, hardware=hardware, after=1.0)
+    controller = fx.control.ForceFeedback(gain, LEAK).on(fx.linearise(machine, home)).sampled(2e-3)
+    base = fx.random_motion("z", fx.excitation.flat_spectrum(0.01, 5.0, 200.0), seed=1)
+    hardware = fx.control.Hardware(force_limit=5.0, noise={"leg_force": 1e-3})
+    run = fx.control.simulate_control(machine, home, controller, base, 6.0, hardware=hardware, after=1.0)
     rms = run.rms_acceleration.sel(axis="z")
     predicted = run.predicted_rms_acceleration.sel(axis="z")
     for case in ("passive", "controlled"):

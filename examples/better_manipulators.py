@@ -24,21 +24,23 @@ def main(trials: int = 0, points: int = 2**12, verify: int = 2**17) -> dict[str,
             for axis in (0, 1)
         ]
         limits = [
-            fx.Footprint(),
-            fx.Footprint(plate="platform"),
-            fx.Stroke(over=workspace),
-            fx.LegClearance(clearance, over=workspace),
+            fx.optimisation.Footprint(),
+            fx.optimisation.Footprint(plate="platform"),
+            fx.optimisation.Stroke(over=workspace),
+            fx.optimisation.LegClearance(clearance, over=workspace),
         ]
         options = {"trials": trials, "points": points, "verify": verify}
         best = fx.optimise(machine, variables, fx.LeastIndex(workspace), limits, **options)
-        dexterous = fx.optimise(machine, variables, fx.Dexterity(workspace), limits, **options)
+        dexterous = fx.optimise(machine, variables, fx.optimisation.Dexterity(workspace), limits, **options)
         box = workspace.box(np.concatenate([machine.home.position, machine.home.rpy]))
         told[name] = {
             "as printed": best.start_index,
             "best": best.index,
             "best conditioned": fx.worst_pose(dexterous.hexapod, box).omega_1,
             "cond(H) as printed": 1 / dexterous.start_index,
-            "cond(H) best": float(fx.sweep(best.hexapod, fx.low_discrepancy(box, points), "cond_H").cond_H.max()),
+            "cond(H) best": float(
+                fx.sweep(best.hexapod, fx.workspace.low_discrepancy(box, points), "cond_H").cond_H.max()
+            ),
             "cond(H) best conditioned": 1 / dexterous.index,
         }
         print(f"{name}, over {workspace!r}, least index and largest cond(H):")

@@ -15,7 +15,7 @@ def main() -> float:
     machine = fx.load("cubic-isolator")
     home = fx.home_pose(machine)
 
-    def lowest(stiffness: float) -> tuple[float, fx.DampedModes]:
+    def lowest(stiffness: float) -> tuple[float, fx.mechanics.DampedModes]:
         soft = machine.replace({"legs.stiffness": stiffness})
         return float(fx.stability_index(soft, home)), fx.linearise(soft, home).modes()
 

@@ -15,7 +15,7 @@ def main() -> float:
     machine = fx.load("precision-positioner")
     tolerances = [
         fx.Uncertain("legs.stiffness", 0.10),
-        fx.Payload(mass=(0.0, 4.0), position=((-0.03, 0.03), (-0.03, 0.03), (0.10, 0.15))),
+        fx.optimisation.Payload(mass=(0.0, 4.0), position=((-0.03, 0.03), (-0.03, 0.03), (0.10, 0.15))),
     ]
     found = fx.robustness(machine, tolerances, samples=2**11)
     hertz = 1 / (2 * np.pi)

@@ -12,14 +12,14 @@ def main() -> float:
     """The largest leg force, N."""
     machine = fx.load("motion-base")
     home = fx.home_pose(machine)
-    sea = fx.sea_spectrum(height=4.0, period=9.0)
+    sea = fx.excitation.sea_spectrum(height=4.0, period=9.0)
     peak = 2 * np.pi / 9.0
     ship = {  # motion of the deck per metre of wave: a simple ship that follows long waves and not short ones
         "z": lambda w: 1 / (1 + (w / peak) ** 4),
         "roll": lambda w: 0.05j / (1 - (w / 0.6) ** 2 + 0.2j * w / 0.6),
         "pitch": lambda w: 0.02j / (1 + (w / peak) ** 4),
     }
-    deck = fx.sea_motion(sea, ship, seed=3, lines=60).ramped(5.0)
+    deck = fx.excitation.sea_motion(sea, ship, seed=3, lines=60).ramped(5.0)
     run = fx.simulate(machine, home, base_motion=deck, duration=60.0, samples=1201, rtol=1e-6, energies=False)
 
     rest = fx.hold(machine, home).leg_force

@@ -16,7 +16,7 @@ def main() -> float:
     hertz = modes.omega / (2 * np.pi)
     for number, (f, mode) in enumerate(zip(hertz, fx.describe_modes(machine, home), strict=True), 1):
         print(f"mode {number}: {f:6.1f} Hz, {mode.text}")
-    for first, second in fx.near_repeated(modes.omega):
+    for first, second in fx.mechanics.near_repeated(modes.omega):
         print(f"modes {first + 1} and {second + 1} are a pair: any mixture of the two is a mode as well")
     print(f"dynamic stability index: {fx.stability_index(machine, home):.1f} rad/s = {hertz[0]:.1f} Hz")
     return float(hertz[0])

@@ -8,7 +8,7 @@ import sys
 import numpy as np
 
 import flexapod as fx
-from flexapod import plots_response
+from flexapod.plots import response
 
 SENSOR = [0.10, 0.0, 0.12]  # m, platform frame
 
@@ -30,7 +30,7 @@ def main(path: str | None = None) -> float:
     static = fx.transmissibility(machine, home, [0.0], point=SENSOR).compliance.sel(output="z", wrench="z")
     print(f"a hand that presses the sensor down with 10 N moves it by {1e6 * 10 * float(np.abs(static[0])):.2f} um")
     if path is not None:
-        plots_response.frequency_response(sensor, given="x", natural=omega).savefig(path)
+        response.frequency_response(sensor, given="x", natural=omega).savefig(path)
     return float(np.abs(sensor.absolute.sel(output="z", base="x")).max())
 
 

@@ -15,7 +15,7 @@ RADIUS, HEIGHT, MASS, STIFFNESS = 0.30, 0.40, 25.0, 5e6  # m, m, kg, N/m
 
 def main(path: str | None = None) -> float:
     """The frequency of the vertical mode, Hz. path: where to save the design."""
-    machine = fx.Hexapod.from_toml(fx.template("first machine")).replace(
+    machine = fx.Hexapod.from_toml(fx.design.template("first machine")).replace(
         {
             "base.circle": {"radius": RADIUS, "angles_deg": [50, 70, 170, 190, 290, 310]},
             "platform.circle": {"radius": RADIUS, "angles_deg": [10, 110, 130, 230, 250, 350]},

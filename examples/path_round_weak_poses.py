@@ -21,7 +21,7 @@ def main() -> float:
     print(f"straight line: {plan.straight_length:.3f} m, least index {straight.minimum:.2g} rad/s,", end=" ")
     print(f"{len(straight.crossings)} singular poses passed")
     print(f"planned: {plan.length:.3f} m, least index {planned.minimum:.2f} rad/s at t = {planned.minimum_time:.2f} s")
-    loads = fx.path_loads(machine, plan.path)
+    loads = fx.paths.path_loads(machine, plan.path)
     print(f"legs on it: {float(loads.peak_force.max()):.0f} N at most, {1e3 * float(loads.stroke.max()):.0f} mm travel")
     print("answer:", "the plan keeps the bound" if planned.above else "the plan misses the bound", f"of {BOUND} rad/s")
     return planned.minimum

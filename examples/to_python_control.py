@@ -3,9 +3,9 @@
 `to_control` gives the exact tangent as a state space with named signals; what is needed is picked by name.
 """
 
-import control
 import numpy as np
 
+import control
 import flexapod as fx
 
 STIFFENING, DAMPING, FILTER = 4e4, 400.0, 2000.0  # N/m and N s/m on each leg, rad/s

@@ -16,7 +16,7 @@ def main() -> float:
     machine = fx.load("cubic-isolator")
     home = fx.home_pose(machine)
     box = fx.Box.about(home, 0.002, np.radians(1))  # +-2 mm and +-1 degree in all six coordinates
-    sweep = fx.sweep(machine, fx.low_discrepancy(box, 2**12), ("omega_1", "cond_H", "within_limits"))
+    sweep = fx.sweep(machine, fx.workspace.low_discrepancy(box, 2**12), ("omega_1", "cond_H", "within_limits"))
     summary = fx.summarise(sweep, at_least=WANTED)
     print(f"at home the index is {fx.stability_index(machine, home):.2f} rad/s")
     print(f"over {summary.poses} poses: {summary.worst.omega_1:.2f} to {summary.best.omega_1:.2f} rad/s")

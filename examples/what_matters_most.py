@@ -29,7 +29,7 @@ def main() -> float:
     print(f"  1 % heavier rods:   {rods:+.3f} %")
     print(f"  mass centre 1 mm up: {100 * height:+.3f} %")
     print(f"  most of all joints: base joint {leg + 1} by 1 mm along {'xyz'[axis]}: {100 * joints[leg, axis]:+.3f} %")
-    share = fx.energy_shares(machine, pose).strain[:, 0]
+    share = fx.mechanics.energy_shares(machine, pose).strain[:, 0]
     print(f"leg {share.argmax() + 1} holds {share.max():.1%} of the mode's strain energy: stiffen it first")
     return float(legs.max())
 

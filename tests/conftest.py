@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
+from tests.helpers.claims import FILE, Ledger, committed
 
-from claims import FILE, Ledger, committed
 from flexapod.cli import main
 
 # Hypothesis draws the same examples in every run, so that a failure is never a matter of luck.

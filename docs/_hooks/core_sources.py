@@ -1,4 +1,4 @@
-"""Pages that show the sources of the core, and links to what they define: `[the coupling](core:leg.hpp#coupling)`."""
+"""Pages that show the sources of the core, and links to what they define: `[legs](core:model/leg.hpp#LegAxes)`."""
 
 from __future__ import annotations
 
@@ -50,15 +50,15 @@ def _line(lines: list[str], first: int, name: str) -> int | None:
 def page(path: Path) -> str:
     """Markdown of the page that shows a file."""
     front = "---\nhide: [navigation, toc]\nsearch: {exclude: true}\n---\n\n"
-    title = f"# {path.name}\n\n`src/core/{path.name}`\n\n"
+    title = f"# {path.name}\n\n`src/core/{path.relative_to(CORE).as_posix()}`\n\n"
     return f'{front}{title}```cpp linenums="1"\n{path.read_text(encoding="utf-8").rstrip()}\n```\n'
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
     from mkdocs.structure.files import File
 
-    for path in sorted(CORE.glob("*.[hc]pp")):
-        files.append(File.generated(config, f"core/{path.name}.md", content=page(path)))
+    for path in sorted(CORE.rglob("*.[hc]pp")):
+        files.append(File.generated(config, f"core/{path.relative_to(CORE).as_posix()}.md", content=page(path)))
     return files
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flexapod.schema import KEYS, SHAPES, Key
-from flexapod.units import UNITS, printed, si_unit
+from flexapod.design.schema import KEYS, SHAPES, Key
+from flexapod.design.units import UNITS, printed, si_unit
 
 if TYPE_CHECKING:
     from mkdocs.config.defaults import MkDocsConfig

@@ -1,12 +1,13 @@
-"""The reference of the public Python names, from their docstrings: a page for each topic, and one that lists them all.
+"""The reference of the public Python names, from their docstrings: a page for each package, and a list of all.
 
-A topic is a list of the package's modules, so a new public name of a module that is there appears by itself, and a new
-module that belongs to no topic stops the build.
+The packages, their names and what each is for are read from the library, so that a new name appears by itself.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING
 
 import flexapod
 
@@ -16,95 +17,111 @@ if TYPE_CHECKING:
     from mkdocs.config.defaults import MkDocsConfig
     from mkdocs.structure.files import Files
 
-
-class Topic(NamedTuple):
-    title: str
-    about: str
-    modules: tuple[str, ...]
-
-
-TOPICS = {
-    "designs": Topic("Designs", "A machine: read, checked, changed, written.", ("hexapod", "units", "schema")),
-    "kinematics": Topic("Poses and kinematics", "Where the platform is, and what the legs do.", ("pose", "kinematics")),
-    "dynamics": Topic("Dynamics and statics", "Forces, motions and energies at one state.", ("dynamics", "statics")),
-    "modes": Topic("Modes and the tangent", "Free vibration about a pose.", ("modal", "linear")),
-    "workspace": Topic("Workspace", "Many poses at once.", ("posesets", "sweeps")),
-    "simulation": Topic(
-        "Simulation",
-        "The complete machine in time, and what drives it.",
-        ("excitation", "recordings", "trajectory", "simulation", "animate"),
-    ),
-    "vibration": Topic("Vibration", "Response by frequency, and random motion.", ("spectra", "response", "stepped")),
-    "optimal-design": Topic("Optimal design", "Searches, trade-offs and uncertainty.", ("optimal", "robust")),
-    "paths": Topic("Paths", "Motions through the workspace.", ("waypoints", "path", "requirements", "planning")),
-    "control": Topic(
-        "Control",
-        "Laws, their poles, and the machine under them.",
-        (
-            "sampling",
-            "feedback",
-            "laws",
-            "assessment",
-            "position_loops",
-            "damping_loops",
-            "isolators",
-            "sampled",
-            "schedule",
-        ),
-    ),
-    "interchange": Topic(
-        "Exchange with other tools", "The same machine in other tools' formats.", ("jointfile", "interchange")
-    ),
-    "errors": Topic("Errors", "All of them are `FlexapodError`.", ("errors",)),
-}
+#: Packages in the order of the navigation. What is at the top and in none of them stands on the page `top`.
+PACKAGES = (
+    "design",
+    "mechanics",
+    "workspace",
+    "excitation",
+    "simulation",
+    "vibration",
+    "paths",
+    "optimisation",
+    "control",
+    "interchange",
+    "plots",
+    "errors",
+)
 
 
-def names_of(topic: Topic) -> list[str]:
-    """The public names of a topic, in the order of its modules."""
-    homes = [home for module in topic.modules for home in flexapod._HOMES if home.split(".")[0] == module]
-    return [name for home in homes for name in flexapod._HOMES[home]]
+def _package(name: str) -> ModuleType:
+    return flexapod if name == "top" else import_module(f"flexapod.{name}")
 
 
-def unplaced() -> set[str]:
-    """Public names that no topic shows."""
-    shown = {name for topic in TOPICS.values() for name in names_of(topic)}
-    return set(flexapod.__all__) - shown - {"__version__"}
+def names_of(package: str) -> list[str]:
+    """Full names of what a page shows, without `flexapod.` in front; each is on the page of its own package."""
+    if package == "errors":
+        module = import_module("flexapod.errors")
+        names = sorted(name for name, thing in vars(module).items() if isinstance(thing, type) and name != "Any")
+        return [name if name in flexapod.__all__ else f"errors.{name}" for name in names]
+    if package == "top":
+        return [name for name in flexapod.__all__ if _home(name) == "pose"]
+    inside = [
+        name for name in _package(package).__all__ if not isinstance(getattr(_package(package), name), ModuleType)
+    ]
+    return [name if name in flexapod.__all__ else f"{package}.{name}" for name in inside]
 
 
-def page(topic: Topic) -> str:
-    names = names_of(topic)
-    return f"# {topic.title}\n\n{topic.about}\n\n" + "\n\n".join(f"::: flexapod.{name}" for name in names) + "\n"
+def _home(name: str) -> str:
+    """The folder or module directly below flexapod where a name of the top is defined."""
+    thing = getattr(flexapod, name)
+    return "" if isinstance(thing, ModuleType) else getattr(thing, "__module__", "").split(".")[1]
+
+
+def thing(name: str) -> object:
+    """What stands behind `natural_modes` or `control.lqg`."""
+    found: object = flexapod
+    for part in name.split("."):
+        found = getattr(found, part)
+    return found
+
+
+def about(package: str) -> str:
+    doc = "Where a body is and how it moves." if package == "top" else (_package(package).__doc__ or "")
+    return doc.strip().split("\n\n")[0].replace("\n", " ")
+
+
+def title(package: str) -> str:
+    return "Poses and motions" if package == "top" else package.capitalize()
+
+
+def file(package: str) -> str:
+    return f"api/{'pose' if package == 'top' else package}.md"
+
+
+def page(package: str) -> str:
+    shown = "\n\n".join(f"::: flexapod.{name}" for name in names_of(package))
+    extra = "" if package != "plots" else "\n\n" + "\n\n".join(f"::: flexapod.plots.{name}" for name in _modules())
+    return f"# {title(package)}\n\n{about(package)}\n\n{shown}{extra}\n"
+
+
+def _modules() -> list[str]:
+    """The modules of figures, which are public as a whole."""
+    plots = _package("plots")
+    return [name for name in plots.__all__ if isinstance(getattr(plots, name), ModuleType)]
 
 
 def index() -> str:
-    """All names by topic, with the first line of what each says."""
+    """All names by package, with the first line of what each says."""
     lines = ["# Python", "", "`import flexapod as fx` gives all of these. SI units and rad/s throughout.", ""]
-    for file, topic in TOPICS.items():
-        lines += [f"## [{topic.title}]({file}.md)", "", topic.about, "", "| name | what it is |", "|---|---|"]
-        lines += [f"| [`{name}`][flexapod.{name}] | {_first_line(name)} |" for name in names_of(topic)]
+    for package in ("top", *PACKAGES):
+        lines += [
+            f"## [{title(package)}]({file(package)[4:]})",
+            "",
+            about(package),
+            "",
+            "| name | what it is |",
+            "|---|---|",
+        ]
+        lines += [f"| [`{name}`][flexapod.{name}] | {_first_line(name)} |" for name in names_of(package)]
         lines.append("")
     return "\n".join(lines)
 
 
 def _first_line(name: str) -> str:
-    first = (getattr(flexapod, name).__doc__ or "").strip().split("\n\n")[0]
+    first = (thing(name).__doc__ or "").strip().split("\n\n")[0]
     return " ".join(first.split()).replace("|", "\\|")
 
 
 def pages() -> Iterator[tuple[str, str]]:
     yield "api/index.md", index()
-    for file, topic in TOPICS.items():
-        yield f"api/{file}.md", page(topic)
+    for package in ("top", *PACKAGES):
+        yield file(package), page(package)
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:
-    from mkdocs.exceptions import PluginError
     from mkdocs.structure.files import File
 
-    if missing := unplaced():
-        raise PluginError(
-            f"docs/_hooks/reference.py: no topic has the modules of {sorted(missing)}; add them to TOPICS"
-        )
     for path, content in pages():
         files.append(File.generated(config, path, content=content))
     return files

@@ -7,6 +7,7 @@ import numpy as np
 
 import flexapod as fx
 from flexapod import plots
+from flexapod.plots import style
 
 
 def main() -> None:
@@ -24,7 +25,7 @@ def main() -> None:
         place = (i % 3 / 3, 0.49 - 0.49 * (i // 3), 1 / 3, 0.44)
         ax = right.add_subplot(projection="3d", position=place)
         plots.mode(hexapod, pose, modes, i + 1, ax)
-        ax.set_title(f"{hz:.2f} Hz, {words[i]}", y=1.04, fontsize=11, color=plots.INK)
+        ax.set_title(f"{hz:.2f} Hz, {words[i]}", y=1.04, fontsize=11, color=style.INK)
     figure.savefig(Path(__file__).with_name("modes.png"), dpi=110)
 
 

@@ -6,7 +6,7 @@ import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch, FancyBboxPatch, Polygon
 
-from flexapod import plots
+from flexapod.plots import style
 
 HERE = Path(__file__).parent
 SOURCE = HERE.parents[1] / "src"
@@ -81,9 +81,9 @@ def house() -> plt.Figure:
     ax.set_ylim(0.7, 8.9)
     top = 7.75
     ax.add_patch(
-        Polygon([(-0.25, top + 0.12), (5.0, 8.75), (10.25, top + 0.12)], facecolor="#eef1f4", edgecolor=plots.FAINT)
+        Polygon([(-0.25, top + 0.12), (5.0, 8.75), (10.25, top + 0.12)], facecolor="#eef1f4", edgecolor=style.FAINT)
     )
-    ax.text(5.0, 8.16, "import flexapod as fx", family="monospace", fontsize=12, ha="center", color=plots.INK)
+    ax.text(5.0, 8.16, "import flexapod as fx", family="monospace", fontsize=12, ha="center", color=style.INK)
     for floor, rows in ROOMS.items():
         color, name, words = floor
         height = 0.52 + 0.82 * len(rows) + (0.36 if floor is LIBRARY else 0.0)
@@ -100,21 +100,21 @@ def house() -> plt.Figure:
             )
         )
         ax.text(0.14, top - 0.32, name, fontsize=13, fontweight="bold", color=color, va="center")
-        ax.text(9.86, top - 0.32, words, fontsize=9.5, color=plots.INK, va="center", ha="right")
+        ax.text(9.86, top - 0.32, words, fontsize=9.5, color=style.INK, va="center", ha="right")
         level = top - 0.56
         for row in rows:
             level = _row(ax, row, level, color)
         top = bottom
-    arrow = {"arrowstyle": "-|>", "mutation_scale": 18, "linewidth": 2.2, "color": plots.BASE}
+    arrow = {"arrowstyle": "-|>", "mutation_scale": 18, "linewidth": 2.2, "color": style.BASE}
     ax.add_patch(FancyArrowPatch((-0.3, 7.6), (-0.3, top + 0.15), **arrow))
-    ax.text(-0.48, (7.6 + top) / 2, "imports only point down", rotation=90, va="center", ha="center", color=plots.BASE)
+    ax.text(-0.48, (7.6 + top) / 2, "imports only point down", rotation=90, va="center", ha="center", color=style.BASE)
     return figure
 
 
 def _row(ax: Axes, row: list[tuple[str, str]], top: float, color: str) -> float:
     """Rooms side by side, as wide as their words; returns where the next row begins."""
     if not row[0][1]:
-        ax.text(0.14, top - 0.14, row[0][0], fontsize=9.5, style="italic", color=plots.INK, va="center")
+        ax.text(0.14, top - 0.14, row[0][0], fontsize=9.5, style="italic", color=style.INK, va="center")
         row, top = row[1:], top - 0.32
     wide = [max(max(map(len, modules.split("\n"))) * 1.12, len(name) * 1.25) + 3.0 for name, modules in row]
     left, scale = 0.12, (9.76 - 0.1 * (len(row) - 1)) / sum(wide)
@@ -131,7 +131,7 @@ def _row(ax: Axes, row: list[tuple[str, str]], top: float, color: str) -> float:
         ax.add_patch(box)
         middle = left + width * scale / 2
         two = "\n" in modules
-        ax.text(middle, top - (0.17 if two else 0.22), name, fontsize=9.5, ha="center", va="center", color=plots.INK)
+        ax.text(middle, top - (0.17 if two else 0.22), name, fontsize=9.5, ha="center", va="center", color=style.INK)
         ax.text(
             middle, top - (0.49 if two else 0.51), modules, family="monospace", fontsize=8, ha="center", va="center",
             color=color, linespacing=1.25,

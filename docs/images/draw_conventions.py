@@ -8,10 +8,10 @@ from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch, Polygon
 
 import flexapod as fx
-from flexapod import plots
+from flexapod.plots import style
 
 HERE = Path(__file__).parent
-X, Y, Z = (color for _, color in plots.AXES)
+X, Y, Z = (color for _, color in style.AXES)
 VECTOR = "#cc79a7"  # vectors of the equations; Okabe and Ito
 MACHINE = fx.load("motion-base")
 
@@ -37,17 +37,17 @@ class Drawing:
         ax.set_aspect("equal")
         ax.set_axis_off()
 
-    def line(self, *points, color: str = plots.INK, width: float = 1.2, dashes: str = "-", order: float = 2) -> None:
+    def line(self, *points, color: str = style.INK, width: float = 1.2, dashes: str = "-", order: float = 2) -> None:
         x, y = self.camera(np.array(points)).T
         self.ax.plot(x, y, color=color, lw=width, ls=dashes, solid_capstyle="round", zorder=order)
 
     def arrow(self, start, end, color: str, width: float = 1.8, head: float = 11, order: float = 5) -> None:
         a, b = self.camera(start), self.camera(end)
-        style = {"arrowstyle": "-|>", "mutation_scale": head, "shrinkA": 0, "shrinkB": 0, "linewidth": width}
-        self.ax.add_patch(FancyArrowPatch(a, b, color=color, zorder=order, **style))
+        arrow_style = {"arrowstyle": "-|>", "mutation_scale": head, "shrinkA": 0, "shrinkB": 0, "linewidth": width}
+        self.ax.add_patch(FancyArrowPatch(a, b, color=color, zorder=order, **arrow_style))
         self.ax.update_datalim([a, b])
 
-    def words(self, at, text: str, color: str = plots.INK, shift=(0.0, 0.0), size: float = 13, **more) -> None:
+    def words(self, at, text: str, color: str = style.INK, shift=(0.0, 0.0), size: float = 13, **more) -> None:
         x, y = self.camera(at)
         more = {"ha": "center", "va": "center", "zorder": 9} | more
         box = {"boxstyle": "round,pad=0.12", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}
@@ -91,19 +91,19 @@ def machine_and_frames() -> plt.Figure:
     platform = fx.Pose(place(base, seat.position), base.matrix @ seat.matrix)
     b, p = place(base, MACHINE.base_joints), place(platform, MACHINE.platform_joints)
     inertial = fx.Pose((0.0, 0.0, 0.0))
-    draw.plate(b, plots.BASE)
-    draw.plate(p, plots.PLATFORM)
+    draw.plate(b, style.BASE)
+    draw.plate(p, style.PLATFORM)
     for i in range(6):
         middle = b[i] + 0.55 * (p[i] - b[i])
-        draw.line(b[i], middle, color=plots.LEG, width=5.0)
-        draw.line(middle, p[i], color=plots.LEG, width=2.4)
+        draw.line(b[i], middle, color=style.LEG, width=5.0)
+        draw.line(middle, p[i], color=style.LEG, width=2.4)
         out = draw.camera(b[i] - base.position)
         draw.words(b[i], str(i + 1), size=11, shift=13 * out / np.linalg.norm(out))
-    draw.dots(b, plots.BASE)
-    draw.dots(p, plots.PLATFORM)
+    draw.dots(b, style.BASE)
+    draw.dots(p, style.PLATFORM)
     shown = 4  # leg 5
-    draw.arrow(inertial.position, base.position, plots.FAINT)
-    draw.arrow(inertial.position, platform.position, plots.FAINT)
+    draw.arrow(inertial.position, base.position, style.FAINT)
+    draw.arrow(inertial.position, platform.position, style.FAINT)
     draw.arrow(base.position, b[shown], VECTOR)
     draw.arrow(platform.position, p[shown], VECTOR)
     draw.arrow(b[shown], p[shown], VECTOR, 2.4, 14)
@@ -111,8 +111,8 @@ def machine_and_frames() -> plt.Figure:
         draw.triad(pose, 0.75)
         draw.words(pose.position, rf"$\mathbf{{{name}}}$", shift=shift, size=14)
     halfway = (
-        (inertial.position, base.position, r"$\mathbf{t}_b$", plots.INK, (4, -13)),
-        (inertial.position, platform.position, r"$\mathbf{t}_p$", plots.INK, (-10, 10)),
+        (inertial.position, base.position, r"$\mathbf{t}_b$", style.INK, (4, -13)),
+        (inertial.position, platform.position, r"$\mathbf{t}_p$", style.INK, (-10, 10)),
         (base.position, b[shown], r"$\mathbf{q}_b$", VECTOR, (-2, -14)),
         (platform.position, p[shown], r"$\mathbf{q}_p$", VECTOR, (10, 10)),
         (b[shown], p[shown], r"$\mathbf{S}$", VECTOR, (15, 0)),
@@ -135,23 +135,23 @@ def one_leg() -> plt.Figure:
     draw = Drawing(ax, Camera(120, 14))
     draw.line(b, waist, color="#b9c0c8", width=15)
     draw.line(waist, p, color="#d7dce1", width=8, order=1.9)
-    draw.line(b, p, color=plots.FAINT, width=1.0, dashes=(0, (6, 3, 1, 3)), order=3)
-    draw.line(b - 0.13 * L * k, b, color=plots.INK, width=1.2, dashes="--", order=3)
+    draw.line(b, p, color=style.FAINT, width=1.0, dashes=(0, (6, 3, 1, 3)), order=3)
+    draw.line(b - 0.13 * L * k, b, color=style.INK, width=1.2, dashes="--", order=3)
     arrows = (
         (s, 0.36, X, r"$x = \mathbf{s}$", (30, -40)),
         (y, 0.36, Y, r"$y$, along $\mathbf{k}\times\mathbf{s}$", (26, -15)),
         (z, 0.36, Z, r"$z = x\times y$", (18, -12)),
-        (k, 0.42, plots.INK, r"$\mathbf{k}$, fixed in the base", (70, -2)),
+        (k, 0.42, style.INK, r"$\mathbf{k}$, fixed in the base", (70, -2)),
     )
     for direction, length, color, name, shift in arrows:
         draw.arrow(b, b + length * L * direction, color, 2.2, 14)
         draw.words(b + length * L * direction, name, color, shift, 13)
-    draw.dots(np.array([b]), plots.BASE, 12)
-    draw.dots(np.array([p]), plots.PLATFORM, 12)
+    draw.dots(np.array([b]), style.BASE, 12)
+    draw.dots(np.array([p]), style.PLATFORM, 12)
     centers = {"d": b + legs.lower.mass_center[i, 0] * s, "u": p + legs.upper.mass_center[i, 0] * s}
     for center in centers.values():
         x, height = draw.camera(center)
-        ax.plot(x, height, marker="P", ms=11, color=plots.INK, mec="white", mew=1.0, zorder=6)
+        ax.plot(x, height, marker="P", ms=11, color=style.INK, mec="white", mew=1.0, zorder=6)
     across = draw.camera(s)[::-1] * [-1, 1] / np.linalg.norm(draw.camera(s))  # to the left of the leg
     for start, end, off, text in (
         (b, centers["d"], 0.13, r"$\mathbf{r}_{d0}$"),
@@ -159,10 +159,10 @@ def one_leg() -> plt.Figure:
         (b, p, 0.27, r"$L$"),
     ):
         _dimension(draw, start, end, off * L * across, text, both=text == "$L$")
-    draw.words(p, "spherical joint, on the platform", plots.PLATFORM, (16, 6), 11.5, ha="left")
-    draw.words(b, "universal joint,\non the base", plots.BASE, (-16, -44), 11.5, ha="right")
-    draw.words(centers["d"], r"lower part: $m_d$, $\mathbf{I}_{d0}$", plots.INK, (20, 2), 12, ha="left")
-    draw.words(centers["u"], r"upper part: $m_u$, $\mathbf{I}_{u0}$", plots.INK, (16, 2), 12, ha="left")
+    draw.words(p, "spherical joint, on the platform", style.PLATFORM, (16, 6), 11.5, ha="left")
+    draw.words(b, "universal joint,\non the base", style.BASE, (-16, -44), 11.5, ha="right")
+    draw.words(centers["d"], r"lower part: $m_d$, $\mathbf{I}_{d0}$", style.INK, (20, 2), 12, ha="left")
+    draw.words(centers["u"], r"upper part: $m_u$, $\mathbf{I}_{u0}$", style.INK, (16, 2), 12, ha="left")
     draw.finish()
     return figure
 
@@ -171,13 +171,13 @@ def _dimension(draw: Drawing, start, end, off, text: str, both: bool) -> None:
     """A length beside the leg, with thin lines from its ends."""
     a, b = draw.camera(start), draw.camera(end)
     for at in (a, b):
-        draw.ax.plot(*np.array([at + 0.15 * off, at + 1.12 * off]).T, color=plots.FAINT, lw=0.8, zorder=1)
-    style = {"arrowstyle": "<|-|>" if both else "-|>", "mutation_scale": 10, "shrinkA": 0, "shrinkB": 0}
-    draw.ax.add_patch(FancyArrowPatch(a + off, b + off, color=plots.INK, linewidth=1.1, zorder=4, **style))
+        draw.ax.plot(*np.array([at + 0.15 * off, at + 1.12 * off]).T, color=style.FAINT, lw=0.8, zorder=1)
+    arrow_style = {"arrowstyle": "<|-|>" if both else "-|>", "mutation_scale": 10, "shrinkA": 0, "shrinkB": 0}
+    draw.ax.add_patch(FancyArrowPatch(a + off, b + off, color=style.INK, linewidth=1.1, zorder=4, **arrow_style))
     draw.ax.update_datalim([a + off, b + off])
     x, y = (a + b) / 2 + off
     box = {"boxstyle": "round,pad=0.12", "facecolor": "white", "edgecolor": "none"}
-    draw.ax.text(x, y, text, fontsize=14, ha="center", va="center", bbox=box, zorder=9, color=plots.INK)
+    draw.ax.text(x, y, text, fontsize=14, ha="center", va="center", bbox=box, zorder=9, color=style.INK)
 
 
 def signs() -> plt.Figure:
@@ -185,9 +185,9 @@ def signs() -> plt.Figure:
     figure = plt.figure(figsize=(10.2, 6.9), facecolor="white")
     upper, lower = figure.subfigures(2, 1, height_ratios=(1.0, 1.05))
     cases = (
-        (0.82, r"$L < L_0$: compressed, $F > 0$", "the leg pushes the plates apart", plots.SHORTENED),
-        (1.0, r"$L = L_0$: unloaded, $F = 0$", "", plots.LEG),
-        (1.18, r"$L > L_0$: stretched, $F < 0$", "the leg pulls them together", plots.STRETCHED),
+        (0.82, r"$L < L_0$: compressed, $F > 0$", "the leg pushes the plates apart", style.SHORTENED),
+        (1.0, r"$L = L_0$: unloaded, $F = 0$", "", style.LEG),
+        (1.18, r"$L > L_0$: stretched, $F < 0$", "the leg pulls them together", style.STRETCHED),
     )
     for ax, (length, title, words, color) in zip(upper.subplots(1, 3), cases, strict=True):
         _leg_force(ax, length, title, words, color)
@@ -211,19 +211,19 @@ def _leg_force(ax: Axes, length: float, title: str, words: str, color: str) -> N
     ax.set_aspect("equal")
     ax.set_xlim(-0.95, 0.95)
     ax.set_ylim(-0.42, 1.3)
-    ax.set_title(title, fontsize=12.5, color=plots.INK, pad=2)
-    for y, plate, name in ((0.0, plots.BASE, "base"), (length, plots.PLATFORM, "platform")):
+    ax.set_title(title, fontsize=12.5, color=style.INK, pad=2)
+    for y, plate, name in ((0.0, style.BASE, "base"), (length, style.PLATFORM, "platform")):
         ax.plot([-0.5, 0.5], [y, y], color=plate, lw=5, solid_capstyle="round")
         ax.text(0.6, y, name, color=plate, fontsize=11, va="center")
     t = np.linspace(0, 1, 400)
     coil = 0.09 * np.sin(2 * np.pi * 9 * t) * ((t > 0.08) & (t < 0.92))
     ax.plot(coil, 0.03 + (length - 0.06) * t, color=color, lw=2.0)
-    style = {"arrowstyle": "<|-|>", "mutation_scale": 9, "shrinkA": 0, "shrinkB": 0, "linewidth": 1.0}
-    ax.add_patch(FancyArrowPatch((-0.68, 0), (-0.68, length), color=plots.INK, **style))
-    ax.text(-0.76, length / 2, "$L$", fontsize=13, ha="right", va="center", color=plots.INK)
-    ax.plot([-0.78, 0.2], [1.0, 1.0], color=plots.FAINT, lw=0.9, ls=(0, (4, 3)), zorder=0)
+    arrow_style = {"arrowstyle": "<|-|>", "mutation_scale": 9, "shrinkA": 0, "shrinkB": 0, "linewidth": 1.0}
+    ax.add_patch(FancyArrowPatch((-0.68, 0), (-0.68, length), color=style.INK, **arrow_style))
+    ax.text(-0.76, length / 2, "$L$", fontsize=13, ha="right", va="center", color=style.INK)
+    ax.plot([-0.78, 0.2], [1.0, 1.0], color=style.FAINT, lw=0.9, ls=(0, (4, 3)), zorder=0)
     if length != 1.0:
-        ax.text(-0.82, 1.0, "$L_0$", fontsize=12, ha="right", va="center", color=plots.FAINT)
+        ax.text(-0.82, 1.0, "$L_0$", fontsize=12, ha="right", va="center", color=style.FAINT)
     sign = np.sign(1.0 - length)
     for start, direction in ((length, sign), (0.0, -sign)):
         if sign:
@@ -231,7 +231,7 @@ def _leg_force(ax: Axes, length: float, title: str, words: str, color: str) -> N
             end = start + 0.36 * direction
             ax.add_patch(FancyArrowPatch((0.3, start), (0.3, end), color=VECTOR, zorder=6, **arrow))
             ax.text(0.37, start + 0.24 * direction, "$|F|$", color=VECTOR, fontsize=12, va="center")
-    ax.text(0.0, -0.52, words, fontsize=11, ha="center", va="center", color=plots.INK)
+    ax.text(0.0, -0.52, words, fontsize=11, ha="center", va="center", color=style.INK)
 
 
 def _turned_plate(ax: Axes, angles, turns: int, name: str) -> None:
@@ -239,12 +239,12 @@ def _turned_plate(ax: Axes, angles, turns: int, name: str) -> None:
     pose = fx.Pose.from_rpy(0, 0, 0, *angles)
     outline = np.array([[-1, -0.7, 0], [1, -0.7, 0], [1, 0.7, 0], [-1, 0.7, 0]])
     flat = draw.camera(outline)
-    ax.add_patch(Polygon(flat, fill=False, edgecolor=plots.FAINT, lw=1.0, ls=(0, (4, 3)), zorder=1))
+    ax.add_patch(Polygon(flat, fill=False, edgecolor=style.FAINT, lw=1.0, ls=(0, (4, 3)), zorder=1))
     turned = draw.camera(place(pose, outline))
-    ax.add_patch(Polygon(turned, facecolor=plots.PLATFORM, alpha=0.2, edgecolor="none", zorder=2))
-    ax.add_patch(Polygon(turned, fill=False, edgecolor=plots.PLATFORM, lw=1.6, zorder=2))
-    draw.arrow((0, 0, 0), pose.matrix @ [0.95, 0, 0], plots.PLATFORM, 1.6)
-    draw.arrow((0, 0, 0), pose.matrix @ [0, 0, 0.9], plots.PLATFORM, 1.6)
+    ax.add_patch(Polygon(turned, facecolor=style.PLATFORM, alpha=0.2, edgecolor="none", zorder=2))
+    ax.add_patch(Polygon(turned, fill=False, edgecolor=style.PLATFORM, lw=1.6, zorder=2))
+    draw.arrow((0, 0, 0), pose.matrix @ [0.95, 0, 0], style.PLATFORM, 1.6)
+    draw.arrow((0, 0, 0), pose.matrix @ [0, 0, 0.9], style.PLATFORM, 1.6)
     for axis, (color, label) in enumerate(((X, "$x$"), (Y, "$y$"), (Z, "$z$"))):
         direction = np.eye(3)[axis]
         strong = axis == turns - 1
@@ -255,7 +255,7 @@ def _turned_plate(ax: Axes, angles, turns: int, name: str) -> None:
             _turn(draw, direction, color)
     ax.set_xlim(-1.75, 1.75)
     ax.set_ylim(-1.35, 1.75)
-    ax.set_title(name, fontsize=12, color=plots.INK, pad=3)
+    ax.set_title(name, fontsize=12, color=style.INK, pad=3)
 
 
 def _turn(draw: Drawing, axis, color: str) -> None:

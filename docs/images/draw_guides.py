@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import flexapod as fx
-from flexapod import plots_optimise, plots_response, plots_sweep
+from flexapod.plots import optimisation, response, sweep
 
 HERE = Path(__file__).parent
 
@@ -22,7 +22,7 @@ def workspace() -> None:
     machine = fx.load("mukherjee-i")
     home = fx.home_pose(machine)
     grid = fx.pose_grid(np.linspace(-0.1, 0.3, 121), np.linspace(0, 0.4, 121), home.position[2], *home.rpy)
-    plots_sweep.save(plots_sweep.index_map(fx.sweep(machine, grid)), HERE / "map.png")
+    sweep.save(sweep.index_map(fx.sweep(machine, grid)), HERE / "map.png")
 
 
 def simulation() -> None:
@@ -31,7 +31,7 @@ def simulation() -> None:
     pose = fx.Pose.from_rpy(0.002, 0, 0.244, 0, 0, np.radians(2))
     shock = fx.half_sine_shock("z", 5.0, 0.005, recovery=0.02)
     run = fx.simulate(machine, pose, base_motion=shock, duration=0.1)
-    save(plots_response.displacements(run.time.values, run.relative_displacement.values), "shock.png")
+    save(response.displacements(run.time.values, run.relative_displacement.values), "shock.png")
 
 
 def vibration() -> None:
@@ -40,7 +40,7 @@ def vibration() -> None:
     pose = fx.Pose.from_rpy(0.002, 0, 0.244, 0, 0, np.radians(2))
     passed = fx.transmissibility(machine, pose, np.geomspace(100, 5000, 1500), loss_factor=0.01)
     natural = fx.natural_modes(machine, pose).omega
-    save(plots_response.frequency_response(passed, given="x", natural=natural), "response.png")
+    save(response.frequency_response(passed, given="x", natural=natural), "response.png")
 
 
 def robustness() -> None:
@@ -48,11 +48,11 @@ def robustness() -> None:
     machine = fx.load("precision-positioner")
     uncertain = [
         fx.Uncertain("legs.stiffness", 0.1),
-        fx.Payload((0, 5), ((-0.05, 0.05), (-0.05, 0.05), (0.1, 0.2))),
+        fx.optimisation.Payload((0, 5), ((-0.05, 0.05), (-0.05, 0.05), (0.1, 0.2))),
     ]
     found = fx.robustness(machine, uncertain, samples=2**14, sensitivity=1024)
-    save(plots_optimise.spread(found), "robust.png")
-    save(plots_optimise.importance(found), "importance.png")
+    save(optimisation.spread(found), "robust.png")
+    save(optimisation.importance(found), "importance.png")
 
 
 def optimal_design() -> None:
@@ -61,15 +61,15 @@ def optimal_design() -> None:
     better = fx.optimise(
         machine,
         [
-            fx.JointCircle("base", radius=(0.02, 0.03), half_angle=(0.1, 0.95)),
-            fx.JointCircle("platform", radius=(0.03, 0.06), half_angle=(0.1, 0.95)),
+            fx.optimisation.JointCircle("base", radius=(0.02, 0.03), half_angle=(0.1, 0.95)),
+            fx.optimisation.JointCircle("platform", radius=(0.03, 0.06), half_angle=(0.1, 0.95)),
             fx.Variable("home.position_mm[2]", 70, 100),
         ],
         fx.LeastIndex(fx.Workspace.about_home(0.005, np.radians(5))),
-        [fx.Footprint(), fx.Stroke()],
+        [fx.optimisation.Footprint(), fx.optimisation.Stroke()],
     )
     print(f"{better.start_index:.4g} -> {better.index:.4g} rad/s")
-    save(plots_optimise.plan(better), "better.png")
+    save(optimisation.plan(better), "better.png")
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from flexapod.cli import main
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parents[1] / "tests"))
-from documents import run_document  # noqa: E402
+from tests.helpers.documents import run_document  # noqa: E402
 
 
 def run(*arguments: str) -> tuple[int, str, str]:

@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "six_legs.hpp"
-#include "sweep_task.hpp"
+#include "simulation/six_legs.hpp"
+#include "sweep/task.hpp"
 
 namespace flexapod {
 extern const sweep_task::Kernel sweep_kernel;

@@ -16,7 +16,7 @@ from pathlib import Path
 import atheris
 
 with atheris.instrument_imports(include=["flexapod"]):
-    from flexapod import designfile, hexapod, schema, shorthands, units  # noqa: F401
+    from flexapod.design import design_file, hexapod, schema, shorthands, units  # noqa: F401
 
 NUMBER = re.compile(rb"[-+]?\d[\d_.eE+-]*")
 VALUES = [b"0", b"-1", b"1", b"-0.0", b"nan", b"inf", b"-inf", b"1e308", b"-1e308", b"1e101", b"1e99", b"1e-320"]
@@ -86,7 +86,7 @@ def main() -> None:
     corpus, *options = sys.argv[1:]
     Path(corpus).mkdir(parents=True, exist_ok=True)
     for name in hexapod.packaged_designs():
-        (Path(corpus) / name).write_bytes(designfile.find(name).read_bytes())
+        (Path(corpus) / name).write_bytes(design_file.find(name).read_bytes())
     (Path(corpus) / "template").write_text(hexapod.template("fuzz"), encoding="utf-8")
     words = [*KEYS, *(f"[{table}]".encode() for table in sorted(schema.TABLES)), *VALUES[:12]]
     dictionary = Path("keys.dict")

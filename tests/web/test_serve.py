@@ -15,8 +15,8 @@ from typing import Any
 import pytest
 from click.testing import CliRunner
 
-from flexapod import designfile
 from flexapod.cli import group
+from flexapod.design import design_file
 
 uvicorn = pytest.importorskip("uvicorn")
 
@@ -86,7 +86,7 @@ def app_and_port() -> Iterator[tuple[Any, int]]:
 
 def test_a_job_ends_when_its_page_goes(app_and_port: tuple[Any, int]) -> None:
     app, port = app_and_port
-    text = designfile.find("mukherjee-i").read_text(encoding="utf-8")
+    text = design_file.find("mukherjee-i").read_text(encoding="utf-8")
     body = json.dumps({"design": text, "pose": [0.1, 0.2, 0.8, 0, 0, 0], "duration": 50.0}).encode()
     head = f"POST /api/jobs/time HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: {len(body)}\r\n\r\n"
     with socket.create_connection(("127.0.0.1", port)) as page:

@@ -15,12 +15,12 @@ import flexapod as fx
 pytest.importorskip("starlette")
 from starlette.testclient import TestClient
 
-from flexapod import designfile
+from flexapod.design import design_file
 from flexapod.web import designs
 from flexapod.web.app import STATIC, application
 from flexapod.web.security import MAX_BODY
 
-TEXT = designfile.find("mukherjee-ii").read_text(encoding="utf-8")
+TEXT = design_file.find("mukherjee-ii").read_text(encoding="utf-8")
 MACHINE = fx.load("mukherjee-ii")
 ASKED = {"design": TEXT, "pose": [0.001, 0.0, 0.086, 1.0, 2.0, 3.0]}
 POSE = fx.Pose.from_rpy(0.001, 0.0, 0.086, *np.radians([1.0, 2.0, 3.0]))
@@ -189,7 +189,7 @@ def test_a_box_upside_down_fails_with_words(client: TestClient) -> None:
 
 
 def test_a_job_can_be_stopped_by_its_name(client: TestClient) -> None:
-    asked = {"design": designfile.find("mukherjee-i").read_text(), "pose": [0.1, 0.2, 0.8, 0, 0, 0], "duration": 50.0}
+    asked = {"design": design_file.find("mukherjee-i").read_text(), "pose": [0.1, 0.2, 0.8, 0, 0, 0], "duration": 50.0}
     jobs = client.app.state.jobs
     answers = []
     runner = threading.Thread(target=lambda: answers.append(client.post("/api/jobs/time", json=asked)))

@@ -17,13 +17,14 @@ import flexapod as fx
 
 pytest.importorskip("starlette")
 
-from flexapod import designfile
-from flexapod.web import asking, designs, shaking, work
+from flexapod.design import design_file
+from flexapod.web import designs, requests, response
+from flexapod.web import worker as work
 from flexapod.web.encode import as_json
 from flexapod.web.jobs import Jobs
 from flexapod.web.security import Guard
 
-TEXT = designfile.find("mukherjee-ii").read_text(encoding="utf-8")
+TEXT = design_file.find("mukherjee-ii").read_text(encoding="utf-8")
 MACHINE = fx.load("mukherjee-ii")
 ASKED = {"design": TEXT, "pose": [0.001, 0.0, 0.086, 1.0, 2.0, 3.0]}
 POSE = fx.Pose.from_rpy(0.001, 0.0, 0.086, *np.radians([1.0, 2.0, 3.0]))
@@ -179,7 +180,7 @@ def test_a_fault_within_a_simulation_reaches_the_job(job: Work, monkeypatch: pyt
     def broken(*given: Any, **options: Any) -> Any:
         raise MemoryError
 
-    monkeypatch.setattr(fx, "simulate", broken)
+    monkeypatch.setattr("flexapod.web.simulation.simulate", broken)
     assert "MemoryError" in job.failure("time", duration=0.01)
 
 
@@ -203,7 +204,7 @@ def kill(pids: list[int | None]) -> None:
 @pytest.mark.parametrize("when", ["idle", "at work"])
 def test_a_process_that_dies_is_told_or_replaced(when: str) -> None:
     """As where the system kills one that takes all memory."""
-    long = {"design": designfile.find("mukherjee-i").read_text(), "pose": [0.1, 0.2, 0.8, 0, 0, 0], "duration": 50.0}
+    long = {"design": design_file.find("mukherjee-i").read_text(), "pose": [0.1, 0.2, 0.8, 0, 0, 0], "duration": 50.0}
     spec = ASKED | {"box": BOX, "points": 100} if when == "idle" else long
 
     async def messages() -> list[bytes]:
@@ -228,14 +229,14 @@ def test_a_process_that_dies_is_told_or_replaced(when: str) -> None:
 
 def test_shaking_the_base_moves_the_platform_as_the_library_says() -> None:
     omega = 0.7 * float(fx.stability_index(MACHINE, POSE))
-    found = shaking.shake(ASKED | {"axis": "y", "omega": omega})
+    found = response.shake(ASKED | {"axis": "y", "omega": omega})
     moved = fx.transmissibility(MACHINE, POSE, [omega])["absolute"].to_numpy()[0, :, 1]
     np.testing.assert_array_equal(found["platform"]["real"] + 1j * found["platform"]["imag"], moved)
     np.testing.assert_array_equal(found["base"], np.eye(6)[1])
     assert found["ratio"] == abs(moved[1]) > 1
     arms = np.linalg.norm(MACHINE.platform_joints, axis=1).max()
     drawn = found["reach"] * np.linalg.norm(np.abs(moved[:3]))
-    assert 0.1 * shaking.DRAWN * arms < drawn <= shaking.DRAWN * arms  # seen, and no farther than it should
+    assert 0.1 * response.DRAWN * arms < drawn <= response.DRAWN * arms  # seen, and no farther than it should
 
 
 def test_a_design_without_a_home_stands_at_a_usual_height() -> None:
@@ -254,7 +255,7 @@ def test_a_pose_that_is_not_stable_at_rest_is_said_to_be(monkeypatch: pytest.Mon
     from flexapod.web import state
 
     heavy = {"platform.mass": 1e7, "platform.mass_center": [0, 0, 0.3]}  # it topples on its springs
-    found = state.snapshot(asking.question(ASKED | {"changes": heavy}))
+    found = state.snapshot(requests.question(ASKED | {"changes": heavy}))
     assert "not stable at rest" in " ".join(found["warnings"])
 
 

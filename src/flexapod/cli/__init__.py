@@ -5,29 +5,15 @@ from __future__ import annotations
 import json
 import sys
 from importlib import import_module
+from pkgutil import iter_modules
 
 import click
 
+from flexapod.cli import commands
 from flexapod.errors import FlexapodError
 
-COMMANDS = (
-    "animate",
-    "check",
-    "control",
-    "designs",
-    "export",
-    "modes",
-    "new",
-    "optimise",
-    "paper",
-    "path",
-    "report",
-    "response",
-    "robust",
-    "serve",
-    "simulate",
-    "sweep",
-)
+#: Names of the commands: the modules of `commands`.
+COMMANDS = tuple(sorted(module.name for module in iter_modules(commands.__path__)))
 
 
 class _Lazy(click.Group):
@@ -37,7 +23,7 @@ class _Lazy(click.Group):
     def get_command(self, ctx: click.Context, name: str) -> click.Command | None:
         if name not in COMMANDS:
             return None
-        return import_module(f"flexapod.cli.{name}").command
+        return import_module(f"flexapod.cli.commands.{name}").command
 
 
 @click.group(cls=_Lazy, invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})

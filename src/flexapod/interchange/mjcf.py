@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 
 from flexapod import __version__
+from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
-from flexapod.hexapod import Hexapod
-from flexapod.interchange.files import add, document, write
-from flexapod.interchange.machine import Body, Leg, Machine, standing
-from flexapod.modal import natural_modes
+from flexapod.interchange.multibody import Body, Leg, Machine, standing
+from flexapod.interchange.xml_files import add, document, write
+from flexapod.mechanics.modes import natural_modes
 from flexapod.pose import Array, Pose
 
 STEPS = 50  # of a simulation for each period of the fastest mode

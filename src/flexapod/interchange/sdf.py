@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from flexapod import __version__
-from flexapod.hexapod import Hexapod
-from flexapod.interchange.files import add, document, say, write
-from flexapod.interchange.machine import Body, Leg, Machine, standing
+from flexapod.design.hexapod import Hexapod
+from flexapod.interchange.multibody import Body, Leg, Machine, standing
+from flexapod.interchange.xml_files import add, document, say, write
 from flexapod.pose import Array, Pose
 
 VERSION = "1.9"

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from flexapod import __version__
-from flexapod.hexapod import Hexapod
-from flexapod.interchange.files import add, document, write
-from flexapod.interchange.machine import Body, Leg, Machine, standing
+from flexapod.design.hexapod import Hexapod
+from flexapod.interchange.multibody import Body, Leg, Machine, standing
+from flexapod.interchange.xml_files import add, document, write
 from flexapod.pose import Array, Pose
 
 UNLIMITED = 1e9  # URDF wants a number for every limit of a sliding joint

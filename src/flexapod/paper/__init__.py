@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from flexapod.states import JointModel
+from flexapod.mechanics.inputs import JointModel
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,9 +30,9 @@ PARTS = {
     "natural-frequencies": "frequencies",
     "conclusion-1": "criteria",
     "conclusion-2": "gains",
-    "conclusion-3": "rate",
+    "conclusion-3": "sampling_rate",
     "corrections": "corrections",
-    "readings": "readings",
+    "readings": "data_interpretation",
 }
 
 
@@ -83,7 +83,7 @@ def draw(name: str, settings: Settings) -> Part:
     """Make a part of the paper by its name in `PARTS`."""
     import matplotlib
 
-    from flexapod.plots import INK
+    from flexapod.plots.style import INK
 
     module = import_module(f"flexapod.paper.{PARTS[name]}")
     words = dict.fromkeys(("text.color", "axes.labelcolor", "axes.edgecolor", "xtick.color", "ytick.color"), INK)

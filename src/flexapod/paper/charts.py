@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from matplotlib.figure import Figure
 
-from flexapod.plots import FAINT, dress
+from flexapod.plots.style import FAINT, dress
 from flexapod.pose import Array
 
 if TYPE_CHECKING:

@@ -15,20 +15,20 @@ from matplotlib.figure import Figure
 from scipy.linalg import eig
 from scipy.spatial.transform import Rotation
 
-from flexapod.hexapod import load
-from flexapod.linear import linearise
-from flexapod.modal import natural_modes
+from flexapod.design.hexapod import load
+from flexapod.mechanics.inputs import JointModel
+from flexapod.mechanics.linearisation import linearise
+from flexapod.mechanics.modes import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
-from flexapod.paper.answers import Answer, answers, disagreement
 from flexapod.paper.charts import BLUE, ORANGE, Dots, percent, rows_of_dots
 from flexapod.paper.frequencies import home
-from flexapod.paper.misprints import MISPRINTS, State, acceleration, legs_at
+from flexapod.paper.printed_errors import MISPRINTS, State, acceleration, legs_at
+from flexapod.paper.reference_answers import Answer, answers, disagreement
 from flexapod.paper.scatter import CASES
 from flexapod.paper.vibration import PRINTED
 from flexapod.pose import Array, Motion, Pose, rpy_matrix
-from flexapod.posesets import random_poses
-from flexapod.states import JointModel
-from flexapod.sweeps.dataset import sweep
+from flexapod.workspace.pose_sets import random_poses
+from flexapod.workspace.sweeping import sweep
 
 _SMALL = 1e-6  # rad, a turn as of the paper's vibrations
 _LOW_MODES = 3  # where gravity shows

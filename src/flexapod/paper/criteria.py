@@ -12,18 +12,18 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
-from flexapod.hexapod import Hexapod, load
-from flexapod.kinematics import condition_number
-from flexapod.modal import natural_modes
-from flexapod.optimal.constraints import Footprint
-from flexapod.optimal.objectives import Dexterity, LeastIndex, MeanIndex, Objective
-from flexapod.optimal.optimise import optimise
-from flexapod.optimal.variables import Variable
+from flexapod.design.hexapod import Hexapod, load
+from flexapod.mechanics.inputs import JointModel
+from flexapod.mechanics.kinematics import condition_number
+from flexapod.mechanics.modes import natural_modes
+from flexapod.optimisation.constraints import Footprint
+from flexapod.optimisation.design_search import optimise
+from flexapod.optimisation.objectives import Dexterity, LeastIndex, MeanIndex, Objective
+from flexapod.optimisation.variables import Variable
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.charts import BLUE, GREEN, ORANGE
-from flexapod.plots import FAINT, INK, dress
+from flexapod.plots.style import FAINT, INK, dress
 from flexapod.pose import Array, Pose
-from flexapod.states import JointModel
 
 DESIGN = "mukherjee-ii"
 REACH = 0.01  # m, of a joint

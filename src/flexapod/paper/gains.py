@@ -16,20 +16,20 @@ from matplotlib.colors import TwoSlopeNorm
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from flexapod.assessment import assess
-from flexapod.excitation import half_sine_shock
-from flexapod.feedback import Controller, Plant, held, joined, static
-from flexapod.hexapod import load
-from flexapod.laws import PID
-from flexapod.linear import linearise
-from flexapod.modal import advised_sampling_time
+from flexapod.control.closed_loop_poles import assess
+from flexapod.control.controllers import PID
+from flexapod.control.plant import Controller, Plant, held, joined, static
+from flexapod.control.sampled_simulation import simulate_control
+from flexapod.design.hexapod import load
+from flexapod.excitation.excitation import half_sine_shock
+from flexapod.mechanics.inputs import JointModel
+from flexapod.mechanics.linearisation import linearise
+from flexapod.mechanics.modes import advised_sampling_time
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.charts import ORANGE
 from flexapod.paper.frequencies import home
-from flexapod.plots import dress
+from flexapod.plots.style import dress
 from flexapod.pose import Array
-from flexapod.sampled import simulate_control
-from flexapod.states import JointModel
 
 DESIGN = "mukherjee-ii"
 FRICTION = 3000.0  # N s/m in each leg: damping ratios of 1 to 30 %

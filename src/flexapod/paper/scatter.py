@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from flexapod import plots_sweep
-from flexapod.hexapod import Hexapod, load
-from flexapod.kinematics import home_pose
+from flexapod.design.hexapod import Hexapod, load
+from flexapod.mechanics.kinematics import home_pose
 from flexapod.paper import Claim, Part, Settings, agrees
-from flexapod.posesets import Box, random_poses
-from flexapod.sweeps.dataset import sweep
-from flexapod.sweeps.summary import SweepSummary, summarise
+from flexapod.plots import sweep as plots_sweep
+from flexapod.workspace.pose_sets import Box, random_poses
+from flexapod.workspace.summary import SweepSummary, summarise
+from flexapod.workspace.sweeping import sweep
 
 if TYPE_CHECKING:
     import xarray as xr

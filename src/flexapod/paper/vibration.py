@@ -13,18 +13,18 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from flexapod import plots_response
-from flexapod.excitation import harmonic
-from flexapod.hexapod import load
-from flexapod.linear import AXES, Linearisation, linearise
-from flexapod.modal import natural_modes
+from flexapod.design.hexapod import load
+from flexapod.excitation.excitation import harmonic
+from flexapod.mechanics.inputs import JointModel
+from flexapod.mechanics.linearisation import AXES, Linearisation, linearise
+from flexapod.mechanics.modes import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
+from flexapod.plots import response
 from flexapod.pose import Array, Pose
-from flexapod.response import transmissibility
-from flexapod.states import JointModel
-from flexapod.steady import complex_poles, steady_response
-from flexapod.stepped import stepped_sine
-from flexapod.trajectory import Method, Run, integrate
+from flexapod.simulation.integrator import Method, Run, integrate
+from flexapod.vibration.frequency_response import transmissibility
+from flexapod.vibration.harmonic import complex_poles, steady_response
+from flexapod.vibration.stepped import stepped_sine
 
 DESIGN, POSE = "mukherjee-ii", (0.0, 0.0, 0.085)
 AMPLITUDE = 1e-6  # m, along z
@@ -105,7 +105,7 @@ def _ratio(settings: Settings) -> Part:
     stepped = stepped_sine(hexapod, pose, omega, AMPLITUDE, "z", joint=joint)
     fine = np.union1d(omega, np.concatenate([np.linspace(50, 800, 4000), resonances]))
     line = transmissibility(hexapod, pose, fine, joint=joint).absolute.sel(base="z")
-    figure = plots_response.stepped_ratio(stepped, resonances, line)
+    figure = response.stepped_ratio(stepped, resonances, line)
     title = "Fig. 9: ratio of response to base amplitude, base z, 1 µm"
     figure.suptitle(f"{title}; dotted: the tangent's modes", fontsize=12)
     apart = float(np.nanmedian(np.abs(stepped.response - stepped.linear) / np.abs(stepped.linear)))
@@ -221,7 +221,7 @@ def _largest(shaken: _Shaken, first: float, last: float) -> Array:
 def _in_time(
     number: int, shaken: _Shaken, title: str, caption: str, numbers: dict[str, Any], claims: tuple[Claim, ...]
 ) -> Part:
-    figure = plots_response.displacements(shaken.times, shaken.displacement, shaken.bound, "bound by the tangent")
+    figure = response.displacements(shaken.times, shaken.displacement, shaken.bound, "bound by the tangent")
     figure.suptitle(title, fontsize=12)
     columns = [f"{axis}_{'rad' if i > 2 else 'm'}" for i, axis in enumerate(AXES)]
     table = pd.DataFrame(shaken.displacement, index=pd.Index(shaken.times, name="time_s"), columns=columns)

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from flexapod import plots
-from flexapod.modal import NaturalModes
+from flexapod.mechanics.modes import NaturalModes
+from flexapod.plots import style
 from flexapod.report.findings import Findings
 
 if TYPE_CHECKING:
@@ -21,7 +22,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 # Colours that change between light and dark paper, and the names they have in the page's style sheet.
-FOLLOWS = {plots.INK: "ink", plots.FAINT: "faint", plots.BASE: "base", plots.LEG: "leg", plots.PLATFORM: "platform"}
+FOLLOWS = {
+    style.INK: "ink",
+    style.FAINT: "faint",
+    style.BASE: "base",
+    style.LEG: "leg",
+    style.PLATFORM: "platform",
+}
 _STYLE: Any = {"svg.fonttype": "none", "svg.hashsalt": "flexapod", "font.family": "sans-serif", "path.simplify": True}
 
 

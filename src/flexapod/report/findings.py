@@ -8,12 +8,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flexapod.conditioning import SINGULAR, platform_radius
+from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
-from flexapod.hexapod import Hexapod
-from flexapod.kinematics import JointAngles, condition_number, inverse_kinematics, joint_angles, leg_distance
-from flexapod.linear import DampedModes, linearise
-from flexapod.modal import (
+from flexapod.mechanics.conditioning import SINGULAR, platform_radius
+from flexapod.mechanics.inputs import JointModel
+from flexapod.mechanics.kinematics import JointAngles, condition_number, inverse_kinematics, joint_angles, leg_distance
+from flexapod.mechanics.linearisation import DampedModes, linearise
+from flexapod.mechanics.modes import (
     EnergyShares,
     ModeDescription,
     advised_sampling_time,
@@ -22,11 +23,10 @@ from flexapod.modal import (
     natural_modes,
     near_repeated,
 )
+from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.pose import Array, Pose
-from flexapod.report.caution import cautions
+from flexapod.report.cautions import cautions
 from flexapod.report.influence import Influence, influences
-from flexapod.states import JointModel
-from flexapod.statics import Equilibrium, hold
 
 TURN = 2 * np.pi
 _NOTHING = 1e-12  # of the highest frequency: what is below is rounding at a singular pose

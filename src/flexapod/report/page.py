@@ -7,14 +7,14 @@ from html import escape
 
 import numpy as np
 
-from flexapod.kinematics import limit_excess
-from flexapod.plots import SHORTENED, STRETCHED
+from flexapod.mechanics.kinematics import limit_excess
+from flexapod.plots.style import SHORTENED, STRETCHED
 from flexapod.pose import Array
 from flexapod.report import figures
 from flexapod.report.findings import TURN, Findings
+from flexapod.report.html import foot, frame, table
 from flexapod.report.influence import MOVE, Influence, leading
 from flexapod.report.numbers import DASH, brief, percent, pose_words, shown
-from flexapod.report.sheet import foot, frame, table
 
 SHOWN = {"geometry": 7, "mass": 5, "stiffness": 4}  # so many sensitivities of each kind
 

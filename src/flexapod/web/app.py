@@ -19,9 +19,10 @@ from starlette.responses import Response, StreamingResponse
 from starlette.routing import Mount, Route
 from starlette.staticfiles import StaticFiles
 
-from flexapod import __version__, designfile
+from flexapod import __version__
+from flexapod.design import design_file
 from flexapod.errors import FlexapodError
-from flexapod.web import asking, designs, shaking, state, work
+from flexapod.web import designs, requests, response, state, worker
 from flexapod.web.encode import Numbers
 from flexapod.web.jobs import Jobs
 from flexapod.web.security import Guard
@@ -47,23 +48,23 @@ def application(start: Path | None = None, hosts: Iterable[str] = ()) -> Starlet
 
     async def run_job(request: Request) -> Response:
         kind = request.path_params["kind"]
-        if kind not in work.KINDS:
-            raise asking.AskingError(f"there is no job {kind!r}", 404)
-        spec = await asking.body(request)
-        await run_sync(asking.question, spec)
+        if kind not in worker.KINDS:
+            raise requests.AskingError(f"there is no job {kind!r}", 404)
+        spec = await requests.body(request)
+        await run_sync(requests.question, spec)
         return StreamingResponse(jobs.run(kind, spec), media_type="application/octet-stream")
 
     async def stop_job(request: Request) -> Response:
         if not jobs.cancel(request.path_params["name"]):
-            raise asking.AskingError("no such job is running", 404)
+            raise requests.AskingError("no such job is running", 404)
         return Response(status_code=204)
 
     routes = [
         Route("/api/start", begin),
         Route("/api/design", _asks(_design), methods=["POST"]),
         Route("/api/state", _asks(_state), methods=["POST"]),
-        Route("/api/response", _asks(shaking.response), methods=["POST"]),
-        Route("/api/shake", _asks(shaking.shake), methods=["POST"]),
+        Route("/api/response", _asks(response.response), methods=["POST"]),
+        Route("/api/shake", _asks(response.shake), methods=["POST"]),
         Route("/api/jobs/{kind}", run_job, methods=["POST"]),
         Route("/api/jobs/{name}", stop_job, methods=["DELETE"]),
         Mount("/", StaticFiles(directory=STATIC, html=True)),
@@ -80,28 +81,28 @@ def application(start: Path | None = None, hosts: Iterable[str] = ()) -> Starlet
 
 def _beginning(start: Path | None) -> dict[str, Any]:
     """What a new page needs before it asks anything: presets, the design to show, the keys of a design file."""
-    presets = {name: designfile.find(name).read_text(encoding="utf-8") for name in designfile.packaged_designs()}
+    presets = {name: design_file.find(name).read_text(encoding="utf-8") for name in design_file.packaged_designs()}
     return {
         "version": __version__,
         "presets": presets,
-        "start": None if start is None else {"name": start.stem, "text": designfile.self_contained(start)},
+        "start": None if start is None else {"name": start.stem, "text": design_file.self_contained(start)},
         "fields": designs.fields(),
     }
 
 
 def _design(asked: dict[str, Any]) -> dict[str, Any]:
-    return designs.described(asking.source(asked))
+    return designs.described(requests.source(asked))
 
 
 def _state(asked: dict[str, Any]) -> dict[str, Any]:
-    return state.snapshot(asking.question(asked))
+    return state.snapshot(requests.question(asked))
 
 
 def _asks(answer: Callable[[dict[str, Any]], dict[str, Any]]) -> Callable[[Request], Awaitable[Response]]:
     """A route that takes a JSON object and answers with one, computed in a thread so that other pages go on."""
 
     async def endpoint(request: Request) -> Response:
-        asked = await asking.body(request)
+        asked = await requests.body(request)
         began = time.perf_counter()
         result = await run_sync(answer, asked)
         spent = 1e3 * (time.perf_counter() - began)
@@ -113,5 +114,5 @@ def _asks(answer: Callable[[dict[str, Any]], dict[str, Any]]) -> Callable[[Reque
 async def _refused(_: Request, error: Exception) -> Response:
     """Every wrong design, pose or request: what is wrong, and at which fields."""
     fields = [e._asdict() for e in error.errors] if isinstance(error, designs.InvalidDesign) else []
-    status = error.status if isinstance(error, asking.AskingError) else 422
+    status = error.status if isinstance(error, requests.AskingError) else 422
     return Numbers({"error": str(error), "fields": fields}, status)

@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from flexapod import designfile
+from flexapod.design import design_file
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS
+from flexapod.design.units import printed, si_unit
 from flexapod.errors import DesignError
-from flexapod.hexapod import Hexapod
 from flexapod.pose import Pose
-from flexapod.schema import KEYS, TABLES, TEXT_KEYS
-from flexapod.units import printed, si_unit
 
 
 class Source(NamedTuple):
@@ -82,7 +82,7 @@ def _error_of_key(path: tuple[str, ...], value: Any, text: str) -> list[FieldErr
     for name in reversed(path):
         alone = {name: alone}
     try:
-        designfile.flatten(alone)
+        design_file.flatten(alone)
     except DesignError as error:
         key = ".".join(path)
         return [FieldError(_key_in(key) or key, str(error), _line_of(text, key))]

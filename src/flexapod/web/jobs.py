@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import anyio
 import anyio.to_thread
 
-from flexapod.web import work
+from flexapod.web import worker as work
 from flexapod.web.encode import frame
 
 KEPT = 2  #: idle processes: a page asks for a cloud and a slice at once

@@ -6,12 +6,21 @@ from typing import Any
 
 import numpy as np
 
-import flexapod as fx
+from flexapod.control.sampling_rate import sampling_time
+from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
-from flexapod.hexapod import Hexapod
-from flexapod.kinematics import in_words, limit_excess
+from flexapod.mechanics.kinematics import (
+    condition_number,
+    in_words,
+    inverse_kinematics,
+    joint_angles,
+    leg_distance,
+    limit_excess,
+)
+from flexapod.mechanics.linearisation import linearise
+from flexapod.mechanics.modes import ModeDescription, describe_modes, energy_shares, natural_modes, near_repeated
 from flexapod.pose import Pose
-from flexapod.web.asking import Question
+from flexapod.web.requests import Question
 
 NEAR_SINGULAR = 1e6  #: cond(H) above which the page warns: a leg force then errs by 1e6 times what a length does
 
@@ -19,12 +28,12 @@ NEAR_SINGULAR = 1e6  #: cond(H) above which the page warns: a leg force then err
 def snapshot(question: Question) -> dict[str, Any]:
     """Geometry, frequencies, modes, forces and limits at a pose. Raises PoseError where no leg can take it."""
     hexapod, pose, joint = question.hexapod, question.pose, question.joint
-    modes = fx.natural_modes(hexapod, pose, joint)
-    condition = float(fx.condition_number(hexapod, pose))
-    angles = fx.joint_angles(hexapod, pose)
+    modes = natural_modes(hexapod, pose, joint)
+    condition = float(condition_number(hexapod, pose))
+    angles = joint_angles(hexapod, pose)
     limits = _limits(hexapod, pose)
     static, damped = _at_rest(question)
-    repeated = fx.near_repeated(modes.omega)
+    repeated = near_repeated(modes.omega)
     return {
         "pose": list(question.six),
         "geometry": _geometry(hexapod, pose),
@@ -36,13 +45,13 @@ def snapshot(question: Question) -> dict[str, Any]:
         "modes": [{"text": d.text, "dominant": d.dominant, "share": d.share} for d in _described(question)],
         "strain": _strain(question),
         "damped": damped,
-        "sampling_time": fx.sampling_time(modes.omega[-1]),
+        "sampling_time": sampling_time(modes.omega[-1]),
         "legs": {
             "universal": np.round(np.degrees(angles.universal), 9) + 0.0,
             "spherical": np.round(np.degrees(angles.spherical), 9) + 0.0,
             **static,
         },
-        "leg_distance": fx.leg_distance(hexapod, pose),
+        "leg_distance": leg_distance(hexapod, pose),
         "limits": limits,
         "warnings": _warnings(condition, repeated, static, damped),
         "near_repeated": repeated,
@@ -60,13 +69,13 @@ def _geometry(hexapod: Hexapod, pose: Pose) -> dict[str, Any]:
     }
 
 
-def _described(question: Question) -> list[fx.ModeDescription]:
-    return fx.describe_modes(question.hexapod, question.pose, question.joint)
+def _described(question: Question) -> list[ModeDescription]:
+    return describe_modes(question.hexapod, question.pose, question.joint)
 
 
 def _strain(question: Question) -> np.ndarray:
     """Share of each leg in each mode's strain energy, modes first."""
-    return fx.energy_shares(question.hexapod, question.pose, question.joint).strain.T
+    return energy_shares(question.hexapod, question.pose, question.joint).strain.T
 
 
 def _at_rest(question: Question) -> tuple[dict[str, Any], dict[str, Any] | None]:
@@ -76,9 +85,9 @@ def _at_rest(question: Question) -> tuple[dict[str, Any], dict[str, Any] | None]
     """
     hexapod, pose = question.hexapod, question.pose
     try:
-        linear = fx.linearise(hexapod, pose, joint=question.joint)
+        linear = linearise(hexapod, pose, joint=question.joint)
     except SingularPoseError as error:
-        length = fx.inverse_kinematics(hexapod, pose)
+        length = inverse_kinematics(hexapod, pose)
         return {"length": length, "force": None, "energy": None, "why": str(error)}, None
     rest, modes = linear.rest, linear.modes()
     energy = 0.5 * rest.leg_force**2 / hexapod.legs.stiffness

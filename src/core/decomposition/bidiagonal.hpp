@@ -1,0 +1,221 @@
+// Singular values of 6x6 matrices for many lanes at once, each to a few roundings of the largest: Householder's
+// bidiagonal form, then Laguerre's method on the squares of its entries. From below all zeros of the characteristic
+// polynomial the method rises to the lowest one and cannot miss it.
+#pragma once
+
+#include "numbers/linear6.hpp"
+#include "simd/pack.hpp"
+
+namespace flexapod {
+
+/// Squares of an upper bidiagonal matrix's entries: q on the diagonal, e above it. They fix the singular values, each
+/// to a relative error of the order of their own.
+template <int n, class T> struct SquaredBidiagonal {
+  T q[n], e[n > 1 ? n - 1 : 1];
+};
+
+/// Sum of products in two chains.
+template <int m, class A, class B> FLEXAPOD_INLINE auto inner(const A& a, const B& b) {
+  auto even = a(0) * b(0);
+  if constexpr (m == 1) {
+    return even;
+  } else {
+    auto odd = a(1) * b(1);
+    FLEXAPOD_UNROLL for (int i = 2; i < m; ++i)
+      if (i % 2) odd += a(i) * b(i);
+      else even += a(i) * b(i);
+    return even + odd;
+  }
+}
+
+/// The reflection E - beta v v^T that turns x into its first axis: v is x with `shift` added to its first part. For
+/// x = 0 it is the identity.
+template <class T> struct Reflection {
+  T square, shift, beta;  // square = |x|^2
+
+  template <int m, class X> static FLEXAPOD_INLINE Reflection of(const X& x) {
+    Reflection r;
+    r.square = inner<m>(x, x);
+    const T length = sqrt(r.square), first = x(0);
+    r.shift = select(first < 0.0, -length, length);
+    r.beta = select(r.square > 1e-280, 1.0 / (r.square + abs(first) * length), T(0.0));
+    return r;
+  }
+  /// Reflects y; x as it was given.
+  template <int m, class X, class Y> FLEXAPOD_INLINE void apply(const X& x, const Y& y) const {
+    const T sum = beta * (inner<m>(x, y) + shift * y(0));  // the inner product does not wait for the length
+    y(0) -= sum * (x(0) + shift);
+    FLEXAPOD_UNROLL for (int i = 1; i < m; ++i) y(i) -= sum * x(i);
+  }
+};
+
+template <int k, class T> FLEXAPOD_INLINE void bidiagonal_step(T (&a)[6][6], SquaredBidiagonal<6, T>& b) {
+  if constexpr (k == 5) {
+    b.q[5] = a[5][5] * a[5][5];
+  } else {
+    const auto column = [&](int j) { return [&a, j](int i) -> T& { return a[k + i][j]; }; };
+    const auto left = Reflection<T>::template of<6 - k>(column(k));
+    b.q[k] = left.square;
+    FLEXAPOD_UNROLL for (int j = k + 1; j < 6; ++j) left.template apply<6 - k>(column(k), column(j));
+    if constexpr (k == 4) {
+      b.e[4] = a[4][5] * a[4][5];
+    } else {
+      const auto row = [&](int i) { return [&a, i](int j) -> T& { return a[i][k + 1 + j]; }; };
+      const auto right = Reflection<T>::template of<5 - k>(row(k));
+      b.e[k] = right.square;
+      FLEXAPOD_UNROLL for (int i = k + 1; i < 6; ++i) right.template apply<5 - k>(row(k), row(i));
+    }
+    bidiagonal_step<k + 1>(a, b);
+  }
+}
+
+/// A is overwritten.
+template <class T> FLEXAPOD_INLINE SquaredBidiagonal<6, T> bidiagonalise(Mat6<T>& A) {
+  SquaredBidiagonal<6, T> b;
+  bidiagonal_step<0>(A.a, b);
+  return b;
+}
+
+/// Divides by the sum of squares of all singular values, and returns it.
+template <int n, class T> FLEXAPOD_INLINE T normalise(SquaredBidiagonal<n, T>& b) {
+  T sum = b.q[n - 1];
+  for (int i = 0; i < n - 1; ++i) sum += b.q[i] + b.e[i];
+  const T scale = 1.0 / sum;
+  for (T& q : b.q) q *= scale;
+  for (T& e : b.e) e *= scale;
+  return sum;
+}
+
+/// prod(lambda_i - x) over the squared singular values, and its derivatives, without quotients. The recurrence is that
+/// of the differential quotient-difference algorithm, multiplied out: its errors are relative changes of q, e and x.
+template <int n, class T> struct Characteristic {
+  T p, p1, p2;  // value, first derivative, half of the second
+
+  FLEXAPOD_INLINE Characteristic(const SquaredBidiagonal<n, T>& b, const T& x) {
+    p = b.q[0] - x, p1 = T(-1.0), p2 = T(0.0);
+    T d(1.0), d1(0.0), d2(0.0);
+    FLEXAPOD_UNROLL for (int i = 1; i < n; ++i) {
+      d = p + b.e[i - 1] * d, d1 = p1 + b.e[i - 1] * d1, d2 = p2 + b.e[i - 1] * d2;
+      p = b.q[i] * p - x * d;
+      p1 = b.q[i] * p1 - x * d1 - d;
+      p2 = b.q[i] * p2 - x * d2 - d1;
+    }
+  }
+};
+
+inline constexpr int laguerre_limit = 60;  // six-fold zeros and simple ones take one to eight steps, others up to 45
+
+/// The lowest squared singular value, from x = 0 upwards; x need only be accurate beside `offset`. `open`: lanes that
+/// have not come to an end.
+///
+/// With G and S the sums of 1/(lambda_i - x) and of its square, Laguerre's step is at most the distance to the lowest
+/// zero, and G/S at least that. They differ by a factor 1 + rho for an error rho^2/2 of the step: a lane is done when
+/// that is below rounding.
+template <int n, class T, class M> FLEXAPOD_INLINE T lowest(const SquaredBidiagonal<n, T>& b, const T& offset, M& open) {
+  T x(0.0);
+  auto active = T(0.0) < T(1.0);
+  for (int step = 0; step < laguerre_limit && any(active); ++step) {
+    const Characteristic<n, T> c(b, x);
+    const T square = c.p1 * c.p1, curvature = 2.0 * c.p * c.p2;
+    const T root = sqrt(max((n - 1.0) * ((n - 1.0) * square - n * curvature), T(0.0)));
+    const T rise = n * c.p / (root - c.p1), most = -(c.p * c.p1) / (square - curvature);
+    const auto below = active & (c.p > 0.0);  // else x is the zero, to rounding
+    x = select(below, x + rise, x);
+    const T gap = most - rise;
+    active = below & (gap * gap > 1e-16 * (offset + x) * rise);
+  }
+  open = active;
+  return x;
+}
+
+/// The highest squared singular value of a normalised b: the same from above.
+template <int n, class T, class M> FLEXAPOD_INLINE T highest(const SquaredBidiagonal<n, T>& b, M& open) {
+  static_assert(n % 2 == 0);
+  T squares = b.q[0] * b.q[0];  // sum of squares of the zeros, whose sum is one
+  for (int i = 1; i < n; ++i) {
+    const T diagonal = b.q[i] + b.e[i - 1];
+    squares += diagonal * diagonal + 2.0 * b.q[i - 1] * b.e[i - 1];
+  }
+  T x = 1.0 / n + sqrt(max((n - 1.0) / n * (squares - 1.0 / n), T(0.0)));  // no zero is higher
+  auto active = T(0.0) < T(1.0);
+  for (int step = 0; step < laguerre_limit && any(active); ++step) {
+    const Characteristic<n, T> c(b, x);
+    const T square = c.p1 * c.p1, curvature = 2.0 * c.p * c.p2;
+    const T root = sqrt(max((n - 1.0) * ((n - 1.0) * square - n * curvature), T(0.0)));
+    const T fall = n * c.p / (root + c.p1), most = c.p * c.p1 / (square - curvature);
+    const auto above = active & (c.p > 0.0);
+    x = select(above, x - fall, x);
+    const T gap = most - fall;
+    active = above & (gap * gap > 1e-16 * x * fall);
+  }
+  open = active;
+  return x;
+}
+
+/// One step of the differential quotient-difference algorithm: the form whose squared singular values are lower by x.
+/// Its last q is zero when x is the lowest of them. `failed`: lanes where it is no real form.
+template <int n, class T, class M>
+FLEXAPOD_INLINE SquaredBidiagonal<n, T> shifted(const SquaredBidiagonal<n, T>& b, const T& x, M& failed) {
+  SquaredBidiagonal<n, T> next;
+  T d = b.q[0] - x;
+  FLEXAPOD_UNROLL for (int i = 0; i < n - 1; ++i) {
+    next.q[i] = d + b.e[i];
+    const T ratio = b.q[i + 1] / next.q[i];
+    next.e[i] = b.e[i] * ratio;
+    failed = failed | (!(next.q[i] > 0.0));
+    d = d * ratio - x;
+  }
+  next.q[n - 1] = d;
+  return next;
+}
+
+/// The form of order n - 1 that is left when the lowest squared singular value x is taken out and from all others.
+/// `failed`: lanes where x did not come out at the end.
+template <int n, class T, class M>
+FLEXAPOD_INLINE SquaredBidiagonal<n - 1, T> deflated(const SquaredBidiagonal<n, T>& b, const T& x, const T& tolerance,
+                                                     M& failed) {
+  SquaredBidiagonal<n, T> rest = shifted(b, x, failed);
+  auto left = !(abs(rest.q[n - 1]) <= tolerance);  // rounding, large where the value hardly lives at the end
+  for (int step = 0; step < 3 && any(left); ++step) {  // each step brings it there
+    const SquaredBidiagonal<n, T> next = shifted(rest, T(0.0), failed);
+    for (int i = 0; i < n; ++i) rest.q[i] = select(left, next.q[i], rest.q[i]);
+    for (int i = 0; i < n - 1; ++i) rest.e[i] = select(left, next.e[i], rest.e[i]);
+    left = left & (!(abs(rest.q[n - 1]) <= tolerance));
+  }
+  failed = failed | left;
+  // The last q is zero now; a step without it draws the last e in.
+  SquaredBidiagonal<n - 1, T> result;
+  T d = rest.q[0];
+  FLEXAPOD_UNROLL for (int i = 0; i < n - 2; ++i) {
+    result.q[i] = d + rest.e[i];
+    const T ratio = rest.q[i + 1] / result.q[i];
+    result.e[i] = rest.e[i] * ratio;
+    d = d * ratio;
+  }
+  result.q[n - 2] = d + rest.e[n - 2];
+  return result;
+}
+
+template <int n, class T, class M>
+FLEXAPOD_INLINE void ascend(const SquaredBidiagonal<n, T>& b, const T& below, T* value, M& failed) {
+  if constexpr (n == 2) {
+    const T sum = b.q[0] + b.q[1] + b.e[0], gap = b.q[0] - b.q[1];
+    const T high = 0.5 * (sum + sqrt(gap * gap + b.e[0] * (b.e[0] + 2.0 * (b.q[0] + b.q[1]))));
+    value[0] = below + b.q[0] * b.q[1] / high;
+    value[1] = below + high;
+  } else {
+    M open;
+    const T x = lowest(b, below, open);
+    value[0] = below + x;
+    failed = failed | open;
+    ascend(deflated(b, x, 2e-14 * value[0], failed), value[0], value + 1, failed);
+  }
+}
+
+/// All squared singular values, ascending. `failed`: lanes to be done another way (repeated values).
+template <class T, class M> FLEXAPOD_INLINE void all_six(const SquaredBidiagonal<6, T>& b, T (&value)[6], M& failed) {
+  failed = T(1.0) < T(0.0);
+  ascend(b, T(0.0), value, failed);
+}
+
+}  // namespace flexapod

@@ -1,0 +1,79 @@
+// What a search for a better design asks of a machine at a pose: frequencies and geometry with exact derivatives along
+// given directions, each a change of the 211 numbers of the design together with a displacement of the pose.
+#pragma once
+
+#include "model/kinematics.hpp"
+#include "model/modes.hpp"
+
+namespace flexapod {
+
+inline constexpr int gradient_lanes = 8;
+using Seed = Dual<gradient_lanes>;
+
+/// The design, and poses, with the derivatives along `count` directions.
+struct SeededDesign {
+  Design<Seed> design;
+  int count;
+
+  /// directions: rows of 211.
+  SeededDesign(const Design<double>& d, const double* directions, int count_) : count(count_) {
+    const double* value = &d.gravity.x;
+    Seed* number = &design.gravity.x;
+    for (int i = 0; i < design_size; ++i) {
+      number[i] = value[i];
+      for (int k = 0; k < count; ++k) number[i].d[k] = directions[k * design_size + i];
+    }
+  }
+  /// displacements: rows of translation and rotation vector.
+  Pose<Seed> pose(const Pose<double>& at, const double* displacements) const {
+    Seed x[6];
+    for (int i = 0; i < 6; ++i)
+      for (int k = 0; k < count; ++k) x[i].d[k] = displacements[k * 6 + i];
+    return displaced(at, Vec3<Seed>(x[0], x[1], x[2]), Vec3<Seed>(x[3], x[4], x[5]));
+  }
+};
+
+/// v_a^T (dK - lambda dJ) v_b for all pairs of modes, lambda the mean of the two. The diagonal are the derivatives of
+/// omega^2; for modes of one frequency the eigenvalues of the block are those along the direction.
+inline void rayleigh_matrix(const Machine<Seed>& machine, const Geometry<Seed>& g, const Mat3<Seed>& R,
+                            const Modes& modes, Seed (&out)[6][6]) {
+  const Mat6<Seed> J = inertia(machine, g, R), H = force_transformation(g);
+  for (int a = 0; a < 6; ++a) {
+    Vec6<Seed> stretch, momentum;
+    for (int i = 0; i < 6; ++i)
+      for (int r = 0; r < 6; ++r) {
+        stretch[i] += modes.shape[r][a] * H[r][i];
+        momentum[i] += modes.shape[r][a] * J[i][r];
+      }
+    for (int i = 0; i < 6; ++i) stretch[i] = machine.design.leg[i].stiffness * stretch[i];
+    for (int b = 0; b <= a; ++b) {
+      const double lambda = 0.5 * (modes.omega[a] * modes.omega[a] + modes.omega[b] * modes.omega[b]);
+      Seed sum;
+      for (int i = 0; i < 6; ++i) {
+        Seed other;
+        for (int r = 0; r < 6; ++r) other += modes.shape[r][b] * H[r][i];
+        sum += stretch[i] * other - (lambda * modes.shape[i][b]) * momentum[i];
+      }
+      out[a][b] = out[b][a] = sum;
+    }
+  }
+}
+
+/// Cosines of the angles of universal and spherical joints from their directions at home; without a home pose from the
+/// z axes of base and platform.
+inline void joint_cosines(const SeededDesign& seeded, const Pose<Seed>& at, const Pose<Seed>* home, Seed (&out)[2][6]) {
+  for (int i = 0; i < 6; ++i) {
+    const auto leg = [&](const Pose<Seed>& pose) { return pose.t + pose.R * seeded.design.p[i] - seeded.design.b[i]; };
+    Vec3<Seed> in_base(0.0, 0.0, 1.0), in_platform(0.0, 0.0, 1.0);
+    if (home != nullptr) {
+      const Vec3<Seed> S = leg(*home);
+      in_base = rsqrt(dot(S, S)) * S;
+      in_platform = transposed(home->R, in_base);
+    }
+    const Vec3<Seed> S = leg(at), s = rsqrt(dot(S, S)) * S;
+    out[0][i] = dot(in_base, s);
+    out[1][i] = dot(at.R * in_platform, s);
+  }
+}
+
+}  // namespace flexapod

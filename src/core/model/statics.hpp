@@ -1,0 +1,110 @@
+// Rest: where the platform settles, and the exact tangent there.
+#pragma once
+
+#include "model/displacement.hpp"
+#include "model/equations.hpp"
+
+namespace flexapod {
+
+/// What acts on a resting machine: a wrench in the platform's frame, and the legs' unstretched lengths L_0.
+struct RestLoad {
+  Vec6<double> wrench;
+  double L_0[6];
+};
+
+template <class T> Motion<T> at_rest(const Pose<T>& pose) {
+  Motion<T> motion;
+  motion.pose = pose;
+  return motion;
+}
+
+/// eta - H F - [R F_ext; R M_ext] at rest with F = -K (L - L_0): zero at equilibrium (Eq. 34; corrections E6).
+template <class T>
+Vec6<T> rest_residual(const Machine<double>& machine, const Pose<T>& platform, const Pose<T>& base,
+                      const RestLoad& load) {
+  const Geometry<T> g(machine.design, platform, base);
+  Vec6<T> F;
+  for (int i = 0; i < 6; ++i) F[i] = machine.design.leg[i].stiffness * (load.L_0[i] - norm(g.S[i]));
+  const Vec6<T> eta = inverse_wrench(machine, g, at_rest(platform), at_rest(base));
+  const Vec6<T> legs = force_transformation(g) * F, external = external_wrench(platform.R, load.wrench);
+  Vec6<T> r;
+  for (int i = 0; i < 6; ++i) r[i] = eta[i] - legs[i] - external[i];
+  return r;
+}
+
+/// Linear dynamics about rest: M x'' + C x' + K x + M_b x_b'' + C_b x_b' + K_b x_b = H f + w, with x, x_b the small
+/// displacements (translation of the reference point, rotation vector) of platform and base in inertial axes,
+/// f changes of leg force, w changes of the external wrench.
+struct Tangent {
+  Mat6<double> M, C, K, M_b, C_b, K_b, H;
+};
+
+inline Tangent tangent(const Machine<double>& machine, const Pose<double>& platform, const Pose<double>& base,
+                       const RestLoad& load) {
+  using D = Dual<12>;
+  Tangent result;
+  const Geometry<double> g(machine.design, platform, base);
+  result.M = inertia(machine, g, platform.R);
+  result.H = force_transformation(g);
+  result.M_b = base_coupling(machine, g);
+  const Vec6<D> r = rest_residual(machine, displaceable<D>(platform, 0), displaceable<D>(base, 6), load);
+
+  Motion<D> moving = at_rest(constant<D>(platform)), moving_base = at_rest(constant<D>(base));
+  moving.v = variables<D>(0), moving.w = variables<D>(3);
+  moving_base.v = variables<D>(6), moving_base.w = variables<D>(9);
+  const Geometry<D> fixed(machine.design, moving.pose, moving_base.pose);
+  const Vec6<D> friction = inverse_wrench(machine, fixed, moving, moving_base);
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) {
+      result.K[i][j] = r[i].d[j], result.K_b[i][j] = r[i].d[6 + j];
+      result.C[i][j] = friction[i].d[j], result.C_b[i][j] = friction[i].d[6 + j];
+      result.M_b[i][j] = -result.M_b[i][j];
+    }
+  return result;
+}
+
+enum class Rest { found, singular, not_found };
+
+/// Newton on the residual from a start pose, with exact derivatives and step halving. The pose is left where the
+/// search ended.
+inline Rest settle(const Machine<double>& machine, const Pose<double>& base, const RestLoad& load,
+                   Pose<double>& pose) {
+  double size = 0, force = 0;  // scales of length and force, to compare rows and to limit steps
+  for (int i = 0; i < 6; ++i) {
+    size += norm(machine.design.p[i]) / 6.0;
+    force = std::max(force, machine.design.leg[i].stiffness * std::abs(load.L_0[i]));
+  }
+  const auto merit = [&](const Vec6<double>& r) {
+    double sum = 0;
+    for (int i = 0; i < 6; ++i) sum += std::pow(r[i] / (i < 3 ? force : force * size), 2);
+    return sum;
+  };
+  double current = merit(rest_residual(machine, pose, base, load));
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    const Vec6<Dual<6>> r = rest_residual(machine, displaceable<Dual<6>>(pose, 0), constant<Dual<6>>(base), load);
+    Mat6<double> K;
+    Vec6<double> negative, x;
+    for (int i = 0; i < 6; ++i) {
+      negative[i] = -r[i].v;
+      for (int j = 0; j < 6; ++j) K[i][j] = r[i].d[j];
+    }
+    if (!solve_general(K, negative, x)) return Rest::singular;
+    const double move = std::max(norm(x.top()) / size, norm(x.bottom()));
+    double fraction = std::min(1.0, 0.3 / move);
+    for (; fraction > 1e-6; fraction *= 0.5) {
+      Vec6<double> step = x;
+      for (double& component : step.a) component *= fraction;
+      const Pose<double> trial = moved(pose, step);
+      const double next = merit(rest_residual(machine, trial, base, load));
+      if (next < current || (move < 1e-10 && next <= 4.0 * current)) {
+        pose = trial, current = next;
+        break;
+      }
+    }
+    if (move < 1e-10) return Rest::found;  // the last step was taken, quadratically close to the solution
+    if (fraction <= 1e-6) return Rest::not_found;
+  }
+  return Rest::not_found;
+}
+
+}  // namespace flexapod

@@ -1,0 +1,86 @@
+// Simulations and forward dynamics for one instruction set. CMake compiles this file once for each, with `flexapod`
+// defined as another name: then no inline function of one can stand in for that of another in the linked module.
+#include "simulation/control_loop.hpp"
+#include "simulation/simulation.hpp"
+
+namespace flexapod {
+namespace {
+
+using namespace simulation_task;
+
+/// One simulation's numbers in a row of `setup`.
+struct Setup {
+  Pose<double> platform, base;
+  Vec6<double> leg_force, wrench, displacement, velocity;
+  double roll_pitch_yaw, carried;
+};
+static_assert(sizeof(Setup) == setup_size * sizeof(double) && sizeof(Motion<double>) == sizeof(End::last));
+
+Joint joint(bool universal) { return universal ? Joint::universal : Joint::spin_free; }
+
+RigInput rig_input(const simulation_task::Machine& m) {
+  const auto& s = *reinterpret_cast<const Setup*>(m.setup);
+  return {*reinterpret_cast<const Design<double>*>(m.design),
+          joint(m.universal),
+          s.platform,
+          s.base,
+          s.leg_force,
+          s.wrench,
+          s.roll_pitch_yaw != 0.0,
+          m.works,
+          s.carried != 0.0,
+          s.displacement,
+          s.velocity};
+}
+Excitation excitation(const Series& s) { return {s.numbers, s.size}; }
+
+End simulate(const Run& run) {
+  const auto& m = run.machine;
+  Simulation simulation(rig_input(m), excitation(m.base), excitation(m.wrench), excitation(m.command), run.tolerances);
+  End end{static_cast<int>(simulation.run(run.samples, *run.stop, *run.progress)), simulation.time(), {}, 0, 0, 0};
+  const Motion<double> last = simulation.last();
+  std::memcpy(end.last, &last, sizeof(end.last));
+  const Counts& counts = simulation.counts();
+  end.accepted = counts.accepted, end.rejected = counts.rejected, end.evaluations = counts.evaluations;
+  return end;
+}
+
+int control_loop(const Loop& given) {
+  ControlLoop loop(rig_input(given.machine), excitation(given.machine.base), SampledController{given.controller},
+                   given.timing);
+  return static_cast<int>(loop.run(given.noise, given.record, *given.stop, *given.progress));
+}
+
+void forward_dynamics_of(const States& s) {
+  const auto& design = *reinterpret_cast<const Design<double>*>(s.design);
+  const SixLegs legs(flexapod::Machine<double>(design, joint(s.universal)));
+  const auto *platform = reinterpret_cast<const Motion<double>*>(s.platform),
+             *base = reinterpret_cast<const Motion<double>*>(s.base);
+  const auto *force = reinterpret_cast<const Vec6<double>*>(s.leg_force),
+             *load = reinterpret_cast<const Vec6<double>*>(s.wrench);
+  auto* out = reinterpret_cast<Vec6<double>*>(s.acceleration);
+  for (size_t i = 0; i < s.count; ++i)
+    out[i] = forward_dynamics(legs, platform[i], base[i], force[i], external_wrench(platform[i].pose.R, load[i]));
+}
+
+void* new_equations(const simulation_task::Machine& m) {
+  return new Rig(rig_input(m), excitation(m.base), excitation(m.wrench), excitation(m.command));
+}
+void delete_equations(void* rig) { delete static_cast<Rig*>(rig); }
+void start(void* rig, double* y) { std::copy_n(static_cast<Rig*>(rig)->start().data(), Rig::mechanical, y); }
+void rates(void* equations, double t, const double* numbers, double* rate) {
+  auto* rig = static_cast<Rig*>(equations);
+  Rig::State y{}, all;
+  std::copy_n(numbers, Rig::mechanical, y.data());
+  rig->inside = t;
+  rig->rates(t, y, all, false);
+  std::copy_n(all.data(), Rig::mechanical, rate);
+}
+
+}  // namespace
+
+extern const Kernel simulation_kernel;
+const Kernel simulation_kernel = {FLEXAPOD_ISA,   &simulate,         &control_loop, &forward_dynamics_of,
+                                  &new_equations, &delete_equations, &start,        &rates};
+
+}  // namespace flexapod

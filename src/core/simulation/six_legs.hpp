@@ -1,0 +1,164 @@
+// The six legs at once, each in a lane of a hardware vector: the equations of motion as simulations need them, again and
+// again. The legs' own equations are those of leg.hpp. A vector that is not full holds legs without inertia, friction or
+// force beside the six.
+#pragma once
+
+#include "model/energy.hpp"
+#include "model/equations.hpp"
+#include "simd/pack.hpp"
+#include "model/reactions.hpp"
+
+namespace flexapod {
+
+using Lanes = Pack<Vector, 1>;
+inline constexpr int leg_groups = (6 + Lanes::lanes - 1) / Lanes::lanes;  // vectors for six legs
+
+inline Vec3<double> sum(const Vec3<Lanes>& v) { return {sum(v.x), sum(v.y), sum(v.z)}; }
+inline Sym3<double> sum(const Sym3<Lanes>& m) {
+  return {sum(m.xx), sum(m.yy), sum(m.zz), sum(m.xy), sum(m.xz), sum(m.yz)};
+}
+
+/// A number for each leg.
+struct PerLeg {
+  Lanes group[leg_groups];
+
+  PerLeg() = default;
+  explicit PerLeg(const Vec6<double>& x) {
+    double lane[leg_groups * Lanes::lanes] = {};
+    std::memcpy(lane, x.a, sizeof(x.a));
+    for (int g = 0; g < leg_groups; ++g) group[g] = Lanes::load(lane + g * Lanes::lanes);
+  }
+  Vec6<double> six() const {
+    double lane[leg_groups * Lanes::lanes];
+    for (int g = 0; g < leg_groups; ++g) group[g].store(lane + g * Lanes::lanes);
+    Vec6<double> x;
+    std::memcpy(x.a, lane, sizeof(x.a));
+    return x;
+  }
+};
+
+/// Structures of doubles, one for each leg, as the same structure of lanes for one group; idle lanes hold `idle`.
+template <class Many, class One> Many packed(int group, const One (&leg)[6], const One& idle) {
+  static_assert(sizeof(Many) == sizeof(One) / sizeof(double) * sizeof(Lanes));
+  constexpr size_t numbers = sizeof(One) / sizeof(double);
+  double number[Lanes::lanes][numbers], lane[Lanes::lanes];
+  for (int i = 0; i < Lanes::lanes; ++i) {
+    const int which = group * Lanes::lanes + i;
+    std::memcpy(number[i], which < 6 ? &leg[which] : &idle, sizeof(One));
+  }
+  Many many;
+  for (size_t n = 0; n < numbers; ++n) {
+    for (int i = 0; i < Lanes::lanes; ++i) lane[i] = number[i][n];
+    std::memcpy(reinterpret_cast<char*>(&many) + n * sizeof(Lanes), lane, sizeof(Lanes));
+  }
+  return many;
+}
+
+/// A design as its equations of motion take it.
+struct SixLegs {
+  struct Group {
+    Leg<Lanes> leg;
+    LegInertia<Lanes> inertia;
+    Vec3<Lanes> b, k, p;
+  };
+  Design<double> design;
+  Joint joint;
+  Group group[leg_groups];
+
+  explicit SixLegs(const Machine<double>& m) : design(m.design), joint(m.joint) {
+    for (int g = 0; g < leg_groups; ++g)
+      group[g] = {packed<Leg<Lanes>>(g, m.design.leg, Leg<double>{}),
+                  packed<LegInertia<Lanes>>(g, m.inertia, LegInertia<double>{}),
+                  packed<Vec3<Lanes>>(g, m.design.b, m.design.b[0]),
+                  packed<Vec3<Lanes>>(g, m.design.k, m.design.k[0]),
+                  packed<Vec3<Lanes>>(g, m.design.p, m.design.p[0])};
+  }
+};
+
+/// Where the legs are, in the axes of the motions that go with them: joints from the reference points, leg vectors,
+/// universal axes.
+struct LegPlaces {
+  struct Group {
+    Vec3<Lanes> q_p, q_b, S, k;
+  };
+  Group group[leg_groups];
+};
+
+/// What legs add to J_p, and the wrench that they take from a platform with the accelerations given.
+struct LegSums {
+  SpatialInertia<Lanes> J;
+  Vec3<Lanes> force, moment;
+
+  FLEXAPOD_FLAT void add(const SixLegs& legs, int g, const LegPlaces::Group& at, const Motion<double>& platform,
+                         const Motion<double>& base, const Lanes& leg_force) {
+    const SixLegs::Group& group = legs.group[g];
+    const LegAxes<Lanes> leg(at.S, at.k, legs.joint);
+    const LegEnds<Lanes> end = leg_ends(leg, at.q_p, at.q_b, platform, base, legs.design.gravity);
+    const LegMotion<Lanes> motion(leg, end, legs.joint);
+    SphericalLoad<Lanes> load = spherical_load(leg, group.inertia, group.leg, end, motion);
+    load.force.x -= leg_force;
+    const Vec3<Lanes> F_s = transposed(leg.axes, load.force);
+    force += F_s;
+    moment += cross(at.q_p, F_s) - transposed(leg.axes, load.moment);
+    add_leg_inertia(J, leg, group.inertia, at.q_p);
+  }
+};
+
+/// Eq. 35's accelerations of the platform: J_p^-1 (H F + wrench - eta + J_b [a_b; alpha_b]).
+FLEXAPOD_FLAT inline Vec6<double> forward_dynamics(const SixLegs& legs, const LegPlaces& at, Motion<double> platform,
+                                                   const Motion<double>& base, const PerLeg& leg_force,
+                                                   const Vec6<double>& wrench) {
+  platform = unaccelerated(platform);
+  LegSums sums{};
+  for (int g = 0; g < leg_groups; ++g) sums.add(legs, g, at.group[g], platform, base, leg_force.group[g]);
+  Vec6<double> load = platform_wrench(legs.design, platform);
+  add(load, sum(sums.force), sum(sums.moment));
+  SpatialInertia<double> J = platform_inertia(legs.design, platform.pose.R);
+  J.top = J.top + sum(sums.J.top), J.bottom = J.bottom + sum(sums.J.bottom);
+  for (int i = 0; i < 3; ++i) J.bottom_left.row[i] += sum(sums.J.bottom_left.row[i]);
+  for (int i = 0; i < 6; ++i) load[i] = wrench[i] - load[i];
+  return solve_positive(J.matrix(), load);
+}
+
+/// The same from poses.
+inline Vec6<double> forward_dynamics(const SixLegs& legs, const Motion<double>& platform, const Motion<double>& base,
+                                     const Vec6<double>& leg_force, const Vec6<double>& wrench) {
+  LegPlaces places;
+  for (int g = 0; g < leg_groups; ++g) {
+    const SixLegs::Group& group = legs.group[g];
+    LegPlaces::Group& at = places.group[g];
+    at = {platform.pose.R * group.p, base.pose.R * group.b, {}, base.pose.R * group.k};
+    at.S = (platform.pose.t - base.pose.t) + at.q_p - at.q_b;
+  }
+  return forward_dynamics(legs, places, platform, base, PerLeg(leg_force), wrench);
+}
+
+/// What the machine does to its base and loses to friction, for the accelerations in the motions given.
+struct BaseLoad {
+  Vec3<double> force, moment;  // on the base, moment about its reference point
+  double dissipation = 0;      // W
+
+  BaseLoad(const SixLegs& legs, const LegPlaces& at, const Motion<double>& platform, const Motion<double>& base,
+           const PerLeg& leg_force) {
+    Vec3<Lanes> f, m;
+    Lanes lost(0.0);
+    for (int g = 0; g < leg_groups; ++g) add(legs, g, at.group[g], platform, base, leg_force.group[g], f, m, lost);
+    force = sum(f), moment = sum(m), dissipation = sum(lost);
+  }
+
+ private:
+  FLEXAPOD_FLAT static void add(const SixLegs& legs, int g, const LegPlaces::Group& at, const Motion<double>& platform,
+                                const Motion<double>& base, const Lanes& leg_force, Vec3<Lanes>& force,
+                                Vec3<Lanes>& moment, Lanes& dissipation) {
+    const SixLegs::Group& group = legs.group[g];
+    const LegAxes<Lanes> leg(at.S, at.k, legs.joint);
+    const LegEnds<Lanes> end = leg_ends(leg, at.q_p, at.q_b, platform, base, legs.design.gravity);
+    const LegMotion<Lanes> motion(leg, end, legs.joint);
+    const LegReactions<Lanes> r = leg_reactions(group.leg, group.inertia, leg, end, motion, leg_force, 0.5);
+    force += r.universal_force;
+    moment += cross(at.q_b, r.universal_force) + r.universal_moment;
+    dissipation += leg_dissipation(group.leg, end, motion);
+  }
+};
+
+}  // namespace flexapod

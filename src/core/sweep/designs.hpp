@@ -1,0 +1,102 @@
+// Many designs at once: natural frequencies of a pack of machines, each lane another design, at poses they share or at
+// one of their own. The mechanics is that of the single machine, over packs.
+#pragma once
+
+#include "decomposition/bidiagonal.hpp"
+#include "decomposition/jacobi_lanes.hpp"
+#include "model/modes.hpp"
+#include "sweep/task.hpp"
+
+namespace flexapod {
+
+using sweep_task::DesignTask;
+
+/// B = L^-1 H K^1/2 in the platform's axes; `legs`: lanes where every leg has a length and lies across its axis.
+template <class T> Mat6<T> scaled_force_transformation(const Machine<T>& machine, const Pose<T>& pose, mask_t<T>& legs) {
+  const Geometry<T> g(machine.design, Pose<T>(), Pose<T>{-transposed(pose.R, pose.t), transpose(pose.R)});
+  SpatialInertia<T> J = platform_inertia(machine.design, Mat3<T>::identity());
+  Mat6<T> B;
+  legs = T(0.0) < T(1.0);
+  for (int i = 0; i < 6; ++i) {
+    const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
+    add_leg_inertia(J, leg, machine.inertia[i], g.q_p[i]);
+    const T root = sqrt(machine.design.leg[i].stiffness);
+    const Vec6<T> h = leg_wrench(g.q_p[i], root * leg.s());
+    for (int r = 0; r < 6; ++r) B[r][i] = h[r];
+    legs = legs & (leg.cosecant < 1e7) & (leg.L > 0.0);
+  }
+  const Cholesky<T> L(J.matrix());
+  for (int i = 0; i < 6; ++i) {
+    Vec6<T> column;
+    for (int r = 0; r < 6; ++r) column[r] = B[r][i];
+    column = L.forward(column);
+    for (int r = 0; r < 6; ++r) B[r][i] = column[r];
+  }
+  return B;
+}
+
+/// Designs first to last of a task, at all its poses or each at its own.
+template <class T> class DesignSweep {
+  const DesignTask& task;
+
+ public:
+  DesignSweep(const DesignTask& t, size_t first, size_t last) : task(t) {
+    for (size_t i = first; i < last; i += T::lanes)
+      pack(i, last - i < size_t{T::lanes} ? static_cast<int>(last - i) : T::lanes);
+  }
+
+ private:
+  /// `numbers` columns of rows first to first + count - 1 of a table, the last row repeated to fill the lanes.
+  static void read(const double* table, int numbers, size_t first, int count, T* to) {
+    double lanes[T::lanes];
+    for (int c = 0; c < numbers; ++c) {
+      for (int l = 0; l < T::lanes; ++l) lanes[l] = table[(first + (l < count ? l : count - 1)) * numbers + c];
+      to[c] = T::load(lanes);
+    }
+  }
+
+  void pack(size_t first, int count) const {
+    Design<T> design;
+    read(task.designs, design_size, first, count, &design.gravity.x);
+    const Machine<T> machine(design, task.universal ? Joint::universal : Joint::spin_free);
+    const size_t poses = task.paired ? 1 : task.poses_count;
+    for (size_t k = 0; k < poses; ++k) {
+      Pose<T> pose;
+      static_assert(sizeof(pose) == 12 * sizeof(T));
+      if (task.paired) {
+        read(task.poses, 12, first, count, &pose.t.x);
+      } else {
+        T* number = &pose.t.x;
+        for (int c = 0; c < 12; ++c) number[c] = T(task.poses[12 * k + c]);
+      }
+      solve(machine, pose, [&](int l) { return (first + l) * poses + k; }, count);
+    }
+  }
+
+  template <class Place> void solve(const Machine<T>& machine, const Pose<T>& pose, Place place, int count) const {
+    mask_t<T> legs;
+    const Mat6<T> B = scaled_force_transformation(machine, pose, legs);
+    Mat6<T> work = B;
+    SquaredBidiagonal<6, T> b = bidiagonalise(work);
+    const T scale = normalise(b);
+    const auto bad = !(legs & (scale < 1e300));
+    mask_t<T> failed;
+    T value[6];
+    const int modes = task.modes;
+    if (modes == 6) all_six(b, value, failed);
+    else value[0] = lowest(b, T(0.0), failed);
+    failed = failed & (!bad);
+    if (any(failed)) [[unlikely]] {
+      T exact[6];
+      squared_singular_values(B, exact);
+      for (int i = 0; i < modes; ++i) value[i] = select(failed, exact[i] / scale, value[i]);
+    }
+    for (int i = 0; i < modes; ++i) {
+      double x[T::lanes];
+      select(bad, T(std::numeric_limits<double>::quiet_NaN()), sqrt(scale * value[i])).store(x);
+      for (int l = 0; l < count; ++l) task.omega[place(l) * modes + i] = x[l];
+    }
+  }
+};
+
+}  // namespace flexapod

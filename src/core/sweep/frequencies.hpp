@@ -1,0 +1,178 @@
+// Many poses of one machine, packs of them at a time. The mechanics is that of the single pose, over packs.
+#pragma once
+
+#include "decomposition/bidiagonal.hpp"
+#include "sweep/quantities.hpp"
+
+namespace flexapod {
+
+/// Frequencies and the condition of H, for the joined packs of several parts.
+template <class T> struct SweepModes {
+  const SweptMachine& machine;
+  const Task& task;
+  const Rows rows;
+  const Dynamics<T>& dynamics;
+
+  template <bool all> FLEXAPOD_FLAT T frequencies() const {
+    constexpr int count = all ? 6 : 1;
+    Mat6<T> B = matrix();
+    SquaredBidiagonal<6, T> b = bidiagonalise(B);
+    const T scale = normalise(b);
+    const T fault = worse(!(scale < 1e300), sweep_task::no_inertia, dynamics.fault);
+    const auto bad = fault > T(sweep_task::singular);
+    auto failed = bad;
+    T value[6];
+    if constexpr (all) all_six(b, value, failed);
+    else value[0] = lowest(b, T(0.0), failed);
+    failed = failed & (!bad);
+    if (any(failed)) [[unlikely]] repeat(failed, scale, value);
+    for (int i = 0; i < count; ++i) {
+      const T omega = unless(bad, sqrt(scale * value[i]));
+      if (all) rows.put(task.omega_, omega, i, 6);
+      if (i == 0 && task.omega_1_ != nullptr) rows.put(task.omega_1_, omega);
+    }
+    return singular(value[0] < 1e-26, fault);
+  }
+
+  FLEXAPOD_FLAT T condition() const {
+    Mat6<T> H = dynamics.H;
+    SquaredBidiagonal<6, T> b = bidiagonalise(H);
+    normalise(b);
+    const auto bad = no_pose(dynamics.fault);
+    auto open_low = bad, open_high = bad;
+    T value[6];
+    value[0] = lowest(b, T(0.0), open_low), value[5] = highest(b, open_high);
+    const auto failed = (open_low | open_high) & (!bad);
+    if (any(failed)) [[unlikely]] repeat_H(failed, value);
+    rows.put(task.cond_H_, unless(bad, sqrt(value[5] / value[0])));
+    return singular(value[0] < 1e-26 * value[5], dynamics.fault);
+  }
+
+  T status() const {
+    double code[T::lanes];
+    dynamics.fault.store(code);
+    for (int l = 0; l < rows.count; ++l) task.status_[rows.first + l] = static_cast<std::uint8_t>(code[l]);
+    return dynamics.fault;
+  }
+
+ private:
+  Mat6<T> matrix() const { return dynamics.B(machine, Cholesky<T>(dynamics.J.matrix())); }
+
+  static T singular(const mask_t<T>& bad, const T& fault) {
+    return select(bad & (fault <= 0.0), T(sweep_task::singular), fault);
+  }
+  FLEXAPOD_COLD void repeat(const mask_t<T>& failed, const T& scale, T (&value)[6]) const {
+    by_rotations(matrix(), failed, scale, value);
+  }
+  FLEXAPOD_COLD void repeat_H(const mask_t<T>& failed, T (&value)[6]) const {
+    by_rotations(dynamics.H, failed, T(1.0), value);
+  }
+  static void by_rotations(const Mat6<T>& B, const mask_t<T>& failed, const T& scale, T (&value)[6]) {
+    T exact[6];
+    squared_singular_values(B, exact);
+    for (int i = 0; i < 6; ++i) value[i] = select(failed, exact[i] / scale, value[i]);
+  }
+};
+
+/// Poses of a task, in packs of T::parts parts: part by part where the work is wide and many numbers are held, joined
+/// where it is one long chain. A batch of packs goes through one piece of the work after the other, so that the
+/// processor keeps the piece's instructions at hand.
+template <class T> class Sweep {
+  using Part = typename T::Part;
+  static constexpr int batch = 8;
+  const Task& task;
+  const SweptMachine machine;
+  Dynamics<Part> part;
+  Dynamics<T> joined[batch];
+  double rows[12][Part::lanes];
+
+ public:
+  explicit Sweep(const Task& t) : task(t), machine(t) {}
+
+  void run(size_t first, size_t last) {
+    constexpr size_t size = size_t{batch} * T::lanes;
+    for (size_t i = first; i < last; i += size) work_through(i, last - i < size ? last - i : size);
+  }
+
+ private:
+  static constexpr unsigned modal = Quantity::omega_1 | Quantity::omega;
+  static constexpr unsigned geometric =
+      Quantity::leg_length | Quantity::joint_angle | Quantity::leg_distance | Quantity::within_limits;
+
+  void work_through(size_t first, size_t count) {
+    for (size_t done = 0; done < count; done += Part::lanes) {
+      one_part(first + done, count - done < Part::lanes ? count - done : Part::lanes);
+      join(joined[done / T::lanes], static_cast<int>(done / Part::lanes % T::parts));
+    }
+    for (size_t done = 0; done < count; done += T::lanes) {  // what is left of the last pack: its first part again
+      const size_t parts = (count - done + Part::lanes - 1) / Part::lanes;
+      for (size_t i = parts; i < size_t{T::parts}; ++i) join(joined[done / T::lanes], static_cast<int>(i));
+    }
+    const unsigned asked = task.quantities;
+    const auto each = [&](auto&& piece) {
+      for (size_t done = 0; done < count; done += T::lanes) {
+        Dynamics<T>& dynamics = joined[done / T::lanes];
+        const size_t left = count - done;
+        const Rows rows{first + done, static_cast<int>(left < T::lanes ? left : T::lanes)};
+        dynamics.fault = piece(SweepModes<T>{machine, task, rows, dynamics});
+      }
+    };
+    if (asked & Quantity::cond_H) each([](const SweepModes<T>& modes) { return modes.condition(); });
+    if (asked & Quantity::omega) each([](const SweepModes<T>& modes) { return modes.template frequencies<true>(); });
+    else if (asked & Quantity::omega_1)
+      each([](const SweepModes<T>& modes) { return modes.template frequencies<false>(); });
+    each([](const SweepModes<T>& modes) { return modes.status(); });
+  }
+
+  void one_part(size_t first, size_t count) {
+    load(first, count);
+    const Stance<Part> at = stance();
+    const unsigned asked = task.quantities;
+    if (asked & modal) assemble(at);
+    else if (asked & Quantity::cond_H) part.set_legs(at);
+    else part.fault = at.fault;
+    const SweepPart<Part> quantities{machine, task, {first, static_cast<int>(count)}, at};
+    const auto note = [&](const Part& fault) { part.fault = select(part.fault > 0.0, part.fault, fault); };
+    if (asked & geometric) quantities.geometry();
+    if (asked & Quantity::leg_force) note(quantities.static_force());
+    if (asked & Quantity::lowest_stiffness) note(quantities.stiffness());
+    if (asked & Quantity::omega_1_gradient) note(quantities.gradient());
+  }
+  FLEXAPOD_FLAT Stance<Part> stance() const { return Stance<Part>(machine, rows, task.width); }
+  FLEXAPOD_FLAT void assemble(const Stance<Part>& at) { part.set(machine, at); }
+
+  /// A short last part is filled up with its last pose.
+  void load(size_t first, size_t count) {
+    for (int l = 0; l < Part::lanes; ++l) {
+      const double* pose = task.poses + (first + (static_cast<size_t>(l) < count ? l : count - 1)) * task.width;
+      for (int c = 0; c < task.width; ++c) rows[c][l] = pose[c];
+    }
+    if (task.width == 6)
+      for (int c = 3; c < 6; ++c)
+        if (any(abs(Part::load(rows[c])) > 1e6)) [[unlikely]] wind_down(rows[c]);
+  }
+  /// Angles of very many turns to within one.
+  static FLEXAPOD_COLD void wind_down(double (&angles)[Part::lanes]) {
+    for (double& a : angles)
+      if (std::abs(a) > 1e6) a = std::atan2(std::sin(a), std::cos(a));
+  }
+  void join(Dynamics<T>& joined, int i) const {
+    joined.fault.set_part(i, part.fault);
+    if (!(task.quantities & (modal | Quantity::cond_H))) return;
+    for (int r = 0; r < 6; ++r)
+      for (int c = 0; c < 6; ++c) joined.H[r][c].set_part(i, part.H[r][c]);
+    if (!(task.quantities & modal)) return;
+    join(joined.J.top, part.J.top, i), join(joined.J.bottom, part.J.bottom, i);
+    for (int r = 0; r < 3; ++r) {
+      joined.J.bottom_left.row[r].x.set_part(i, part.J.bottom_left.row[r].x);
+      joined.J.bottom_left.row[r].y.set_part(i, part.J.bottom_left.row[r].y);
+      joined.J.bottom_left.row[r].z.set_part(i, part.J.bottom_left.row[r].z);
+    }
+  }
+  static void join(Sym3<T>& to, const Sym3<Part>& from, int i) {
+    to.xx.set_part(i, from.xx), to.yy.set_part(i, from.yy), to.zz.set_part(i, from.zz);
+    to.xy.set_part(i, from.xy), to.xz.set_part(i, from.xz), to.yz.set_part(i, from.yz);
+  }
+};
+
+}  // namespace flexapod

@@ -1,0 +1,139 @@
+// How a machine stands in a pack of poses: platform and base in the axes of the platform, where the platform's joints
+// and inertia are constants. The base's frame is the inertial one.
+#pragma once
+
+#include "simd/elementary.hpp"
+#include "model/equations.hpp"
+#include "sweep/task.hpp"
+
+namespace flexapod {
+
+/// What of a machine is the same at all poses.
+struct SweptMachine {
+  Machine<double> machine;
+  Machine<double> weightless;  // gravity enters as an acceleration of platform and base
+  SpatialInertia<double> J_platform;  // platform axes
+  double root_K[6];
+  double size;  // of the platform: makes rows of forces and of moments comparable
+
+  explicit SweptMachine(const sweep_task::Task& task)
+      : machine(*reinterpret_cast<const Design<double>*>(task.design),
+                task.universal ? Joint::universal : Joint::spin_free),
+        weightless(machine),
+        J_platform(platform_inertia(machine.design, Mat3<double>::identity())),
+        size(0.0) {
+    weightless.design.gravity = Vec3<double>();
+    for (int i = 0; i < 6; ++i) {
+      root_K[i] = std::sqrt(machine.design.leg[i].stiffness);
+      size += norm(machine.design.p[i]) / 6.0;
+    }
+  }
+};
+
+/// A fault is a status as a number in a lane. What is wrong with the pose itself is not replaced.
+template <class T> FLEXAPOD_INLINE T worse(const mask_t<T>& bad, sweep_task::Status status, const T& fault) {
+  return select(bad & (fault <= T(sweep_task::singular)), T(status), fault);
+}
+/// Lanes where legs have no directions.
+template <class T> FLEXAPOD_INLINE mask_t<T> no_pose(const T& fault) {
+  return (fault >= T(sweep_task::no_leg)) & (fault <= T(sweep_task::not_finite));
+}
+
+/// The value, or NaN in lanes where it has no meaning.
+template <class T> FLEXAPOD_INLINE T unless(const mask_t<T>& bad, const T& value) {
+  return select(bad, T(std::numeric_limits<double>::quiet_NaN()), value);
+}
+
+/// A pack of poses and how the machine stands there, in the platform's axes.
+template <class T> struct Stance {
+  Vec3<T> roll_axis, pitch_axis;  // where poses are given by angles
+  Pose<T> pose;                   // of the platform in the base
+  Geometry<T, double> g;
+  T fault;
+
+  Stance(const SweptMachine& m, const double (*rows)[T::lanes], int width)
+      : pose(read(rows, width)), g(m.machine.design, base()) {
+    T zero(0.0);
+    for (int i = 0; i < width; ++i) zero += T::load(rows[i]) * 0.0;
+    fault = worse(!(zero <= 0.0), sweep_task::not_finite, T(0.0));  // infinity and NaN times zero are NaN
+    const T least(1e-24 * m.size * m.size);
+    for (const Vec3<T>& S : g.S) fault = worse(!(dot(S, S) > least), sweep_task::no_leg, fault);
+  }
+
+  /// The base seen from the platform.
+  Pose<T> base() const { return {-transposed(pose.R, pose.t), transpose(pose.R)}; }
+
+ private:
+  Pose<T> read(const double (*rows)[T::lanes], int width) {
+    const auto row = [&](int i) { return T::load(rows[i]); };
+    const Vec3<T> t(row(0), row(1), row(2));
+    if (width == 12)
+      return {t, {{{row(3), row(4), row(5)}, {row(6), row(7), row(8)}, {row(9), row(10), row(11)}}}};
+    const SinCos<T> r(row(3)), p(row(4)), y(row(5));
+    const T sr = r.sin, cr = r.cos, sp = p.sin, cp = p.cos, sy = y.sin, cy = y.cos;
+    roll_axis = {cy * cp, sy * cp, -sp};
+    pitch_axis = {-sy, cy, T(0.0)};
+    return {t,
+            {{{roll_axis.x, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr},
+              {roll_axis.y, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr},
+              {roll_axis.z, cp * sr, cp * cr}}}};
+  }
+};
+
+/// What vibrates: J_p and H, in the platform's axes.
+template <class T> struct Dynamics {
+  SpatialInertia<T> J;
+  Mat6<T> H;
+  T fault;
+
+  /// With lengths and directions only: J is left.
+  void set_legs(const Stance<T>& at) {
+    fault = at.fault;
+    for (int i = 0; i < 6; ++i) {
+      const Vec3<T>& S = at.g.S[i];
+      set_column(i, leg_wrench(at.g.q_p[i], rsqrt(dot(S, S)) * S));
+    }
+  }
+  void set(const SweptMachine& m, const Stance<T>& at) {
+    const auto axes = [&](int i) { return LegAxes<T>(at.g.S[i], at.g.k[i], m.machine.joint); };
+    const LegAxes<T> legs[6] = {axes(0), axes(1), axes(2), axes(3), axes(4), axes(5)};  // together: six long chains
+    J = pack(m.J_platform);
+    fault = at.fault;
+    for (int i = 0; i < 6; ++i) {
+      add_leg_inertia(J, legs[i], m.machine.inertia[i], at.g.q_p[i]);
+      set_column(i, leg_wrench(at.g.q_p[i], legs[i].s()));
+      fault = worse(!(legs[i].cosecant < 1e7), sweep_task::no_leg, fault);
+    }
+  }
+  /// B = L^-1 H K^1/2.
+  Mat6<T> B(const SweptMachine& m, const Cholesky<T>& L) const {
+    Mat6<T> B;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) B[i][j] = m.root_K[j] * H[i][j];
+    L.forward_all(B);
+    return B;
+  }
+
+ private:
+  void set_column(int i, const Vec6<T>& h) {
+    for (int r = 0; r < 6; ++r) H[r][i] = h[r];
+  }
+  static SpatialInertia<T> pack(const SpatialInertia<double>& J) {
+    const auto sym = [](const Sym3<double>& m) { return Sym3<T>{m.xx, m.yy, m.zz, m.xy, m.xz, m.yz}; };
+    return {sym(J.top), {{J.bottom_left.row[0], J.bottom_left.row[1], J.bottom_left.row[2]}}, sym(J.bottom)};
+  }
+};
+
+/// Writes results of a pack of poses: rows `first` on, `count` of them.
+struct Rows {
+  size_t first;
+  int count;
+
+  template <class T> FLEXAPOD_INLINE void put(double* to, const T& value, int column = 0, int columns = 1) const {
+    double x[T::lanes];
+    value.store(x);
+    for (int l = 0; l < count; ++l) to[(first + l) * columns + column] = x[l];
+  }
+};
+
+}  // namespace flexapod

@@ -1,0 +1,50 @@
+"""`flexapod animate`: a mode as a moving picture."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from flexapod.cli.options import common
+
+if TYPE_CHECKING:
+    from flexapod.mechanics.inputs import JointModel
+
+
+@click.command()
+@common.machine_options
+@click.option(
+    "--mode", type=click.IntRange(1, 6), default=1, show_default=True, help="Number of the mode, lowest first."
+)
+@common.exaggeration_option
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, dir_okay=False),
+    default=None,
+    metavar="FILE",
+    help="A .gif, or an .mp4 with the extra 'video'. Default: <design>-mode-<number>.gif here.",
+)
+@common.json_option
+def command(
+    design: str,
+    pose: tuple[float, ...] | None,
+    changes: tuple[str, ...],
+    joint: JointModel,
+    mode: int,
+    exaggeration: float | None,
+    out: Path | None,
+    as_json: bool,
+) -> None:
+    """Animate a mode of DESIGN at a pose, its largest joint motion taken as 1 um. (In time: simulate --animate.)"""
+    hexapod, where = common.machine(design, changes, pose)
+    from flexapod.plots.animation import animate_mode
+
+    path = Path(f"{common.file_name(hexapod.name)}-mode-{mode}.gif") if out is None else out
+    factor = animate_mode(hexapod, where, mode, path, joint=joint, exaggeration=exaggeration)
+    if as_json:
+        found = {"design": hexapod.name, "mode": mode, "exaggeration": factor, "file": str(path)}
+        common.print_json({**found, "pose_m_deg": common.pose_numbers(where)})
+    else:
+        click.echo(f"Wrote {path}: mode {mode}, motion shown {factor:,.6g} times larger")

@@ -1,0 +1,69 @@
+"""`flexapod check`: is a file a hexapod, and is it within its limits at a pose?"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from flexapod.cli.options import common
+
+if TYPE_CHECKING:
+    from flexapod.design.hexapod import Hexapod
+    from flexapod.pose import Pose
+
+
+@click.command()
+@common.design_argument
+@common.pose_option
+@common.set_option
+@common.json_option
+def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...], as_json: bool) -> None:
+    """Check DESIGN: every key and value, and, at the pose given or at home, its limits.
+
+    Exit code 2 means that DESIGN is no hexapod; warnings and exceeded limits are printed and leave it at 0.
+    """
+    hexapod = common.load_design(design, changes)
+    where = common.pose_or_none(hexapod, pose)
+    found = {"design": hexapod.name, "digest": hexapod.digest, "warnings": hexapod.warnings, **_at(hexapod, where)}
+    found["ok"] = not (found["warnings"] or found["singularity"] or found["limits_exceeded"])
+    if as_json:
+        common.print_json(found)
+    else:
+        _show(hexapod, where, found)
+
+
+def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
+    """What holds at a pose; null without one."""
+    keys = ("pose_m_deg", "leg_lengths_m", "leg_distance_m", "condition_number", "singularity", "limits_exceeded")
+    if pose is None:
+        return dict.fromkeys(keys)
+    from flexapod.mechanics import kinematics
+    from flexapod.mechanics.conditioning import SINGULAR, platform_radius, singularity
+
+    condition = float(kinematics.condition_number(hexapod, pose, platform_radius(hexapod)))
+    values = (
+        common.pose_numbers(pose),
+        kinematics.inverse_kinematics(hexapod, pose),
+        kinematics.leg_distance(hexapod, pose),
+        kinematics.condition_number(hexapod, pose),
+        [] if condition < SINGULAR else singularity(condition),
+        kinematics.check_limits(hexapod, pose).exceeded,
+    )
+    return dict(zip(keys, values, strict=True))
+
+
+def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:
+    out = common.console()
+    out.print(repr(hexapod), markup=False, soft_wrap=True)
+    if pose is None:
+        out.print("No home pose and no --pose: limits were not checked.")
+    else:
+        lengths = found["leg_lengths_m"]
+        out.print(f"At {pose!r}:", markup=False, soft_wrap=True)
+        out.print(
+            f"  legs {lengths.min():.4g} to {lengths.max():.4g} m, axes at least {found['leg_distance_m']:.4g} m apart"
+        )
+        out.print(f"  condition number of H {found['condition_number']:.4g} (in metres)")
+    common.print_warnings((*(found["singularity"] or ()), *found["warnings"], *(found["limits_exceeded"] or ())))
+    out.print("[bold green]OK[/bold green]" if found["ok"] else "A valid design, with warnings.")

@@ -1,0 +1,106 @@
+"""`flexapod export`: the same machine as a file for another tool."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from flexapod.cli.options import common
+
+if TYPE_CHECKING:
+    from flexapod.design.hexapod import Hexapod
+    from flexapod.mechanics.inputs import JointModel
+    from flexapod.pose import Pose
+
+SUFFIXES = {"mjcf": ".xml", "urdf": ".urdf", "sdf": ".sdf", "mat": ".mat"}
+
+
+@click.command()
+@common.design_argument
+@click.option(
+    "--to",
+    "kind",
+    type=click.Choice(tuple(SUFFIXES)),
+    required=True,
+    help="mjcf: MuJoCo. urdf: a tree, with its loops and springs in a JSON file beside it. sdf: a world. mat: the "
+    "state space about rest, for MATLAB and SciPy.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, dir_okay=False),
+    default=None,
+    metavar="FILE",
+    help="The file to write; by default it is named after the design.",
+)
+@click.option(
+    "--nearest-physical",
+    is_flag=True,
+    help="Replace bodies that no solid has (leg parts without mass, impossible inertias), which other programs refuse, "
+    "by the nearest that exist.",
+)
+@common.pose_option
+@common.set_option
+@common.joint_option
+@common.json_option
+def command(
+    design: str,
+    kind: str,
+    out: Path | None,
+    nearest_physical: bool,
+    pose: tuple[float, ...] | None,
+    changes: tuple[str, ...],
+    joint: JointModel,
+    as_json: bool,
+) -> None:
+    """Write DESIGN at rest at a pose for another tool.
+
+    \b
+    flexapod export motion-base --to mjcf --out motion-base.xml
+    """
+    from flexapod.interchange.rigid_bodies import nearest_physical as nearest
+    from flexapod.mechanics.modes import natural_modes
+
+    if joint != "universal" and kind != "mat":
+        raise click.UsageError(f"--joint {joint} cannot be written as {kind}: its legs are real bodies. Leave it out.")
+    given = common.load_design(design, changes)
+    where = common.chosen_pose(given, pose)
+    hexapod = nearest(given) if nearest_physical else given
+    files = _write(kind, out or Path(f"{common.file_name(hexapod.name)}{SUFFIXES[kind]}"), hexapod, where, joint)
+    omega, before = (natural_modes(machine, where, joint).omega for machine in (hexapod, given))
+    written = [str(file) for file in files]
+    found = {
+        "design": hexapod.name,
+        "digest": hexapod.digest,
+        "pose_m_deg": common.pose_numbers(where),
+        "format": kind,
+        "files": written,
+        "bodies_replaced": hexapod != given,
+        "frequency_change": float(abs(omega / before - 1).max()),
+        "omega_rad_s": omega,
+    }
+    if as_json:
+        common.print_json(found)
+        return
+    click.echo(f"Wrote {' and '.join(written)}: {hexapod.name} at {where!r}.")
+    if found["bodies_replaced"]:
+        click.echo(f"Bodies were replaced; its natural frequencies change by {found['frequency_change']:.3g} at most.")
+
+
+def _write(kind: str, path: Path, hexapod: Hexapod, pose: Pose, joint: JointModel) -> tuple[Path, ...]:
+    if kind == "mjcf":
+        from flexapod.interchange.mjcf import write_mjcf
+
+        return (write_mjcf(path, hexapod, pose),)
+    if kind == "urdf":
+        from flexapod.interchange.urdf import write_urdf
+
+        return write_urdf(path, hexapod, pose)
+    if kind == "sdf":
+        from flexapod.interchange.sdf import write_sdf
+
+        return (write_sdf(path, hexapod, pose),)
+    from flexapod.interchange.matlab import write_mat
+
+    return (write_mat(path, hexapod, pose, joint=joint),)

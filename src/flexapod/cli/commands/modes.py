@@ -1,0 +1,78 @@
+"""`flexapod modes`: the six natural frequencies at a pose."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from flexapod.cli.options import common
+
+if TYPE_CHECKING:
+    from flexapod.mechanics.inputs import JointModel
+    from flexapod.pose import Array
+
+TURN = 6.283185307179586
+
+
+@click.command()
+@common.machine_options
+@common.characteristic_length_option
+@common.json_option
+def command(
+    design: str,
+    pose: tuple[float, ...] | None,
+    changes: tuple[str, ...],
+    joint: JointModel,
+    characteristic_length: float | None,
+    as_json: bool,
+) -> None:
+    """Six natural frequencies of DESIGN at a pose, lowest first (the lowest is the dynamic stability index).
+
+    DESIGN is a packaged design's name (see `flexapod designs`) or the path of a .toml file.
+    """
+    from flexapod.mechanics import kinematics, modes
+
+    hexapod, where = common.machine(design, changes, pose)
+    omega, shape = modes.natural_modes(hexapod, where, joint)
+    condition = float(kinematics.condition_number(hexapod, where, characteristic_length))
+    lengths = kinematics.inverse_kinematics(hexapod, where)
+    descriptions = [mode.text for mode in modes.describe_modes(hexapod, where, joint)]
+    if as_json:
+        common.print_json(
+            {
+                "design": hexapod.name,
+                "digest": hexapod.digest,
+                "pose_m_deg": common.pose_numbers(where),
+                "joint": joint,
+                "omega_rad_s": omega,
+                "frequency_hz": omega / TURN,
+                "stability_index_rad_s": omega[0],
+                "condition_number": condition,
+                "characteristic_length_m": characteristic_length,
+                "leg_lengths_m": lengths,
+                "sampling_time_s": modes.advised_sampling_time(omega[-1]),
+                "near_repeated": [[i + 1, j + 1] for i, j in modes.near_repeated(omega)],
+                "mode_shapes": shape,
+                "descriptions": descriptions,
+            }
+        )
+        return
+    _show(f"{hexapod.name} at {where!r}, joint model {joint}", omega, descriptions)
+    scaled = f" (moments over {characteristic_length:g} m)" if characteristic_length else " (in metres)"
+    click.echo(f"Condition number of H: {condition:.6g}{scaled}")
+    click.echo("Leg lengths: " + "  ".join(f"{length:.6g}" for length in lengths) + " m")
+
+
+def _show(title: str, omega: Array, descriptions: list[str]) -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    common.console().print(Text(title), soft_wrap=True)
+    table = Table()
+    for heading in ("mode", "rad/s", "Hz"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    table.add_column("motion")
+    for i, words in enumerate(descriptions):
+        table.add_row(f"{i + 1}", f"{omega[i]:.6g}", f"{omega[i] / TURN:.5g}", words)
+    common.console().print(table)

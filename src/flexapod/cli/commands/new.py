@@ -1,0 +1,31 @@
+"""`flexapod new`: a commented design file to start from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from flexapod.cli.options import common
+
+
+@click.command()
+@click.argument("file", type=click.Path(path_type=Path), metavar="NAME.toml")
+@click.option("--force", is_flag=True, help="Replace the file if it is there.")
+@common.json_option
+def command(file: Path, force: bool, as_json: bool) -> None:
+    """Write a commented design file to start from; it is a complete machine, ready to be changed."""
+    from flexapod.design.design_file import template
+
+    path = file if file.suffix else file.with_suffix(".toml")
+    if path.suffix != ".toml":
+        raise click.UsageError(f"{path} does not end in .toml; a design is a TOML file. Name it {path.stem}.toml.")
+    if path.exists() and not force:
+        raise click.UsageError(f"{path} is there already. Choose another name, or replace it with --force.")
+    common.write_file(path, template(path.stem))
+    if as_json:
+        common.print_json({"file": str(path), "name": path.stem})
+        return
+    click.echo(f"Wrote {path}, a complete machine: change its numbers to those of yours. Then")
+    for words in ("check  {}    is it a hexapod, within its limits?", "report {}    its dynamics, as a page"):
+        click.echo("  flexapod " + words.format(path))

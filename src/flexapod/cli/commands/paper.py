@@ -1,0 +1,131 @@
+"""`flexapod paper`: the paper done anew, as figures, tables and one page."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from flexapod.cli.options import common
+from flexapod.cli.output.stages import stages
+
+if TYPE_CHECKING:
+    from flexapod.mechanics.inputs import JointModel
+    from flexapod.paper import Part
+
+PAGE = "index.html"
+_MANY = 50_000  # rows from which five digits must do, more than a drawing shows
+_SVG = {"svg.hashsalt": "flexapod"}  # the same numbers give the same file
+
+
+class FigureNumber(click.ParamType):
+    """A number of a figure that can be drawn."""
+
+    name = "number"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> int:
+        from flexapod.paper import FIGURES
+
+        text = str(value)
+        if not text.isdigit() or int(text) not in FIGURES:
+            self.fail(f"{text!r} is no figure that can be drawn; there are {', '.join(map(str, sorted(FIGURES)))}.")
+        return int(text)
+
+
+@click.command()
+@click.option(
+    "--figure",
+    "figures",
+    type=FigureNumber(),
+    multiple=True,
+    help="Number of a figure in the paper, for this figure without the page. Repeatable.  [default: everything]",
+)
+@click.option("--points", type=click.IntRange(min=100), default=None, metavar="N", help="Poses in a scatter figure.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the poses.")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    default=Path("out"),
+    show_default=True,
+    help=f"Directory for {PAGE}, comparison.csv, and of each part NAME.png, .svg, .csv (what is drawn), .json.",
+)
+@click.option(
+    "--joint",
+    type=click.Choice(common.JOINT_MODELS),
+    default="spin_free",
+    show_default=True,
+    help="Model of the base joints: the paper's legs that do not spin, or exact.",
+)
+@common.json_option
+def command(
+    figures: tuple[int, ...], points: int | None, seed: int, out: Path, joint: JointModel, as_json: bool
+) -> None:
+    """Do the work of Mukherjee, Dasgupta and Mallik (2007) anew with the packaged test manipulators.
+
+    The figures that can be computed, the natural frequencies, the three conclusions, and the errors of the printed
+    equations, each with a number; on one page, beside what the paper says. What the paper leaves open, such as the
+    ranges of the poses, is chosen here and told in the captions.
+    """
+    from flexapod.paper import PARTS, Settings, draw
+
+    common.output_directory(out)
+    settings = Settings(points, seed, joint)
+    names = [f"figure-{number}" for number in figures] or list(PARTS)
+    parts = []
+    with stages(quiet=as_json) as report:
+        for name in names:
+            report(name, 0.0)
+            parts.append(draw(name, settings))
+            _write(parts[-1], out)
+            report(name, 1.0)
+        told = {
+            part.name.removeprefix("figure-"): {"file": str(out / f"{part.name}.png"), **_record(part)}
+            for part in parts
+        }
+        if not figures:
+            report("page", 0.0)
+            told["page"] = _page(parts, out)
+    if as_json:
+        common.print_json(told)
+        return
+    for part in parts:
+        _print(part, out)
+    if not figures:
+        page = told["page"]
+        counts = ", ".join(f"{count} {verdict}" for verdict, count in page["statements"].items())
+        click.echo(f"{page['file']}\n  the paper's statements: {counts}")
+
+
+def _write(part: Part, out: Path) -> None:
+    """The part's files."""
+    import matplotlib
+
+    common.save_figure(part.figure, out / f"{part.name}.png")
+    with matplotlib.rc_context(_SVG):  # type: ignore[arg-type]
+        common.save_figure(part.figure, out / f"{part.name}.svg")
+    common.write_file(out / f"{part.name}.json", json.dumps(_record(part), indent=2, ensure_ascii=False) + "\n")
+    digits = "%.9g" if len(part.table) < _MANY else "%.5g"
+    common.write_file(out / f"{part.name}.csv", part.table.to_csv(float_format=digits))
+    if part.shown is not None:
+        common.write_file(out / f"{part.name}-table.csv", part.shown.to_csv())
+
+
+def _record(part: Part) -> dict[str, Any]:
+    claims = [claim._asdict() for claim in part.claims]
+    return {"caption": part.caption, "numbers": common.plain(part.numbers), "claims": claims}
+
+
+def _page(parts: list[Part], out: Path) -> dict[str, Any]:
+    from flexapod.report.studies import paper
+
+    common.write_file(out / PAGE, paper.page(parts))
+    common.write_file(out / "comparison.csv", paper.comparison(parts).to_csv())
+    return {"file": str(out / PAGE), "statements": dict(paper.verdicts(parts))}
+
+
+def _print(part: Part, out: Path) -> None:
+    click.echo(f"{out / part.name}.png\n  {part.caption}")
+    for claim in part.claims:
+        click.echo(f"  [{claim.verdict}] {claim.paper}\n      {claim.ours}")

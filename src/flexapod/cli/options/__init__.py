@@ -1,0 +1,1 @@
+"""Options that commands share, and how their words become designs, poses and numbers."""

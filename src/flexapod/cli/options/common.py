@@ -1,0 +1,235 @@
+"""What the commands share: their common options, and how arguments become a design and a pose and results become JSON.
+
+A command stacks the decorators it needs on a function whose parameters carry the option's name:
+
+    @click.command()
+    @machine_options      # design: str, changes: tuple[str, ...], pose: tuple[float, ...] | None, joint: JointModel
+                          #     turn the first three into a Hexapod and a Pose with `machine(design, changes, pose)`
+    @json_option          # as_json: bool      print with `print_json`
+    def command(...): ...
+
+`machine_options` is design_argument, pose_option, set_option and joint_option; some commands need only a part of them.
+Nothing here imports NumPy before a command asks for a design, so that `flexapod --help` answers at once. A command
+raises FlexapodError or click.UsageError for what the user can put right; `flexapod.cli.main` prints it and exits
+with 2.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.shell_completion import CompletionItem
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+    from rich.console import Console
+
+    from flexapod.design.hexapod import Hexapod
+    from flexapod.pose import Pose
+
+JOINT_MODELS = ("universal", "spin_free")
+
+
+class DesignName(click.ParamType):
+    """A packaged design's name or a path to a .toml file; completes both."""
+
+    name = "design"
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        from flexapod.design.design_file import packaged_designs
+
+        names = [CompletionItem(name) for name in packaged_designs() if name.startswith(incomplete)]
+        return [*names, CompletionItem(incomplete, type="file")]
+
+
+class Assignment(click.ParamType):
+    """KEY=VALUE of a design file; completes the keys."""
+
+    name = "key=value"
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        from flexapod.design.schema import KEYS
+
+        return [CompletionItem(f"{key}=") for key in KEYS if key.startswith(incomplete)]
+
+
+design_argument = click.argument("design", type=DesignName())
+set_option = click.option(
+    "--set",
+    "changes",
+    type=Assignment(),
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Change a number of the design, as platform.mass=400 or legs.stiffness_N_per_um[2]=10. Repeatable.",
+)
+pose_option = click.option(
+    "--pose",
+    type=float,
+    nargs=6,
+    default=None,
+    metavar="X Y Z ROLL PITCH YAW",
+    help="Pose of the platform in the base frame: m, and degrees about the fixed axes x, y, z. Default: home pose.",
+)
+joint_option = click.option(
+    "--joint",
+    type=click.Choice(JOINT_MODELS),
+    default="universal",
+    show_default=True,
+    help="Model of the base joints: exact, or the paper's legs that do not spin.",
+)
+characteristic_length_option = click.option(
+    "--characteristic-length",
+    type=click.FloatRange(min=0, min_open=True),
+    default=None,
+    metavar="M",
+    help="Divide the moment rows of H by this length before its condition number is taken.",
+)
+exaggeration_option = click.option(
+    "--exaggeration",
+    type=click.FloatRange(min=0, min_open=True),
+    default=None,
+    metavar="FACTOR",
+    help="How many times larger a moving picture shows the motion. Default: so that it is seen well.",
+)
+json_option = click.option("--json", "as_json", is_flag=True, help="Print the results as JSON, in SI units.")
+
+
+def out_option(help: str) -> Callable[[Any], Any]:
+    """--out DIR: None where it is not given."""
+    return click.option(
+        "--out", type=click.Path(path_type=Path, file_okay=False), default=None, metavar="DIR", help=help
+    )
+
+
+def stack(*decorators: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """Several decorators as one, the first outermost."""
+
+    def decorate(function: Any) -> Any:
+        for decorator in reversed(decorators):
+            function = decorator(function)
+        return function
+
+    return decorate
+
+
+machine_options = stack(design_argument, pose_option, set_option, joint_option)
+
+
+def machine(design: str, changes: Iterable[str], pose: tuple[float, ...] | None) -> tuple[Hexapod, Pose]:
+    """The design with its changes, and the pose given or else its home. Raises DesignError, UsageError."""
+    hexapod = load_design(design, changes)
+    return hexapod, chosen_pose(hexapod, pose)
+
+
+def load_design(design: str, changes: Iterable[str] = ()) -> Hexapod:
+    """The design of a name or path, with the changes of `--set`. Raises DesignError."""
+    from flexapod.design.hexapod import load, parse_assignments
+
+    hexapod = load(design)
+    assignments = parse_assignments(changes)
+    return hexapod.replace(assignments) if assignments else hexapod
+
+
+def chosen_pose(hexapod: Hexapod, six: tuple[float, ...] | None) -> Pose:
+    """The pose of `--pose` (m, deg), or else the design's home pose. Raises UsageError where there is neither."""
+    pose = pose_or_none(hexapod, six)
+    if pose is None:
+        raise click.UsageError(
+            f"{hexapod.name!r} names no home pose, so a pose is needed. Give --pose X Y Z ROLL PITCH YAW (m, degrees), "
+            "or add a [home] table with position = [x, y, z] to the design."
+        )
+    return pose
+
+
+def pose_or_none(hexapod: Hexapod, six: tuple[float, ...] | None) -> Pose | None:
+    """As `chosen_pose`, but None where there is neither."""
+    from flexapod.mechanics.kinematics import home_pose
+    from flexapod.pose import Pose
+
+    if six is None:
+        return home_pose(hexapod)
+    return Pose.from_rpy(*six[:3], *(math.radians(angle) for angle in six[3:]))
+
+
+def pose_numbers(pose: Pose) -> list[float]:
+    """A pose as the six numbers of `--pose`: m and degrees."""
+    return [*pose.position.tolist(), *(math.degrees(angle) for angle in pose.rpy)]
+
+
+def output_directory(path: Path) -> Path:
+    """The directory, made if it is not there. Raises UsageError where that cannot be."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise click.UsageError(f"{path} cannot be made a directory: {error.strerror}. Choose another --out.") from error
+    return path
+
+
+def file_name(name: str) -> str:
+    """A design's name as a file's: nothing in it that a file system or a shell could take amiss."""
+    return re.sub(r"[^\w.-]+", "-", name).strip("-.") or "hexapod"
+
+
+def write_file(path: Path, text: str) -> None:
+    """Write text. Raises UsageError where that cannot be."""
+    try:
+        path.write_text(text, encoding="utf-8", newline="\n")
+    except OSError as error:
+        raise click.UsageError(f"{path} cannot be written: {error.strerror}. Choose another place.") from error
+
+
+def save_figure(figure: Figure, path: Path) -> None:
+    """Write a figure to a file of the kind that its name ends with. Raises UsageError where that cannot be."""
+    try:
+        figure.savefig(path, dpi=160)
+    except (OSError, ValueError) as error:
+        raise click.UsageError(f"{path} cannot be written: {error}. Choose another place.") from error
+
+
+def save_netcdf(dataset: xr.Dataset, path: Path) -> None:
+    """Write a dataset as NetCDF. Raises UsageError where that cannot be."""
+    try:
+        dataset.to_netcdf(path)
+    except OSError as error:
+        raise click.UsageError(f"{path} cannot be written: {error.strerror or error}. Choose another place.") from error
+
+
+def print_json(result: Mapping[str, Any]) -> None:
+    """A result on standard output as JSON, a key a line; arrays become lists, NaN and infinity become null."""
+    lines = (f"  {json.dumps(key)}: {json.dumps(plain(value))}" for key, value in result.items())
+    click.echo("{\n" + ",\n".join(lines) + "\n}")
+
+
+def plain(value: Any) -> Any:
+    """A value in what JSON knows."""
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if hasattr(value, "tolist"):  # an array or a number of NumPy
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def console() -> Console:
+    """Where tables are printed: as wide as the terminal, plain text when the output is not one."""
+    from rich.console import Console
+
+    return Console(highlight=False)
+
+
+def print_warnings(texts: Iterable[str]) -> None:
+    """What to beware of, on standard output with the results; brackets in it are no markup."""
+    from rich.markup import escape
+
+    for text in texts:
+        console().print(f"[bold yellow]Warning:[/bold yellow] {escape(text)}", soft_wrap=True)

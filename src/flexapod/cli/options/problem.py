@@ -1,0 +1,197 @@
+"""Variables, objectives and constraints as a command line says them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+if TYPE_CHECKING:
+    from flexapod.design.hexapod import Hexapod
+    from flexapod.optimisation.constraints import Constraint
+    from flexapod.optimisation.objectives import Objective
+    from flexapod.optimisation.variables import JointCircle, Variable
+    from flexapod.workspace.region import Places
+
+_CIRCLE = {"radius": "length", "half_angle": "angle", "turn": "angle", "height": "length"}
+#: What --keep may name: the constraint, and the dimension of its bound.
+KEEPS = {
+    "footprint": "length",
+    "platform-footprint": "length",
+    "stroke": "length",
+    "shortest-leg": "length",
+    "longest-leg": "length",
+    "clearance": "length",
+    "universal-angle": "angle",
+    "spherical-angle": "angle",
+    "cond": None,
+    "mass": "mass",
+    "deflection": "length",
+    "limits": None,
+}
+
+
+def variables(texts: Iterable[str]) -> list[Variable | JointCircle]:
+    """`--vary` options: KEY=LEAST:LARGEST, tied keys with commas, + to add, * to scale, PLATE.circle.PART."""
+    from flexapod.optimisation.variables import JointCircle, Variable
+
+    found: list[Any] = []
+    circles: dict[str, dict[str, Any]] = {}
+    for text in texts:
+        keys, low, high = _range("--vary", text)
+        kind = {"+": "add", "*": "scale"}.get(keys[:1], "set")
+        keys = keys.lstrip("+*")
+        plate, _, part = keys.partition(".circle.")
+        if part:
+            name, unit = _unit("--vary", part, _CIRCLE)
+            circles.setdefault(plate, {})[name] = (unit(low), unit(high))
+            continue
+        ties = {key.lstrip("-"): -1.0 if key.startswith("-") else 1.0 for key in keys.split(",")}
+        found.append(Variable(ties, low, high, kind))  # type: ignore[arg-type]
+    return [*(JointCircle(plate, **parts) for plate, parts in circles.items()), *found]  # type: ignore[arg-type]
+
+
+def constraints(texts: Iterable[str]) -> list[Constraint]:
+    """`--keep` options: NAME, as the design has it, or NAME=BOUND or NAME_UNIT=BOUND."""
+    return [keep(text) for text in texts]
+
+
+def keep(text: str) -> Constraint:
+    """One of them."""
+    from flexapod.optimisation import constraints as c
+
+    given, equals, value = text.partition("=")
+    name, unit = _unit("--keep", given.strip(), KEEPS)
+    bound = unit(_number("--keep", text, value)) if equals else None
+    if name == "limits" and equals:
+        raise click.UsageError("--keep limits takes no bound: it keeps the [limits] of the design.")
+    makers = {
+        "footprint": lambda: c.Footprint(bound),
+        "platform-footprint": lambda: c.Footprint(bound, "platform"),
+        "stroke": lambda: c.Stroke(bound),
+        "shortest-leg": lambda: c.LegLength(least=bound),
+        "longest-leg": lambda: c.LegLength(most=bound),
+        "clearance": lambda: c.LegClearance(bound),
+        "universal-angle": lambda: c.JointAngle("universal", bound),
+        "spherical-angle": lambda: c.JointAngle("spherical", bound),
+        "cond": lambda: c.ConditionNumber(bound),
+        "mass": lambda: c.TotalMass(bound),
+        "deflection": lambda: c.Deflection(bound),
+        "limits": c.DesignLimits,
+    }
+    if name in ("shortest-leg", "longest-leg") and bound is None:
+        raise click.UsageError(f"--keep {name} needs a bound, such as {name}_mm=120.")
+    return makers[name]()
+
+
+def where(
+    hexapod: Hexapod,
+    pose: tuple[float, ...] | None,
+    box: Iterable[str],
+    around: tuple[float, float] | None,
+) -> Places | None:
+    """The places of --pose, --box or --around (which moves with home); None for the home pose."""
+    import numpy as np
+
+    from flexapod.cli.options.poses import box_of
+    from flexapod.workspace.region import Workspace, places
+
+    box = tuple(box)
+    if sum((pose is not None, bool(box), around is not None)) > 1:
+        raise click.UsageError("--pose, --box and --around each say where. Give one of them.")
+    if around is not None:
+        return Workspace.about_home(around[0], math.radians(around[1]))
+    if box:
+        return Workspace(box_of(hexapod, box, None))
+    return None if pose is None else places(np.concatenate([pose[:3], np.radians(pose[3:])]))
+
+
+def objective(
+    hexapod: Hexapod,
+    pose: tuple[float, ...] | None,
+    box: Iterable[str],
+    around: tuple[float, float] | None,
+    poses: Path | None,
+) -> Objective:
+    """The least index over the places, or the mean over the poses of a file."""
+    from flexapod.cli.options.poses import read_poses
+    from flexapod.optimisation.objectives import LeastIndex, MeanIndex
+
+    over = where(hexapod, pose, box, around)
+    if poses is None:
+        return LeastIndex(over)
+    if over is not None:
+        raise click.UsageError("--mean takes the poses of its file. Leave --pose, --box and --around out.")
+    return MeanIndex(read_poses(poses))
+
+
+def uncertain(texts: Iterable[str]) -> list[Any]:
+    """`--uncertain` options: KEY=SPREAD or SPREAD%, then a distribution and `together` after commas."""
+    from flexapod.optimisation.uncertainty import Uncertain
+
+    found = []
+    for text in texts:
+        key, equals, value = text.partition("=")
+        spread, *words = (word.strip() for word in value.split(","))
+        if not equals or not spread:
+            raise click.UsageError(
+                f"--uncertain {text}: write KEY=SPREAD, such as legs.stiffness=10% or {key}=5%,normal."
+            )
+        together = "together" in words
+        kinds = [word for word in words if word != "together"]
+        if len(kinds) > 1:
+            raise click.UsageError(f"--uncertain {text}: {' and '.join(kinds)} are two distributions. Give one.")
+        kind = kinds[0] if kinds else "uniform"
+        relative = spread.endswith("%")
+        number = _number("--uncertain", text, spread.rstrip("%")) * (0.01 if relative else 1.0)
+        found.append(Uncertain(key.strip(), number, kind, relative, not together))  # type: ignore[arg-type]
+    return found
+
+
+def span(option: str, text: str) -> tuple[float, float]:
+    """`0:500`, or one number for both."""
+    low, colon, high = text.partition(":")
+    return _number(option, text, low), _number(option, text, high if colon else low)
+
+
+def _range(option: str, text: str) -> tuple[str, float, float]:
+    keys, equals, bounds = text.rpartition("=")
+    low, colon, high = bounds.partition(":")
+    if not equals or not colon or not keys:
+        raise click.UsageError(
+            f"{option} {text}: write KEY=LEAST:LARGEST, such as platform.mass=20:40 or base.circle.radius_mm=100:200."
+        )
+    return keys.strip(), _number(option, text, low), _number(option, text, high)
+
+
+def _number(option: str, text: str, number: str) -> float:
+    try:
+        return float(number)
+    except ValueError:
+        raise click.UsageError(f"{option} {text}: {number!r} is no number.") from None
+
+
+def _si(number: float, dimension: str, unit: str) -> float:
+    from flexapod.design.units import to_si
+
+    return float(to_si(number, dimension, unit))
+
+
+def _unit(option: str, given: str, known: dict[str, Any]) -> tuple[str, Callable[[float], float]]:
+    """`stroke_mm` -> its name and what turns its numbers into SI units."""
+    from flexapod.design.units import UNITS
+
+    for name in sorted(known, key=len, reverse=True):
+        if given == name:
+            return name, float
+        unit = given[len(name) + 1 :]
+        if given.startswith(f"{name}_") and known[name] and unit in UNITS[known[name]]:
+            return name, partial(_si, dimension=known[name], unit=unit)
+    raise click.UsageError(
+        f"{option}: there is no {given!r}. There are {', '.join(known)}; lengths, angles and masses may carry a unit, "
+        "as in stroke_mm or universal-angle_deg."
+    )

@@ -1,0 +1,155 @@
+"""The options of `flexapod sweep`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from flexapod.cli.options import common
+
+if TYPE_CHECKING:
+    from flexapod.mechanics.inputs import JointModel
+
+DEFAULT_POINTS = 100_000
+
+
+@dataclass(frozen=True)
+class Options:
+    """The command line, as given."""
+
+    design: str
+    changes: tuple[str, ...]
+    joint: JointModel
+    as_json: bool
+    box: tuple[str, ...]
+    around: tuple[float, float] | None
+    grid: tuple[str, ...]
+    poses: Path | None
+    points: int | None
+    seed: int
+    even: bool
+    quantities: str
+    out: Path | None
+    resume: bool
+    chunk: int | None
+    keep_poses: bool
+    summary: bool
+    threads: int | None
+    scheduler: str | None
+    at_least: float | None
+    worst: bool
+    figure: Path | None
+    level: float | None
+
+    @property
+    def streamed(self) -> bool:
+        return self.out is not None and self.out.suffix.lower() == ".zarr"
+
+
+poses_options = common.stack(
+    click.option(
+        "--box",
+        multiple=True,
+        metavar="NAME=LEAST:LARGEST,...",
+        help="Ranges of x, y, z (m), roll, pitch, yaw (degrees); one value holds a coordinate, and those not named are "
+        "held at the home pose. Repeatable.",
+    ),
+    click.option(
+        "--around",
+        type=float,
+        nargs=2,
+        default=None,
+        metavar="M DEG",
+        help="The box of the home pose plus and minus so many metres and degrees.",
+    ),
+    click.option(
+        "--grid",
+        multiple=True,
+        metavar="NAME=FIRST:LAST:COUNT,...",
+        help="All combinations of these values instead of points in a box. Repeatable.",
+    ),
+    click.option(
+        "--poses",
+        type=click.Path(path_type=Path, exists=True, dir_okay=False),
+        default=None,
+        help="Poses of a .csv or .npy file: x, y, z (m), roll, pitch, yaw (degrees).",
+    ),
+    click.option(
+        "--points",
+        type=click.IntRange(min=1),
+        default=None,
+        metavar="N",
+        help=f"Number of poses in the box.  [default: {DEFAULT_POINTS}]",
+    ),
+    click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the points."),
+    click.option(
+        "--low-discrepancy", "even", is_flag=True, help="Points of a scrambled Sobol sequence instead of random ones."
+    ),
+)
+output_options = common.stack(
+    click.option(
+        "--quantities",
+        default="omega_1,cond_H",
+        show_default=True,
+        metavar="NAMES",
+        help="What to compute, separated by commas; `all` for everything.",
+    ),
+    click.option(
+        "--out",
+        type=click.Path(path_type=Path),
+        default=None,
+        help="Where to write: .zarr (streamed, any size), .nc, .parquet or .csv.",
+    ),
+    click.option("--resume", is_flag=True, help="Go on with a .zarr store that the same command began."),
+    click.option(
+        "--chunk",
+        type=click.IntRange(min=1),
+        default=None,
+        metavar="N",
+        help="Most poses in a block of a .zarr store.  [default: up to 64 MiB]",
+    ),
+    click.option(
+        "--keep-poses/--no-poses",
+        default=True,
+        help="Whether a .zarr store holds the coordinates of points in a box, or only how to make them again.",
+    ),
+    click.option("--summary/--no-summary", default=True, help="Whether to read the results once more for the summary."),
+)
+machine_options = common.stack(
+    click.option(
+        "--threads", type=click.IntRange(min=1), default=None, metavar="N", help="Threads.  [default: all cores]"
+    ),
+    click.option(
+        "--scheduler",
+        default=None,
+        metavar="ADDRESS",
+        help="Compute on the Dask cluster of this scheduler (tcp://host:8786); `local` starts one here.",
+    ),
+)
+reading_options = common.stack(
+    click.option(
+        "--at-least",
+        type=float,
+        default=None,
+        metavar="RAD_S",
+        help="A wanted stability index: what part of the workspace reaches it?",
+    ),
+    click.option("--worst", is_flag=True, help="Refine the worst pose of the box by descent from several starts."),
+    click.option(
+        "--figure",
+        type=click.Path(path_type=Path, dir_okay=False),
+        default=None,
+        help="Draw (.png, .pdf, .svg) the map of a grid of two coordinates, the surface of equal index of one of "
+        "three, else index against cond(H).",
+    ),
+    click.option(
+        "--level",
+        type=float,
+        default=None,
+        metavar="RAD_S",
+        help="Index of the surface that --figure draws.  [default: the median]",
+    ),
+)

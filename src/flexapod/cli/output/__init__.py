@@ -1,0 +1,1 @@
+"""What commands print besides results: progress, summaries, and a clean end after an interrupt."""

@@ -1,0 +1,70 @@
+"""Progress of a run over many poses, on standard error: share, rate, time gone and left, poses with a status."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    Progress,
+    TaskID,
+    TaskProgressColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
+
+if TYPE_CHECKING:
+    from flexapod.workspace.store.store import Progress as State
+
+
+class PoseProgress:
+    """Called with each `flexapod.workspace.store.store.Progress`."""
+
+    def __init__(self) -> None:
+        columns = (
+            TextColumn("{task.fields[poses]}"),
+            BarColumn(),
+            TaskProgressColumn(),
+            TextColumn("{task.fields[rate]}"),
+            TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(),
+            TextColumn("{task.fields[bad]}"),
+        )
+        self._progress = Progress(*columns, console=Console(stderr=True))
+        self._task: TaskID | None = None
+
+    def __enter__(self) -> PoseProgress:
+        self._progress.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._progress.stop()
+
+    def __call__(self, state: State) -> None:
+        if self._task is None:
+            self._task = self._progress.add_task(
+                "", total=state.total, completed=state.before, poses="", rate="", bad=""
+            )
+        elapsed = self._progress.tasks[0].elapsed or 0.0
+        rate = f"{_short((state.done - state.before) / elapsed)} poses/s" if elapsed > 0 else ""
+        bad = sum(count for code, count in state.statuses.items() if code)
+        self._progress.update(
+            self._task,
+            completed=state.done,
+            poses=f"{_short(state.done)} of {_short(state.total)} poses",
+            rate=rate,
+            bad=f"{bad} not ok" if bad else "",
+        )
+
+
+def _short(number: float) -> str:
+    for size, letter in ((1e12, "T"), (1e9, "G"), (1e6, "M"), (1e3, "k")):
+        if number >= size:
+            return f"{number / size:.3g} {letter}"
+    return f"{number:.3g}"

@@ -1,0 +1,17 @@
+from .active_damping import open_zeros as open_zeros
+from .active_damping import root_locus as root_locus
+from .closed_loop_poles import ClosedLoop as ClosedLoop
+from .controllers import PID as PID
+from .controllers import ForceFeedback as ForceFeedback
+from .controllers import VelocityFeedback as VelocityFeedback
+from .isolation import controlled_transmissibility as controlled_transmissibility
+from .isolation import h_infinity as h_infinity
+from .isolation import lqg as lqg
+from .plant import Controller as Controller
+from .position_control import GainWarning as GainWarning
+from .position_control import closed_loop as closed_loop
+from .position_control import gain_map as gain_map
+from .sampled_simulation import Hardware as Hardware
+from .sampled_simulation import simulate_control as simulate_control
+from .sampling_rate import sampling_time as sampling_time
+from .scheduling import gain_schedule as gain_schedule

@@ -1,0 +1,16 @@
+from .excitation import Excitation as Excitation
+from .excitation import half_sine_pulse as half_sine_pulse
+from .excitation import half_sine_shock as half_sine_shock
+from .excitation import harmonic as harmonic
+from .excitation import polynomial as polynomial
+from .excitation import sine_sweep as sine_sweep
+from .excitation import smooth_step as smooth_step
+from .recordings import read_time_series as read_time_series
+from .recordings import time_series as time_series
+from .spectra import Spectrum as Spectrum
+from .spectra import flat_spectrum as flat_spectrum
+from .spectra import ground_noise as ground_noise
+from .spectra import random_motion as random_motion
+from .spectra import sea_motion as sea_motion
+from .spectra import sea_spectrum as sea_spectrum
+from .spectra import vc_curve as vc_curve

@@ -1,0 +1,111 @@
+"""A hexapod at a pose as a rigid-body program sees it: placements, bodies, springs at rest. All in the base frame."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from flexapod.design.hexapod import Hexapod, LegPart
+from flexapod.errors import PoseError
+from flexapod.interchange.rigid_bodies import check_physical
+from flexapod.mechanics.inputs import check_pose_of_one
+from flexapod.mechanics.kinematics import home_pose
+from flexapod.mechanics.statics import hold
+from flexapod.pose import Array, Pose
+
+
+class Body(NamedTuple):
+    """mass kg, center (3,) m, inertia (3, 3) kg m2 about the centre; in the axes of what it belongs to."""
+
+    mass: float
+    center: Array
+    inertia: Array
+
+
+class Leg(NamedTuple):
+    """One leg; its axes are x from base to platform joint, y = k x s normalised, z = x cross y."""
+
+    name: str  # leg1 to leg6
+    base_joint: Array  # (3,) m, base frame
+    platform_joint: Array  # (3,) m, platform frame
+    axes: Array  # (3, 3), the leg's axes as columns, base frame
+    axis: Array  # (3,) the universal joint's axis that is fixed in the base, in the leg's axes
+    length: float  # m
+    lower: Body  # from the base joint, leg axes
+    upper: Body  # from the platform joint, leg axes
+    stiffness: float  # N/m
+    force: float  # N, at rest, compression > 0
+    prismatic: float  # N s/m
+    universal: float  # N m s/rad
+    spherical: float  # N m s/rad
+    travel: tuple[float, float] | None  # m, from here to the shortest and the longest leg
+
+
+class Machine(NamedTuple):
+    """A hexapod at rest at a pose."""
+
+    name: str
+    gravity: Array  # (3,) m/s2
+    pose: Pose
+    platform: Body  # from the platform's reference point, platform axes
+    legs: tuple[Leg, ...]
+
+
+def standing(hexapod: Hexapod, pose: Pose | None = None) -> Machine:
+    """The machine at a pose, by default at home, at rest under gravity.
+
+    Raises PoseError without one pose, SingularPoseError where no leg forces hold it, DesignError for bodies that
+    rigid-body programs refuse.
+    """
+    where = pose_or_home(hexapod, pose)
+    check_physical(hexapod)
+    rest = hold(hexapod, where)
+    platform = Body(hexapod.platform_mass, hexapod.platform_mass_center, hexapod.platform_inertia)
+    legs = tuple(_leg(hexapod, where, i, float(rest.leg_force[i])) for i in range(6))
+    name = "".join(filter(str.isprintable, hexapod.name)) or "hexapod"  # XML takes no control characters
+    return Machine(name, hexapod.gravity, where, platform, legs)
+
+
+def pose_or_home(hexapod: Hexapod, pose: Pose | None) -> Pose:
+    """One pose: the given one, or the design's home. Raises PoseError where there is neither."""
+    where = home_pose(hexapod) if pose is None else pose
+    if where is None:
+        raise PoseError(f"{hexapod.name!r} names no home pose. Give a pose, or add [home] to the design.")
+    check_pose_of_one(where, "pose")
+    return where
+
+
+def _leg(hexapod: Hexapod, pose: Pose, i: int, force: float) -> Leg:
+    start, k = hexapod.base_joints[i], hexapod.universal_axes[i]
+    along = pose.position + pose.matrix @ hexapod.platform_joints[i] - start
+    length = float(np.linalg.norm(along))
+    s = along / length
+    y = np.cross(k, s)
+    y /= np.linalg.norm(y)
+    axes = np.column_stack([s, y, np.cross(s, y)])
+    legs, limit = hexapod.legs, hexapod.limits.leg_length
+    travel = None
+    if limit is not None:
+        low, high = np.broadcast_to(limit, (6, 2))[i] - length
+        travel = (float(low), float(high))
+    return Leg(
+        name=f"leg{i + 1}",
+        base_joint=start,
+        platform_joint=hexapod.platform_joints[i],
+        axes=axes,
+        axis=axes.T @ k,
+        length=length,
+        lower=_body(legs.lower, i),
+        upper=_body(legs.upper, i),
+        stiffness=float(legs.stiffness[i]),
+        force=force,
+        prismatic=float(legs.damping.prismatic[i]),
+        universal=float(legs.damping.universal[i]),
+        spherical=float(legs.damping.spherical[i]),
+        travel=travel,
+    )
+
+
+def _body(part: LegPart, i: int) -> Body:
+    return Body(float(part.mass[i]), part.mass_center[i], part.inertia[i])

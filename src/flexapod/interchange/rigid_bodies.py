@@ -1,0 +1,88 @@
+"""Rigid bodies as other tools demand them: with mass, and with an inertia that some body of that mass has."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flexapod.design.hexapod import Hexapod
+from flexapod.errors import DesignError
+from flexapod.pose import Array
+
+LEAST_MASS = 1e-4  # of the platform's mass, in place of none
+LEAST_SPREAD = 1e-6  # of the largest second moment, or of mass times the machine's height squared
+FLAT = 1e-9  # of the largest second moment: less is rounding
+
+
+def nearest_physical(hexapod: Hexapod) -> Hexapod:
+    """The same machine with bodies that exist; the machine itself if all do. Its frequencies differ: compare them.
+
+    A body's second moments of mass are the matrix trace(I)/2 E - I, kg m2, which is positive definite for real bodies.
+    Where it is not, its eigenvalues are raised to a millionth of the largest (a sheet gets a thickness of a thousandth
+    of its width, a thin rod a radius), the smallest change in the sum of squares that gives such moments. Leg parts
+    without mass get a ten-thousandth of the platform's.
+
+    Raises: nothing of its own.
+    Source: own.
+    """
+    changes: dict[str, Any] = {}
+    reach = float(np.ptp(np.concatenate([hexapod.base_joints, hexapod.platform_joints]), axis=0).max())
+    if _flaw(hexapod.platform_mass, hexapod.platform_inertia):
+        changes["platform.inertia"] = _mended(hexapod.platform_mass, hexapod.platform_inertia, reach)
+    for name in ("lower", "upper"):
+        part = getattr(hexapod.legs, name)
+        mass = np.where(part.mass > 0, part.mass, LEAST_MASS * hexapod.platform_mass)
+        inertia = np.array(
+            [
+                _mended(m, given, reach) if _flaw(m, given) else given
+                for m, given in zip(mass, part.inertia, strict=True)
+            ]
+        )
+        if (mass != part.mass).any():
+            changes[f"legs.{name}.mass"] = mass
+        if (inertia != part.inertia).any():
+            changes[f"legs.{name}.inertia"] = inertia
+    return hexapod.replace(changes) if changes else hexapod
+
+
+def check_physical(hexapod: Hexapod) -> None:
+    """Raises DesignError, with the remedies, for the first body that a rigid-body program refuses."""
+    bodies = [("platform", "", hexapod.platform_mass, hexapod.platform_inertia)]
+    for name in ("lower", "upper"):
+        part = getattr(hexapod.legs, name)
+        bodies += [(f"legs.{name}", f" of leg {i + 1}", part.mass[i], part.inertia[i]) for i in range(6)]
+    for key, leg, mass, inertia in bodies:
+        flaw = "its mass is 0" if mass == 0 else _flaw(mass, inertia)
+        if flaw:
+            raise DesignError(
+                f"{key}{leg} is a body that rigid-body programs refuse: {flaw}. Give {key} a mass and an inertia that "
+                "a solid body has, or take the nearest such body: flexapod.interchange.nearest_physical(hexapod), "
+                "on the command line --nearest-physical. It changes the natural frequencies somewhat."
+            )
+
+
+def _second_moments(inertia: Array) -> Array:
+    return np.asarray(np.trace(inertia) / 2 * np.eye(3) - inertia)
+
+
+def _flaw(mass: float, inertia: Array) -> str:
+    """Why no solid body has this inertia; "" where one has."""
+    moments = np.linalg.eigvalsh(_second_moments(inertia))
+    if moments[0] > FLAT * moments[2]:
+        return ""
+    principal = np.linalg.eigvalsh(inertia)
+    if principal[0] < -FLAT * np.abs(principal).max():
+        return f"its smallest principal moment of inertia is {principal[0]:.3g} kg m2"
+    return (
+        f"its largest principal moment of inertia is {principal[2]:.6g} kg m2 and the other two are together "
+        f"{principal[0] + principal[1]:.6g}, as of nothing that has an extent in all directions"
+    )
+
+
+def _mended(mass: float, inertia: Array, reach: float) -> Array:
+    moments, axes = np.linalg.eigh(_second_moments(inertia))
+    least = LEAST_SPREAD * max(moments[2], mass * reach**2 * LEAST_SPREAD)
+    spread = (axes * np.maximum(moments, least)) @ axes.T
+    spread = (spread + spread.T) / 2
+    return np.asarray(np.trace(spread) * np.eye(3) - spread)

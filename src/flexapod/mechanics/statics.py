@@ -1,0 +1,100 @@
+"""Rest: the leg forces that hold a pose, and where the platform settles for given unstretched leg lengths."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from numpy.typing import ArrayLike
+
+from flexapod import _core
+from flexapod.design.hexapod import Hexapod
+from flexapod.errors import KinematicsError, SingularPoseError
+from flexapod.mechanics.dynamics import inverse_dynamics
+from flexapod.mechanics.inputs import ZERO, JointModel, is_universal, states, wrench
+from flexapod.mechanics.kinematics import forward_kinematics, inverse_kinematics
+from flexapod.pose import Array, Pose, orthonormal, vectors
+
+
+class Equilibrium(NamedTuple):
+    """A pose at rest and what its legs carry.
+
+    pose: `Pose`. leg_force: (..., 6) N, positive: compression. leg_length, unstretched_length: (..., 6) m.
+
+    Source: Eqs 2 to 4; E6.
+    """
+
+    pose: Pose
+    leg_force: Array
+    leg_length: Array
+    unstretched_length: Array
+
+
+def hold(
+    hexapod: Hexapod,
+    pose: Pose,
+    *,
+    base: Pose | None = None,
+    force: ArrayLike = ZERO,
+    moment: ArrayLike = ZERO,
+    joint: JointModel = "universal",
+) -> Equilibrium:
+    """Leg forces (N) and unstretched lengths (m) that hold a pose at rest under gravity and a wrench (platform frame).
+
+    From F = -K (L - L0). force (N), moment (N m): at the platform's reference point. joint: legs whose mass is off
+    their axis weigh a little differently in the paper's model "spin_free".
+
+    Raises: SingularPoseError where no leg forces hold the pose, and PoseError at a pose that no leg can take; in a
+    batch such poses give NaN.
+    Source: Eqs 2 to 4; E6.
+    """
+    leg_force = inverse_dynamics(hexapod, pose, base, force, moment, joint)
+    length = inverse_kinematics(hexapod, pose, base)
+    return Equilibrium(pose, leg_force, length, length + leg_force / hexapod.legs.stiffness)
+
+
+def static_equilibrium(
+    hexapod: Hexapod,
+    unstretched_length: ArrayLike,
+    start: Pose | None = None,
+    *,
+    base: Pose | None = None,
+    force: ArrayLike = ZERO,
+    moment: ArrayLike = ZERO,
+    joint: JointModel = "universal",
+) -> Equilibrium:
+    """Where the platform is at rest under gravity and a wrench for unstretched leg lengths.
+
+    unstretched_length: (6,) m. force (N), moment (N m): on the platform, in its frame, at its reference point. Newton's
+    method with the exact tangent, from `start` or from the pose at which the legs have these lengths. The equilibrium
+    found may be unstable: poles of `linearise` with a positive real part tell.
+
+    Raises: KinematicsError where no equilibrium is found, and for lengths that are not six numbers > 0;
+    SingularPoseError where the tangent becomes singular.
+    Source: own; E6, part C.
+    """
+    L_0 = vectors(unstretched_length, "unstretched_length", 6)
+    if L_0.shape != (6,):
+        raise KinematicsError(f"unstretched_length has shape {L_0.shape}; static_equilibrium takes one set of six")
+    if (L_0 <= 0).any():
+        raise KinematicsError(f"unstretched_length has {L_0.min():.6g} m; every leg length must be > 0 m")
+    if start is None:
+        start = forward_kinematics(hexapod, L_0)
+        if base is not None:
+            start = Pose(base.position + base.matrix @ start.position, base.matrix @ start.matrix)
+    s = states(hexapod, start, base)
+    found, outcome = _core.settle(
+        hexapod.packed, is_universal(joint), s.platform, s.base, wrench(force, moment, ()), L_0
+    )
+    pose = Pose(found[:3], orthonormal(found[3:].reshape(3, 3)))
+    if outcome == "singular":
+        raise SingularPoseError(
+            f"the search for equilibrium met {pose!r}, where the legs have no stiffness in some direction. "
+            "Start nearer to the equilibrium, or stiffen the legs."
+        )
+    if outcome == "not_found":
+        raise KinematicsError(
+            f"no equilibrium was found; the search ended at {pose!r}. The load may be more than the legs can carry "
+            "before they collapse: start nearer, reduce the load, or stiffen the legs."
+        )
+    length = inverse_kinematics(hexapod, pose, base)
+    return Equilibrium(pose, hexapod.legs.stiffness * (L_0 - length), length, L_0)

@@ -1,1 +1,0 @@
-"""Optimal design: variables of a design, what they are to achieve and to respect, and the search for the best."""

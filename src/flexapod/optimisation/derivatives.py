@@ -1,0 +1,118 @@
+"""What a design does at some poses, with derivatives by the variables of a search; smooth stand-ins for extremes."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from flexapod import _core
+from flexapod.design.layout import HOME, PLACES
+from flexapod.pose import Array, Motion, Pose
+from flexapod.workspace.worst import twist_of_coordinates
+
+_FREQUENCIES, _FORCES, _LEGS = 1, 2, 4
+_NO_HOME = np.zeros((0, 24)), np.zeros((0, 6))
+
+
+class Slopes:
+    """A design, 217 numbers and their derivatives (217, n), at poses (k, 6) that move with home or do not.
+
+    Everything is computed when it is first asked for: value (k, ...) and derivative (k, ..., n).
+    """
+
+    def __init__(self, numbers: Array, jacobian: Array, rows: Array, from_home: bool, universal: bool) -> None:
+        self.numbers, self.jacobian, self.rows, self.from_home, self.universal = (
+            numbers,
+            jacobian,
+            rows,
+            from_home,
+            universal,
+        )
+
+    @cached_property
+    def omega(self) -> tuple[Array, Array]:
+        """Six frequencies (k, 6), rad/s, and v_a^T (dK - lambda dJ) v_b (k, 6, 6, n)."""
+        found = self._core(_FREQUENCIES)
+        return found["omega"], found["rayleigh"]
+
+    @cached_property
+    def H(self) -> tuple[Array, Array]:
+        value, slope = self._core(_FORCES)["H"]
+        return value.reshape(-1, 6, 6), slope.reshape(-1, 6, 6, slope.shape[-1])
+
+    @cached_property
+    def stiffness(self) -> tuple[Array, Array]:
+        """Of the legs, (6,) N/m and (6, n)."""
+        place = PLACES["legs.stiffness"]
+        return self.numbers[place], self.jacobian[place]
+
+    @property
+    def leg_length(self) -> tuple[Array, Array]:
+        return self._legs["leg_length"]
+
+    @property
+    def leg_distance(self) -> tuple[Array, Array]:
+        """Of every pair of legs, (k, 15): each is smooth, where the least of them is not."""
+        return self._legs["leg_distance"]
+
+    @property
+    def joint_cosine(self) -> tuple[Array, Array]:
+        """(k, 12): universal joints, spherical joints."""
+        return self._legs["joint_cosine"]
+
+    @cached_property
+    def _legs(self) -> dict[str, tuple[Array, Array]]:
+        return self._core(_LEGS)
+
+    def _core(self, what: int) -> dict:
+        home, by_home = self.numbers[HOME], self.jacobian[HOME]
+        k, n = len(self.rows), self.jacobian.shape[1]
+        displacement = np.zeros((k, n, 6))
+        if self.from_home:
+            for i, six in enumerate(self.rows):
+                displacement[i] = (twist_of_coordinates(six) @ by_home).T
+        motion, home_displacement = _NO_HOME
+        if np.isfinite(home).all():
+            motion = Motion(Pose.from_rpy(*home)).packed[None]
+            home_displacement = (twist_of_coordinates(home) @ by_home).T
+        return _core.design_gradients(
+            self.numbers[: HOME.start],
+            self.universal,
+            np.ascontiguousarray(Motion(Pose.from_rpy(*self.rows.T)).packed),
+            np.ascontiguousarray(self.jacobian[: HOME.start].T),
+            displacement,
+            np.ascontiguousarray(motion),
+            np.ascontiguousarray(home_displacement),
+            what,
+        )
+
+
+def soft_least(values: Array, slopes: Array, sharpness: float) -> tuple[Array, Array]:
+    """Logarithm of (sum v^-s)^(-1/s) over the last axis of positive values (..., m), slopes (..., m, n).
+
+    Below the logarithm of the least by at most log(m)/s. It is a symmetric function of the values, so that it is smooth
+    where they are eigenvalues that meet, whatever vectors are chosen there.
+    """
+    safe = np.maximum(values, 1e-300)
+    least = safe.min(axis=-1, keepdims=True)
+    weight = (least / safe) ** sharpness
+    total = weight.sum(axis=-1)
+    logarithm = np.log(least[..., 0]) - np.log(total) / sharpness
+    share = weight / total[..., None] / safe
+    return logarithm, np.einsum("...m,...mn->...n", share, slopes)
+
+
+def soft_most(values: Array, slopes: Array, sharpness: float) -> tuple[Array, Array]:
+    """The same for the largest: above its logarithm by at most log(m)/s."""
+    safe = np.maximum(values, 1e-300)
+    logarithm, slope = soft_least(1 / safe, -slopes / safe[..., None] ** 2, sharpness)
+    return -logarithm, -slope
+
+
+def index_slopes(at: Slopes, sharpness: float) -> tuple[Array, Array]:
+    """Logarithm of the smooth least frequency at each pose, (k,) and (k, n)."""
+    omega, rayleigh = at.omega
+    safe = np.maximum(omega, 1e-9 * omega[:, -1:])
+    diagonal = np.einsum("kaan->kan", rayleigh) / (2 * safe[..., None])
+    return soft_least(safe, diagonal, sharpness)

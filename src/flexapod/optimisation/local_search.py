@@ -1,0 +1,194 @@
+"""The last part of a search: sequential quadratic programming on exact derivatives.
+
+Maximising the least index over a workspace is a semi-infinite problem. It is solved by exchange (Blankenship, Falk): a
+few poses are held, the design is improved for them (SLSQP, with the least index t as one more variable), then the
+workspace is searched anew with that design, and the poses where it is worst are held as well, until none is worse.
+At each pose the six frequencies stand under one smooth minimum, a symmetric function of them: so it has a derivative
+where the lowest are equal, as they are at most optima. It is made sharper from round to round.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.layout import HOME, numbers
+from flexapod.errors import DesignError, PoseError
+from flexapod.optimisation.constraints import Requirement
+from flexapod.optimisation.derivatives import Slopes
+from flexapod.optimisation.problem import Assessment, Problem
+from flexapod.pose import Array
+from flexapod.workspace.worst import worst_pose
+
+_SHARPNESS = (40.0, 400.0, 4000.0, 4000.0, 4000.0)
+_SLACK = 1e-7  # bounds are kept by this much more than asked, so that rounding does not break them
+_CLOSE = 1e-5  # relative gain of a round below which the finish ends
+_FAR = 5.0  # most that a margin counts: what is far from its bound decides nothing
+
+
+@dataclass
+class _Held:
+    """Poses held for the objective or for one requirement; those of one batch belong together."""
+
+    requirement: Requirement | None
+    from_home: bool
+    rows: Array  # (k, 6), measured from home where from_home
+
+
+@dataclass(frozen=True)
+class Finished:
+    """Best design of a finish: variables (SI), what it makes of the problem, and how often anything was evaluated."""
+
+    x: Array
+    assessment: Assessment
+    evaluations: int
+    rounds: int
+
+
+def finish(
+    problem: Problem, start: Array, points: int, seed: int = 0, stop: Callable[[], bool] | None = None
+) -> Finished:
+    """Improves variables x from a start, in rounds. The start itself is returned where nothing better was found."""
+    best_x, best = start, assess_anew(problem, start, points, seed)
+    held: list[_Held] = []
+    u, evaluations, rounds = problem.map.unit(start), 0, 0
+    _hold(problem, start, held, points, seed)
+    for sharpness in _SHARPNESS:
+        if stop is not None and stop():
+            break
+        rounds += 1
+        local = _Local(problem, held, sharpness)
+        u = local.solve(u)
+        evaluations += local.evaluations
+        x = problem.map.from_unit(u)[0]
+        found = assess_anew(problem, x, points, seed + rounds)
+        gain = found.index / best.index - 1 if best.feasible and best.index > 0 else 1.0
+        if found.better_than(best):
+            best_x, best = x, found
+        if sharpness == _SHARPNESS[-1] and found.feasible and gain < _CLOSE:
+            break
+        _hold(problem, x, held, points, seed + rounds)
+    return Finished(best_x, best, evaluations, rounds)
+
+
+def assess_anew(problem: Problem, x: Array, points: int, seed: int) -> Assessment:
+    """As `Problem.assess_at`, with the least index over a box found to the last digit: sweep, then L-BFGS-B."""
+    found = problem.assess_at(x, points, seed)
+    if found.index <= 0:
+        return found
+    hexapod = problem.map.hexapod_at(x)
+    return Assessment(least_index(problem, hexapod, found.index, points, seed), found.margins, found.values)
+
+
+def least_index(problem: Problem, hexapod: Hexapod, index: float, points: int, seed: int) -> float:
+    """The index, lowered to what a descent from the worst poses of a sweep finds."""
+    box = problem.box(hexapod)
+    if box is None:
+        return index
+    worst = worst_pose(hexapod, box, problem.joint, points=points, starts=6, seed=seed, threads=problem.threads)
+    return min(index, worst.omega_1)
+
+
+def _hold(problem: Problem, x: Array, held: list[_Held], points: int, seed: int) -> None:
+    """Adds the poses where this design is worst."""
+    try:
+        hexapod = problem.map.hexapod_at(x)
+    except DesignError:
+        return
+    own = numbers(hexapod)
+    for group, (over, requirements) in enumerate(problem.groups()):
+        rows, found = problem.sweep(hexapod, group, points, seed)
+        origin = own[HOME] if over.from_home else np.zeros(6)
+        if group == 0:
+            chosen = rows[problem.objective.held(np.nan_to_num(found[problem.objective.quantity]))]
+            box = problem.box(hexapod)
+            if box is not None:
+                try:
+                    worst = worst_pose(hexapod, box, problem.joint, points=points, starts=6, seed=seed, threads=1)
+                    chosen = np.concatenate([[pose for _, pose in worst.minima], chosen])
+                except PoseError:
+                    pass  # the sweep's own worst poses are held
+            if over.box(own[HOME]) is not None or not held:
+                _add(held, None, over.from_home, chosen - origin)
+        for requirement in requirements:
+            worst_rows = requirement.kind.held(found, own, requirement.side)
+            _add(held, requirement, over.from_home, rows[worst_rows] - origin)
+    if not any(h.requirement is not None and h.requirement.over is None for h in held):
+        for requirement in problem.requirements:
+            if requirement.over is None:
+                held.append(_Held(requirement, False, np.zeros((0, 6))))
+
+
+def _add(held: list[_Held], requirement: Requirement | None, from_home: bool, rows: Array) -> None:
+    if any(h.requirement is requirement and np.array_equal(h.rows, rows) for h in held):
+        return
+    held.append(_Held(requirement, from_home, rows))
+
+
+class _Local:
+    """The problem with poses held: variables u in the unit cube, and t = ln(index / index at the start)."""
+
+    def __init__(self, problem: Problem, held: Sequence[_Held], sharpness: float) -> None:
+        self.problem, self.held, self.sharpness = problem, held, sharpness
+        self.evaluations = 0
+        self._at: Array | None = None
+        self._found: tuple[Array, Array, Array, Array] | None = None
+
+    def solve(self, u: Array) -> Array:
+        from scipy.optimize import minimize
+
+        n = len(u)
+        index = self._evaluate(u)[0]
+        self._reference = float(index.min())
+        start = np.append(u, 0.0)
+        toward = np.zeros(n + 1)
+        toward[-1] = -1.0
+        end = minimize(
+            lambda z: -z[-1],
+            start,
+            jac=lambda z: toward,
+            method="SLSQP",
+            bounds=[(0.0, 1.0)] * n + [(-10.0, 10.0)],
+            constraints={"type": "ineq", "fun": self._margins, "jac": self._slopes},
+            options={"maxiter": 120, "ftol": 1e-9},
+        )
+        return np.clip(end.x[:-1], 0.0, 1.0) if np.isfinite(end.x).all() else u
+
+    def _margins(self, z: Array) -> Array:
+        index, _, margin, _ = self._evaluate(z[:-1])
+        return np.concatenate([index - self._reference - z[-1], margin])
+
+    def _slopes(self, z: Array) -> Array:
+        _, by_index, _, by_margin = self._evaluate(z[:-1])
+        last = np.concatenate([np.full(len(by_index), -1.0), np.zeros(len(by_margin))])
+        return np.concatenate([np.concatenate([by_index, by_margin]), last[:, None]], axis=1)
+
+    def _evaluate(self, u: Array) -> tuple[Array, Array, Array, Array]:
+        """Logarithms of the index at the poses held and margins, with their derivatives by u."""
+        if self._at is None or not np.array_equal(u, self._at):
+            self._at, self._found = u.copy(), self._compute(u)
+            self.evaluations += 1
+        assert self._found is not None
+        return self._found
+
+    def _compute(self, u: Array) -> tuple[Array, Array, Array, Array]:
+        design = self.problem.map
+        x, by_u = design.from_unit(u)
+        own, jacobian = design.numbers(x), design.jacobian(x) * by_u
+        index: list[tuple[Array, Array]] = []
+        margin: list[tuple[Array, Array]] = [(np.zeros(0), np.zeros((0, len(u))))]
+        for held in self.held:
+            rows = held.rows + own[HOME] if held.from_home else held.rows
+            at = Slopes(own, jacobian, rows, held.from_home, self.problem.universal)
+            if held.requirement is None:
+                index.append(self.problem.objective.slopes(at, self.sharpness))
+            else:
+                value, slope = held.requirement.smooth_margins(at)
+                near = np.nan_to_num(value, nan=-_FAR, posinf=_FAR, neginf=-_FAR)
+                slope = np.where((np.abs(near) < _FAR)[:, None], slope, 0.0)
+                margin.append((np.clip(near, -_FAR, _FAR) - _SLACK, slope))
+        parts = [np.concatenate(part) for part in (*zip(*index, strict=True), *zip(*margin, strict=True))]
+        return parts[0], np.nan_to_num(parts[1]), parts[2], np.nan_to_num(parts[3])

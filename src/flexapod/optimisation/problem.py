@@ -1,0 +1,179 @@
+"""A problem of optimal design as a whole: variables, objective, constraints, and what a given design makes of them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.layout import HOME, numbers
+from flexapod.errors import ArgumentError, DesignError, PoseError
+from flexapod.mechanics.inputs import JointModel, is_universal
+from flexapod.optimisation.constraint_quantities import Kind, Side
+from flexapod.optimisation.constraints import Constraint, Requirement
+from flexapod.optimisation.objectives import Objective
+from flexapod.optimisation.variables import DesignMap, JointCircle, Variable
+from flexapod.pose import Array
+from flexapod.workspace.box_minimum import descend
+from flexapod.workspace.pose_sets import Box
+from flexapod.workspace.quantities import evaluate, thread_count
+from flexapod.workspace.region import Places
+
+FEASIBLE = 1e-6  # relative amount by which a bound may be passed, for rounding of the search that ends on it
+_HOPELESS = -1e3  # margin where a quantity has no value
+_MEASURED = 2**14  # poses swept for bounds that are what the design has itself
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """What a design makes of a problem. index rad/s (0 where none can be computed); margins: the least one of each
+    requirement, relative, >= 0 where it is kept; values: its extreme value."""
+
+    index: float
+    margins: Array
+    values: Array
+
+    @property
+    def feasible(self) -> bool:
+        return bool((self.margins >= -FEASIBLE).all()) and self.index > 0
+
+    @property
+    def violation(self) -> float:
+        return float(-np.minimum(self.margins, 0).sum())
+
+    def better_than(self, other: Assessment | None) -> bool:
+        """Feasible designs before others, those by index; others by how far they are from it."""
+        if other is None or self.feasible != other.feasible:
+            return other is None or self.feasible
+        return self.index > other.index if self.feasible else self.violation < other.violation
+
+
+class Problem:
+    """`hexapod`'s variables, the objective to raise and the requirements to keep."""
+
+    def __init__(
+        self,
+        hexapod: Hexapod,
+        variables: Sequence[Variable | JointCircle],
+        objective: Objective,
+        constraints: Sequence[Constraint],
+        joint: JointModel,
+        threads: int | None,
+    ) -> None:
+        self.hexapod, self.objective, self.joint = hexapod, objective, joint
+        self.universal, self.threads = is_universal(joint), thread_count(threads)
+        self.map = DesignMap(hexapod, variables)
+        constraints = [constraints] if isinstance(constraints, Constraint) else list(constraints)
+        wrong = [c for c in constraints if not isinstance(c, Constraint)]
+        if wrong:
+            raise ArgumentError(f"constraints holds {wrong[0]!r}, which is no constraint of flexapod.")
+        self._check_home([objective.over])
+        self.requirements: list[Requirement] = []
+        for constraint in constraints:
+            self.requirements += constraint.requirements(hexapod, objective.over, self._measure)
+        self._check_home([r.over for r in self.requirements if r.over is not None])
+        self._check_bounds()
+
+    def _check_home(self, all_places: Sequence[Places]) -> None:
+        if self.hexapod.home is None and any(place.from_home for place in all_places):
+            raise ArgumentError(
+                f"the objective or a constraint is measured at home, but {self.hexapod.name!r} names no home pose. "
+                'Give a Box, a Pose, or a home: hexapod.replace({"home.position": [x, y, z]}).'
+            )
+
+    def _check_bounds(self) -> None:
+        """Two requirements that no design can keep together are refused with both named."""
+        for low in self.requirements:
+            for high in self.requirements:
+                same = repr(low.kind) == repr(high.kind) if low.kind.__dict__ else type(low.kind) is type(high.kind)
+                if low.side == "least" and high.side == "most" and same and np.any(low.bound > high.bound):
+                    raise ArgumentError(
+                        f"{low.name} must be at least {low.bound.max():.6g} {low.kind.unit} and {high.name} at most "
+                        f"{high.bound.min():.6g} {high.kind.unit}: no design can keep both."
+                    )
+
+    def _measure(self, kind: Kind, side: Side, over: Places | None) -> Array:
+        own = numbers(self.hexapod)
+        found: dict[str, Any] = {}
+        if over is not None:
+            self._check_home([over])
+            rows = over.rows(own[HOME], _MEASURED)
+            found = evaluate(self.hexapod, rows, kind.quantities, self.joint, self.threads)
+        return kind.measure(found, own, side)
+
+    def groups(self) -> list[tuple[Places, list[Requirement]]]:
+        """Places with the requirements that hold there; the objective's come first."""
+        found: dict[str, tuple[Places, list[Requirement]]] = {}
+        found[json.dumps(self.objective.over.describe())] = (self.objective.over, [])
+        for requirement in self.requirements:
+            if requirement.over is not None:
+                name = json.dumps(requirement.over.describe())
+                found.setdefault(name, (requirement.over, []))[1].append(requirement)
+        return list(found.values())
+
+    def sweep(self, hexapod: Hexapod, group: int, points: int, seed: int) -> tuple[Array, dict[str, Any]]:
+        """Poses of one of the `groups`, and every quantity that objective and requirements need there."""
+        over, requirements = self.groups()[group]
+        wanted = {name for requirement in requirements for name in requirement.kind.quantities}
+        wanted |= {self.objective.quantity} if group == 0 else set()
+        rows = over.rows(numbers(hexapod)[HOME], points, seed)
+        return rows, evaluate(hexapod, rows, tuple(sorted(wanted)), self.joint, self.threads)
+
+    def box(self, hexapod: Hexapod) -> Box | None:
+        """The box over which the least frequency is to be found between the poses of a sweep; None where none is."""
+        return self.objective.over.box(numbers(hexapod)[HOME]) if self.objective.quantity == "omega_1" else None
+
+    def assess(self, hexapod: Hexapod, points: int, seed: int = 0) -> Assessment:
+        """Sweeps `points` poses of every workspace, and descends from the lowest ones."""
+        own = numbers(hexapod)
+        values = {id(r): r.kind.measure({}, own, r.side) for r in self.requirements if r.over is None}
+        index = 0.0
+        for group, (_, requirements) in enumerate(self.groups()):
+            rows, found = self.sweep(hexapod, group, points, seed)
+            if group == 0:
+                index = self.objective.index(found[self.objective.quantity])
+                box = self.box(hexapod)
+                if box is not None and index > 0:
+                    index = min(index, descend(hexapod, self.universal, box, rows, found["omega_1"]))
+            values |= {id(r): r.kind.measure(found, own, r.side) for r in requirements}
+        margins, extremes = [], []
+        for r in self.requirements:
+            value = values[id(r)]
+            margin = np.nan_to_num(r.margins(value), nan=_HOPELESS, posinf=-_HOPELESS, neginf=_HOPELESS)
+            worst = int(np.argmin(margin))
+            margins.append(margin[worst])
+            extremes.append(value[worst])
+        return Assessment(index, np.array(margins), np.array(extremes))
+
+    def assess_at(self, x: Array, points: int, seed: int = 0) -> Assessment:
+        """The same for values of the variables; those that make no hexapod have no index and keep nothing."""
+        try:
+            return self.assess(self.map.hexapod_at(x), points, seed)
+        except (DesignError, PoseError):
+            none = np.full(len(self.requirements), np.nan)
+            return Assessment(0.0, np.full(len(self.requirements), _HOPELESS), none)
+
+    def violations(self, assessment: Assessment) -> str:
+        """In words: every requirement that is not kept, with its value and its bound."""
+        words = []
+        for r, margin, value in zip(self.requirements, assessment.margins, assessment.values, strict=True):
+            if margin < -FEASIBLE:
+                bound = r.bound.min() if r.side == "most" else r.bound.max()
+                words.append(f"{r.name} is {value:.6g}, must be at {r.side} {bound:.6g} {r.kind.unit}".rstrip())
+        if not words:
+            words = ["the index is zero: a pose is singular, or out of the legs' reach"]
+        return "; ".join(words)
+
+    def describe(self) -> dict[str, Any]:
+        """Everything that makes this problem and no other."""
+        return {
+            "design": f"{self.hexapod.name!r} (digest {self.hexapod.digest})",
+            "variables": self.map.describe(),
+            "objective": self.objective.describe(),
+            "constraints": [r.describe() for r in self.requirements],
+            "joint": self.joint,
+        }

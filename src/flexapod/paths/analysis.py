@@ -1,0 +1,219 @@
+"""The dynamic stability index along a path (the paper's conclusion 1), and what the legs do on it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+from scipy.integrate import cumulative_simpson
+from scipy.optimize import brentq, minimize_scalar
+
+from flexapod.design.hexapod import Hexapod
+from flexapod.errors import PathError, PoseError, SingularPoseError
+from flexapod.mechanics.dynamics import inverse_dynamics
+from flexapod.mechanics.inputs import ZERO, JointModel
+from flexapod.mechanics.kinematics import check_limits, condition_number, force_transformation, leg_rates
+from flexapod.mechanics.modes import natural_modes
+from flexapod.paths.trajectory import Trajectory
+from flexapod.pose import Array, Pose
+
+LEGS = ("1", "2", "3", "4", "5", "6")
+_ZERO_INDEX = 1e-6  # of the largest index on the path: what a singular pose leaves of the lowest frequency
+
+
+@dataclass(frozen=True, eq=False)
+class PathIndex:
+    """The index along a path; see `path_index`.
+
+    samples: Dataset over `time` (s) with `index` (rad/s), `condition_number`, `within_limits` (bool), `weight`,
+    `cumulative_index` (integral of weight times index from the start, rad), `position` (m) and `rpy` (rad).
+    minimum, minimum_time, minimum_pose: the least index, rad/s, refined between samples, and where. bound: rad/s or
+    None. below: (start, end) times, s, between which the index lies below the bound. weighted_mean: rad/s.
+    crossings: times, s, at which the path passes through a singular pose (only with singular="keep").
+
+    Source: conclusion 1.
+    """
+
+    samples: xr.Dataset
+    minimum: float
+    minimum_time: float
+    minimum_pose: Pose
+    bound: float | None
+    below: tuple[tuple[float, float], ...]
+    weighted_mean: float
+    crossings: tuple[float, ...]
+
+    @property
+    def above(self) -> bool:
+        """Whether the index stays at or above the bound all along."""
+        return not self.below and not self.crossings
+
+
+def path_index(
+    hexapod: Hexapod,
+    path: Trajectory,
+    *,
+    bound: float | None = None,
+    samples: int = 400,
+    joint: JointModel = "universal",
+    singular: str = "raise",
+) -> PathIndex:
+    """The lowest natural frequency along a path, against a bound (rad/s), and its weighted cumulative value.
+
+    The minimum and the times at which the bound is crossed are refined between samples. The path's weights are joined
+    by straight lines in time; weighted_mean = integral of w omega dt / integral of w dt.
+
+    Raises: SingularPoseError where the path passes through a singular pose (with singular="keep" it is recorded
+    instead); PathError for a bound that is not > 0 or too few samples; PoseError at a pose that no leg can take.
+    Source: conclusion 1.
+    """
+    _check(path, bound, samples, singular)
+    times = path.grid(samples)
+
+    def index(t: ArrayLike) -> Array:
+        return natural_modes(hexapod, path(np.atleast_1d(t)).pose, joint).omega[:, 0]
+
+    values = index(times)
+    _all_possible(path, times, values)
+    crossings = _crossings(hexapod, path, times)
+    dips = _dips(index, times, values)
+    least_time, least = min([*dips, *zip(times, values, strict=True)], key=lambda point: point[1])
+    if least < _ZERO_INDEX * values.max() and not crossings:
+        crossings = (float(least_time),)  # touched, not crossed
+    if crossings and singular == "raise":
+        raise SingularPoseError(
+            f"the path passes through a singular pose at t = {crossings[0]:.6g} s, {path(crossings[0]).pose!r}; the "
+            "legs cannot hold the platform there. Lead the path round it (see plan_path)."
+        )
+    all_times = np.unique(np.concatenate([times, [t for t, _ in dips], crossings]))
+    dataset = _samples(hexapod, path, all_times, index(all_times), joint)
+    mean = float(dataset["cumulative_index"][-1] / np.trapezoid(path.weights, path.times))
+    below = () if bound is None else _below(index, all_times, dataset["index"].values, bound)
+    return PathIndex(
+        dataset, float(least), float(least_time), path(least_time).pose, bound, below, mean, tuple(crossings)
+    )
+
+
+def path_loads(
+    hexapod: Hexapod,
+    path: Trajectory,
+    *,
+    samples: int = 400,
+    force: ArrayLike = ZERO,
+    moment: ArrayLike = ZERO,
+    joint: JointModel = "universal",
+) -> xr.Dataset:
+    """Leg forces and leg travel along a path under the full dynamics.
+
+    force (N), moment (N m): on the platform, in its frame, (3,) or (samples, 3). Dataset over (time, leg): `leg_force`
+    N (positive pushes), `static_force` N (the same at rest), `leg_length` m, `leg_rate` m/s, `leg_acceleration` m/s2,
+    `power` W of each actuator; over leg: `stroke` m, `peak_force` N; over time: `within_limits`.
+
+    Raises: SingularPoseError where no leg forces can drive the path; PathError for too few samples.
+    Source: Eq. 34, solved for F.
+    """
+    _check(path, None, samples, "raise")
+    times = path.grid(samples)
+    motion = path(times)
+    crossings = _crossings(hexapod, path, times)
+    leg_force = inverse_dynamics(hexapod, motion, None, force, moment, joint)
+    lost = [*crossings, *times[~np.isfinite(leg_force).all(axis=-1)]]
+    if lost:
+        raise SingularPoseError(
+            f"no leg forces drive the path at t = {lost[0]:.6g} s, {path(lost[0]).pose!r}: H is singular there. "
+            "Lead the path round it (see plan_path)."
+        )
+    static = inverse_dynamics(hexapod, motion.pose, None, force, moment, joint)
+    legs = leg_rates(hexapod, motion)
+    grid = ("time", "leg")
+    dataset = xr.Dataset(
+        {
+            "leg_force": (grid, leg_force, {"units": "N", "long_name": "leg force"}),
+            "static_force": (grid, static, {"units": "N", "long_name": "leg force at rest"}),
+            "leg_length": (grid, legs.length, {"units": "m", "long_name": "leg length"}),
+            "leg_rate": (grid, legs.rate, {"units": "m/s", "long_name": "leg rate"}),
+            "leg_acceleration": (grid, legs.acceleration, {"units": "m/s2", "long_name": "leg acceleration"}),
+            "power": (grid, leg_force * legs.rate, {"units": "W", "long_name": "actuator power"}),
+            "stroke": ("leg", np.ptp(legs.length, axis=0), {"units": "m", "long_name": "leg travel"}),
+            "peak_force": ("leg", np.abs(leg_force).max(axis=0), {"units": "N", "long_name": "peak leg force"}),
+            "within_limits": ("time", check_limits(hexapod, motion.pose).ok),
+        },
+        {"time": ("time", times, {"units": "s"}), "leg": list(LEGS)},
+    )
+    return dataset.assign_attrs(design=hexapod.name, digest=hexapod.digest)
+
+
+def _check(path: Trajectory, bound: float | None, samples: int, singular: str) -> None:
+    if not isinstance(path, Trajectory):
+        raise PathError(f"path is {type(path).__name__}; it must be a flexapod Trajectory")
+    if bound is not None and not (np.isfinite(bound) and bound > 0):
+        raise PathError(f"bound is {bound} rad/s; a bound on the index must be > 0")
+    if samples < 8:
+        raise PathError(f"samples is {samples}; at least 8 are needed to see a path")
+    if singular not in ("raise", "keep"):
+        raise PathError(f"singular is {singular!r}; it must be 'raise' or 'keep'")
+
+
+def _all_possible(path: Trajectory, times: Array, values: Array) -> None:
+    lost = np.flatnonzero(~np.isfinite(values))
+    if lost.size:
+        t = times[lost[0]]
+        raise PoseError(f"no leg can take the pose at t = {t:.6g} s of the path, {path(t).pose!r}. Move the waypoints.")
+
+
+def _crossings(hexapod: Hexapod, path: Trajectory, times: Array) -> tuple[float, ...]:
+    """Times at which det H changes sign: a path from one side to the other passes through a singular pose."""
+
+    def side(t: ArrayLike) -> Array:
+        sign, logarithm = np.linalg.slogdet(force_transformation(hexapod, path(np.atleast_1d(t)).pose))
+        return sign * np.exp(np.clip(logarithm, -600, 600))
+
+    values = side(times)
+    changed = np.flatnonzero(values[:-1] * values[1:] <= 0)
+    roots = [brentq(lambda t: side(t)[0], times[i], times[i + 1], xtol=1e-12 * path.duration) for i in changed]
+    return tuple(np.unique(roots).tolist())
+
+
+def _dips(index: Callable[[ArrayLike], Array], times: Array, values: Array) -> list[tuple[float, float]]:
+    """Every local minimum of the samples, refined between its neighbours: (time, index)."""
+    inner = np.flatnonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:])) + 1
+    found = []
+    for i in inner:
+        span = (times[i - 1], times[i + 1])
+        best = minimize_scalar(
+            lambda t: index(t)[0], bounds=span, method="bounded", options={"xatol": 1e-9 * (span[1] - span[0])}
+        )
+        found.append((float(best.x), float(best.fun)))
+    return found
+
+
+def _below(
+    index: Callable[[ArrayLike], Array], times: Array, values: Array, bound: float
+) -> tuple[tuple[float, float], ...]:
+    low = values < bound
+    edges = np.flatnonzero(low[:-1] != low[1:])
+    roots = [float(brentq(lambda t: index(t)[0] - bound, times[i], times[i + 1])) for i in edges]
+    starts = ([float(times[0])] if low[0] else []) + [r for r, i in zip(roots, edges, strict=True) if not low[i]]
+    ends = [r for r, i in zip(roots, edges, strict=True) if low[i]] + ([float(times[-1])] if low[-1] else [])
+    return tuple(zip(starts, ends, strict=True))
+
+
+def _samples(hexapod: Hexapod, path: Trajectory, times: Array, values: Array, joint: JointModel) -> xr.Dataset:
+    pose = path(times).pose
+    weight = np.interp(times, path.times, path.weights)
+    cumulative = cumulative_simpson(weight * values, x=times, initial=0.0)
+    variables: dict[str, Any] = {
+        "index": ("time", values, {"units": "rad/s", "long_name": "dynamic stability index"}),
+        "condition_number": ("time", condition_number(hexapod, pose), {"long_name": "condition number of H (metres)"}),
+        "within_limits": ("time", check_limits(hexapod, pose).ok),
+        "weight": ("time", weight),
+        "cumulative_index": ("time", cumulative, {"units": "rad", "long_name": "integral of weight times index"}),
+        "position": (("time", "axis"), pose.position, {"units": "m"}),
+        "rpy": (("time", "axis"), pose.rpy, {"units": "rad"}),
+    }
+    coordinates = {"time": ("time", times, {"units": "s"}), "axis": ["x", "y", "z"]}
+    return xr.Dataset(variables, coordinates, {"design": hexapod.name, "digest": hexapod.digest, "joint": joint})

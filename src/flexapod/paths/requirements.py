@@ -1,0 +1,141 @@
+"""What every pose of a planned path must satisfy, as numbers that are >= 0 where it does."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod.design.hexapod import Hexapod
+from flexapod.errors import PathError
+from flexapod.mechanics.inputs import JointModel
+from flexapod.mechanics.kinematics import check_limits, condition_number, inverse_kinematics, limit_excess
+from flexapod.pose import Array, Pose
+from flexapod.workspace.quantities import evaluate, packed_limits
+
+_SHARPNESS = 80.0  # of smooth minima: they lie below the true one by at most log(12)/80, 3 %
+
+
+@dataclass(frozen=True)
+class PathRequirements:
+    """What a planned path keeps to, all along.
+
+    index: least natural frequency, rad/s. condition_number: most that H's (in metres) may have; None: no bound but the
+    index, which is zero at a singular pose. clearance: least distance between leg axes, m, in place of the design's.
+    limits: whether the design's limits hold. reach: how far the search may leave the box around start and goal, m;
+    default: half the mean leg length. turn: the same for rotations, rad. joint: the joint model of the index.
+
+    Raises: PathError for a bound that nothing could keep.
+    Source: conclusion 1; limits and clearance are our own.
+    """
+
+    index: float
+    condition_number: float | None = None
+    clearance: float | None = None
+    limits: bool = True
+    reach: float | None = None
+    turn: float = 0.5
+    joint: JointModel = "universal"
+
+    def __post_init__(self) -> None:
+        for name, unit in (("index", "rad/s"), ("reach", "m"), ("turn", "rad"), ("clearance", "m")):
+            value = getattr(self, name)
+            if value is not None and not (np.isfinite(value) and value > 0):
+                raise PathError(f"{name} is {value} {unit}; it must be > 0")
+        if self.condition_number is not None and not self.condition_number > 1:
+            raise PathError(
+                f"condition_number is {self.condition_number}; no H has less than 1, so nothing could satisfy it"
+            )
+
+
+class Margins:
+    """Requirements on a machine's poses. Each margin is relative: 0.1 is 10 % of the bound, or of the leg's stroke."""
+
+    def __init__(self, hexapod: Hexapod, requirements: PathRequirements) -> None:
+        self.required = requirements
+        self.hexapod = hexapod
+        self.limited = hexapod.replace({"limits": None}) if not requirements.limits else hexapod
+        if requirements.clearance is not None:
+            self.limited = self.limited.replace({"limits.leg_distance": requirements.clearance})
+        self._packed = packed_limits(self.limited)
+
+    def frequencies(self, poses: Pose) -> Array:
+        """(n, 6) rad/s; zero where no leg can take the pose."""
+        return np.nan_to_num(
+            evaluate(self.hexapod, _rows(poses), ("omega",), self.required.joint, 1, self._packed)["omega"]
+        )
+
+    def met(self, poses: Pose) -> np.ndarray:
+        """(n,) whether each pose meets every requirement."""
+        wanted = ("omega_1", "within_limits", "cond_H")[: 3 if self.required.condition_number else 2]
+        found = evaluate(self.limited, _rows(poses), wanted, self.required.joint, 1, self._packed)
+        ok = (found["omega_1"] >= self.required.index) & found["within_limits"].astype(bool)
+        if self.required.condition_number is not None:
+            ok &= found["cond_H"] <= self.required.condition_number
+        return ok
+
+    def worst(self, poses: Pose) -> Array:
+        """(n,) the least margin of each pose."""
+        parts = [self.frequencies(poses)[:, :1] / self.required.index - 1, *self._others(poses)]
+        least = np.min([part.min(axis=1) for part in parts], axis=0)
+        return np.where(np.isfinite(least), least, -np.inf)
+
+    def smooth(self, poses: Pose) -> Array:
+        """(n, k) margins by kind, each a smooth minimum over the modes or the legs, never above the true one.
+
+        A smooth minimum of all six frequencies is differentiable also where the lowest are equal.
+        """
+        ratio = self.frequencies(poses) / self.required.index - 1
+        return np.stack([smooth_minimum(part) for part in (ratio, *self._others(poses))], axis=1)
+
+    def _others(self, poses: Pose) -> list[Array]:
+        found = []
+        if self.required.condition_number is not None:
+            found.append(
+                1 - np.asarray(condition_number(self.hexapod, poses))[:, None] / self.required.condition_number
+            )
+        for quantity in limit_excess(self.limited, poses):
+            value = quantity.value.reshape(poses.shape[0], -1)
+            least, most = np.broadcast_to(quantity.least, value.shape), np.broadcast_to(quantity.most, value.shape)
+            both = np.isfinite(least) & np.isfinite(most)
+            scale = np.where(both, most - least, np.where(np.isfinite(most), most, least))
+            with np.errstate(invalid="ignore"):
+                sides = np.concatenate([(value - least) / scale, (most - value) / scale], axis=1)
+            found.append(sides[:, np.isfinite(sides).any(axis=0)])
+        return found
+
+    def check(self, pose: Pose, name: str) -> None:
+        """Raises PathError for an end of a path that breaks a requirement, and says which."""
+        index = float(self.frequencies(Pose(pose.position[None], pose.matrix[None]))[0, 0])
+        required = self.required
+        if not index >= required.index:
+            raise PathError(
+                f"the {name} pose has a lowest natural frequency of {index:.5g} rad/s, below the bound of "
+                f"{required.index:.5g} rad/s; no path from it can keep the bound. Lower the bound, or move the pose."
+            )
+        cond = float(condition_number(self.hexapod, pose))
+        if required.condition_number is not None and not cond <= required.condition_number:
+            raise PathError(
+                f"the {name} pose has cond(H) = {cond:.5g}, above the bound of {required.condition_number:.5g}. "
+                "Raise the bound, or move the pose."
+            )
+        exceeded = check_limits(self.limited, pose).exceeded
+        if exceeded:
+            raise PathError(
+                f"the {name} pose is outside the limits: {'; '.join(exceeded)}. Move it, or widen the limits."
+            )
+
+    def reach_from(self, ends: Pose) -> float:
+        """How far the search may go beyond the ends, m."""
+        return self.required.reach or 0.5 * float(inverse_kinematics(self.hexapod, ends).mean())
+
+
+def smooth_minimum(values: Array) -> Array:
+    """-log(sum exp(-a x))/a over the last axis: smooth, and below the least value by at most log(n)/a."""
+    least = values.min(axis=-1, keepdims=True)
+    least = np.where(np.isfinite(least), least, -1e3)
+    return least[..., 0] - np.log(np.exp(-_SHARPNESS * (values - least)).sum(axis=-1)) / _SHARPNESS
+
+
+def _rows(poses: Pose) -> Array:
+    return np.concatenate([poses.position, poses.matrix.reshape(-1, 9)], axis=1)

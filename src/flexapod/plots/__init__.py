@@ -1,0 +1,11 @@
+"""Figures and animations of results. Nothing is computed here but where to draw.
+
+    fx.plots.machine(hexapod, pose)
+    fx.plots.mode(hexapod, pose, fx.natural_modes(hexapod, pose), 1).figure.savefig("mode-1.png")
+
+Without `ax` a new figure is made. May import: all subject packages.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

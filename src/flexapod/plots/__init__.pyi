@@ -1,0 +1,13 @@
+from . import animation as animation
+from . import control as control
+from . import optimisation as optimisation
+from . import path as path
+from . import response as response
+from . import simulation as simulation
+from . import style as style
+from . import sweep as sweep
+from .animation import animate_mode as animate_mode
+from .animation import animate_simulation as animate_simulation
+from .machine_3d import machine as machine
+from .machine_3d import mode as mode
+from .natural_frequencies import frequencies as frequencies

@@ -1,0 +1,275 @@
+"""Moving pictures of a mode or of a simulated motion, enlarged by a factor that the picture states.
+
+GIF needs nothing more; MP4 needs the extra "video" (imageio-ffmpeg).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from flexapod.design.hexapod import Hexapod
+from flexapod.errors import ArgumentError, PoseError
+from flexapod.mechanics.inputs import JointModel
+from flexapod.mechanics.modes import describe_modes, natural_modes
+from flexapod.optional import needed
+from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, VIEW
+from flexapod.pose import Array, Pose
+
+if TYPE_CHECKING:
+    from matplotlib.animation import AbstractMovieWriter
+    from matplotlib.figure import Figure
+
+__all__ = ["animate_mode", "animate_simulation"]
+
+_TRAVEL = 0.12  # of the machine's size: the largest joint motion shown, where no factor is given
+_FPS = 16
+_PER_PERIOD = 16  # frames of a period that show a vibration
+
+
+def animate_mode(
+    hexapod: Hexapod,
+    pose: Pose,
+    number: int,
+    path: str | Path,
+    *,
+    joint: JointModel = "universal",
+    amplitude: float = 1e-6,
+    exaggeration: float | None = None,
+) -> float:
+    """Write one period of mode `number` (1 to 6) to a file that loops; returns the factor of enlargement.
+
+    path: ends in .gif or .mp4. amplitude: motion of the platform joint that moves most, m; a mode has no size of its
+    own. exaggeration: how many times larger it is shown; by default so that it is an eighth of the machine. Both stand
+    in the picture.
+
+    Raises: ArgumentError for a mode, an amplitude or an enlargement that cannot be shown, or another ending; PoseError
+    for a batch of poses; MissingExtraError for .mp4 without the extra "video".
+    Source: own.
+    """
+    _check_pose(pose)
+    if number not in range(1, 7):
+        raise ArgumentError(f"mode {number!r} does not exist; number them from 1 to 6")
+    if not (np.isfinite(amplitude) and amplitude > 0):
+        raise ArgumentError(f"amplitude is {amplitude!r} m; it must be finite and > 0")
+    modes = natural_modes(hexapod, pose, joint)
+    twist = modes.shape[:, number - 1]
+    arms = hexapod.platform_joints @ pose.matrix.T
+    twist = twist * (amplitude / _travel(arms + pose.position, pose, twist[None]))
+    phase = 2 * np.pi * np.arange(2 * _PER_PERIOD) / (2 * _PER_PERIOD)
+    omega = modes.omega[number - 1]
+    words = describe_modes(hexapod, pose, joint)[number - 1].text
+    title = f"{hexapod.name}, mode {number}: {omega:.5g} rad/s ({omega / (2 * np.pi):.5g} Hz)\n{words}"
+    film = _Film(hexapod, pose, Pose(np.zeros(3)), np.cos(phase)[:, None] * twist, np.zeros((phase.size, 6)))
+    note = f"largest joint motion {_length(amplitude)}"
+    return film.write(path, title, [note] * phase.size, exaggeration)
+
+
+def animate_simulation(
+    dataset: xr.Dataset,
+    hexapod: Hexapod,
+    path: str | Path,
+    *,
+    base: Pose | None = None,
+    exaggeration: float | None = None,
+    window: tuple[float, float] | None = None,
+    frames: int = 96,
+    progress: Callable[[float], object] | None = None,
+) -> float:
+    """Write a simulation to a file that moves; returns the factor of enlargement.
+
+    dataset: `fx.simulate`'s result. path: ends in .gif or .mp4. The displacements of platform and base from rest are
+    enlarged by `exaggeration` (by default so that the largest is an eighth of the machine), which stands in the
+    picture. base: the base's pose at rest, as it was simulated. window: first and last time, s; by default the last
+    part in which the main oscillation has 16 frames a period. frames: how many.
+
+    Raises: ArgumentError for a dataset, window or enlargement that cannot be shown, or another ending;
+    MissingExtraError for .mp4 without the extra "video".
+    Source: own.
+    """
+    if frames < 2:
+        raise ArgumentError(f"frames is {frames!r}; at least 2 are needed")
+    film, times = _simulated(dataset, hexapod, Pose(np.zeros(3)) if base is None else base)
+    first, last = window or _last_periods(times, film.platform, frames)
+    if not times[0] <= first < last <= times[-1]:
+        raise ArgumentError(f"window is {window!r} s; it must ascend within {times[0]:.6g} to {times[-1]:.6g} s")
+    at = np.linspace(first, last, frames)
+    moves, feet = (np.stack([np.interp(at, times, x) for x in values.T], 1) for values in (film.platform, film.base))
+    slowed = frames / _FPS / (last - first)
+    speed = f"slowed {slowed:.3g} times" if slowed > 1 else f"{1 / slowed:.3g} times as fast"
+    notes = [f"t = {t:.5g} s, {speed}" for t in at]
+    shown = film._replace(platform=moves, base=feet)
+    return shown.write(path, f"{hexapod.name}: simulation", notes, exaggeration, progress)
+
+
+class _Film(NamedTuple):
+    """Small displacements (n, 6) of platform and base from where they rest."""
+
+    hexapod: Hexapod
+    pose: Pose
+    base_pose: Pose
+    platform: Array
+    base: Array
+
+    def write(
+        self,
+        path: str | Path,
+        title: str,
+        notes: list[str],
+        exaggeration: float | None,
+        progress: Callable[[float], object] | None = None,
+    ) -> float:
+        travel = max(_travel(self.top, self.pose, self.platform), _travel(self.feet, self.base_pose, self.base))
+        if travel == 0:
+            raise ArgumentError("nothing moves in what is to be shown; choose a window or a simulation with motion")
+        size = float(np.ptp(np.vstack([self.top, self.feet]), axis=0).max())
+        factor = float(f"{_TRAVEL * size / travel:.2g}") if exaggeration is None else float(exaggeration)
+        if not (np.isfinite(factor) and factor > 0):
+            raise ArgumentError(f"exaggeration is {exaggeration!r}; it must be finite and > 0. Use 1 for true motion.")
+        figure, draw = _stage(self.top, self.feet, size + 2 * factor * travel)
+        figure.suptitle(title, color=INK, fontsize=11)
+        caption = figure.text(0.5, 0.03, "", ha="center", color=INK, fontsize=10)
+        writer, settings = _writer(Path(path))
+        with settings, writer.saving(figure, str(path), dpi=100):
+            for i, (x, x_b) in enumerate(zip(factor * self.platform, factor * self.base, strict=True)):
+                draw(*self.joints(x, x_b))
+                caption.set_text(f"motion shown {factor:,.6g} times larger; {notes[i]}")
+                writer.grab_frame()
+                if progress is not None:
+                    progress((i + 1) / len(notes))
+        return factor
+
+    @property
+    def top(self) -> Array:
+        """(6, 3) m: the platform's joints at rest."""
+        return self.pose.position + self.hexapod.platform_joints @ self.pose.matrix.T
+
+    @property
+    def feet(self) -> Array:
+        """(6, 3) m: the base's joints at rest."""
+        return self.base_pose.position + self.hexapod.base_joints @ self.base_pose.matrix.T
+
+    def joints(self, x: Array, x_b: Array) -> tuple[Array, Array]:
+        """Joints of platform and base, displaced."""
+        return _moved(self.top, self.pose, x), _moved(self.feet, self.base_pose, x_b)
+
+
+def _moved(joints: Array, pose: Pose, x: Array) -> Array:
+    turn = Rotation.from_rotvec(x[3:]).as_matrix()
+    return pose.position + x[:3] + (joints - pose.position) @ turn.T
+
+
+def _stage(top: Array, feet: Array, width: float) -> tuple[Figure, Callable[[Array, Array], None]]:
+    """A figure with the platform at rest in grey, and what moves the drawn joints of platform and base."""
+    from matplotlib.colors import to_rgba
+    from matplotlib.figure import Figure
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    figure = Figure(figsize=(6, 5.6))
+    ax: Any = figure.add_axes((0.0, 0.06, 1.0, 0.84), projection="3d")
+    order, order_b = _around(top), _around(feet)
+    ghost = {"facecolor": (0, 0, 0, 0), "edgecolor": FAINT, "linewidth": 1.0, "linestyle": "--"}
+    ax.add_collection3d(Poly3DCollection([top[order]], **ghost))
+    plates = []
+    for joints, color in ((feet[order_b], BASE), (top[order], PLATFORM)):
+        plates.append(Poly3DCollection([joints], facecolor=to_rgba(color, 0.25), edgecolor=color, linewidth=1.5))
+        ax.add_collection3d(plates[-1])
+    legs = [ax.plot(*np.zeros((3, 2)), color=LEG, lw=2.4, marker="o", ms=4, mec="white", mew=0.5)[0] for _ in range(6)]
+    both = np.vstack([top, feet])
+    middle = 0.5 * (both.max(axis=0) + both.min(axis=0))
+    spread = 0.5 * width
+    ax.set(**{f"{axis}lim": (m - spread, m + spread) for axis, m in zip("xyz", middle, strict=True)})
+    ax.set_box_aspect((1, 1, 1), zoom=1.35)
+    ax.set_proj_type("ortho")
+    ax.view_init(**VIEW)
+    ax.set_axis_off()
+
+    def draw(platform: Array, base: Array) -> None:
+        plates[0].set_verts([base[order_b]])
+        plates[1].set_verts([platform[order]])
+        for i, leg in enumerate(legs):
+            leg.set_data_3d(*np.stack([base[i], platform[i]], axis=1))
+
+    return figure, draw
+
+
+def check_path(path: Path) -> None:
+    """Raises ArgumentError or MissingExtraError, before anything is computed, for a file that cannot be one."""
+    if not path.parent.is_dir():
+        raise ArgumentError(f"{path.parent} is not a directory; make it first, or choose another path")
+    if path.suffix.lower() not in (".gif", ".mp4"):
+        raise ArgumentError(f"{path.name} is neither .gif nor .mp4; give the path one of these endings")
+    if path.suffix.lower() == ".mp4":
+        _ffmpeg()
+
+
+def _ffmpeg() -> str:
+    return str(needed("imageio_ffmpeg", "video", "an MP4 needs imageio-ffmpeg, a .gif does not").get_ffmpeg_exe())
+
+
+def _writer(path: Path) -> tuple[AbstractMovieWriter, Any]:
+    from matplotlib import rc_context
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+
+    check_path(path)
+    if path.suffix.lower() == ".gif":
+        return PillowWriter(fps=_FPS), nullcontext()
+    writer = FFMpegWriter(fps=_FPS, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
+    return writer, rc_context({"animation.ffmpeg_path": _ffmpeg()})
+
+
+def _simulated(dataset: xr.Dataset, hexapod: Hexapod, base: Pose) -> tuple[_Film, Array]:
+    """The displacements of a simulation and its times, s."""
+    if "run" in dataset.dims or "displacement" not in dataset:
+        raise ArgumentError("the dataset is not that of one simulation; choose one of several with .isel(run=...)")
+    if dataset.time.size < 2:
+        raise ArgumentError("the simulation has fewer than two instants; nothing moves")
+    platform = dataset.displacement.transpose("time", "output").values
+    turned = dataset.base_rotation.transpose("time", "axis", "body_axis").values @ base.matrix.T
+    moved = dataset.base_position.transpose("time", "axis").values - base.position
+    feet = np.concatenate([moved, Rotation.from_matrix(turned).as_rotvec()], axis=1)
+    start = dataset.isel(time=0)  # its displacement from rest gives rest
+    turn = Rotation.from_rotvec(platform[0, 3:]).as_matrix()
+    pose = Pose(start.position.values - platform[0, :3], turn.T @ start.rotation.transpose("axis", "body_axis").values)
+    return _Film(hexapod, pose, base, platform, feet), dataset.time.values
+
+
+def _last_periods(times: Array, displacement: Array, frames: int) -> tuple[float, float]:
+    """The end of a simulation, short enough to show its main oscillation with _PER_PERIOD frames a period."""
+    main = displacement[:, np.ptp(displacement[:, :3], axis=0).argmax()]
+    turns = np.count_nonzero(np.diff(np.sign(main - main.mean()))) / 2
+    whole = times[-1] - times[0]
+    part = min(1.0, frames / _PER_PERIOD / turns) if turns > 1 else 1.0
+    return float(times[-1] - part * whole), float(times[-1])
+
+
+def _travel(joints: Array, pose: Pose, twists: Array) -> float:
+    """Largest displacement of a joint by small displacements (n, 6) about a pose."""
+    x = twists[:, None]
+    return float(np.linalg.norm(x[..., :3] + np.cross(x[..., 3:], joints - pose.position), axis=-1).max())
+
+
+def _around(joints: Array) -> NDArray[np.intp]:
+    """Order of joints by their angle about their centre."""
+    spread = joints - joints.mean(axis=0)
+    first, second = np.linalg.svd(spread)[2][:2]
+    return np.argsort(np.arctan2(spread @ second, spread @ first))
+
+
+def _length(metres: float) -> str:
+    for unit, scale in (("m", 1.0), ("mm", 1e-3), ("um", 1e-6)):
+        if metres >= scale:
+            return f"{metres / scale:.4g} {unit}"
+    return f"{metres / 1e-9:.4g} nm"
+
+
+def _check_pose(pose: Pose) -> None:
+    if pose.shape:
+        raise PoseError(f"an animation shows one pose; this one has batch axes {pose.shape}. Index it first.")

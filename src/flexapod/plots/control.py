@@ -1,0 +1,230 @@
+"""Figures of control: maps of gains, root loci, transmissibility with control, sampled runs, gain schedules.
+
+Each function draws a result of a study on a new matplotlib Figure and returns it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+
+from flexapod.plots.style import FAINT, INK, dress
+from flexapod.pose import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+BLUE, ORANGE, GREEN, PURPLE = "#0072b2", "#d55e00", "#009e73", "#cc79a7"  # Okabe and Ito
+MODES = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")
+
+
+def gain_map(dataset: xr.Dataset) -> Figure:
+    """Distance of poles to natural frequencies and worst damping over the gains of `fx.control.gain_map`.
+
+    Crosses: unstable. The line bounds the gains that the paper warns of, with a pole near a natural frequency.
+    """
+    figure = Figure(figsize=(10.5, 4.3), layout="constrained", dpi=130)
+    left, right = figure.subplots(1, 2, sharex=True, sharey=True)
+    kd, kp = dataset.kd.values, dataset.kp.values
+    unstable = ~dataset.stable.values
+    nearness = float(dataset.attrs["nearness"])
+    distance = np.where(np.isfinite(dataset.distance.values), dataset.distance.values, np.nan)
+    panels = (
+        (left, np.maximum(distance, 1e-3), "distance to natural frequencies, relative", True),
+        (right, np.where(unstable, np.nan, dataset.worst_damping.values), "worst damping ratio", False),
+    )
+    for ax, values, words, logarithmic in panels:
+        shade: dict[str, Any] = {"cmap": "viridis", "shading": "nearest", "rasterized": True}
+        if logarithmic and np.isfinite(values).any():
+            shade["norm"] = LogNorm(np.nanmin(values), max(np.nanmax(values), 1.01 * np.nanmin(values)))
+        mesh = ax.pcolormesh(kd, kp, values, **shade)
+        bar = figure.colorbar(mesh, ax=ax, shrink=0.95)
+        bar.set_label(words, color=INK)
+        bar.ax.tick_params(labelcolor=INK, color=FAINT, labelsize=9)
+        if dataset.near.values.any() and not dataset.near.values.all():
+            near = dataset.near.values.astype(float)
+            ax.contour(kd, kp, near, levels=[0.5], colors=[ORANGE], linewidths=1.8)
+        rows, columns = np.nonzero(unstable)
+        ax.plot(kd[columns], kp[rows], ls="none", marker="x", ms=3, mew=0.8, color=INK)
+        ax.set_xlabel(f"derivative gain kd, {dataset.kd.attrs['units']}")
+        dress(ax)
+        _spread(ax, kd, kp)
+    left.set_ylabel(f"proportional gain kp, {dataset.kp.attrs['units']}")
+    words = f"{dataset.attrs['design']}: {dataset.attrs['space']} space, {dataset.attrs['actuator']}"
+    note = f"   (orange: a pole within {nearness:.0%} of a natural frequency; ×: unstable; white: no vibration)"
+    figure.suptitle(words + note, color=INK, fontsize=11)
+    return figure
+
+
+def root_locus(dataset: xr.Dataset) -> Figure:
+    """Poles over the gain of `fx.control.root_locus`, upper half plane, and the least damping against the gain."""
+    figure = Figure(figsize=(10.5, 4.6), layout="constrained", dpi=130)
+    left, right = figure.subplots(1, 2, width_ratios=[1.25, 1])
+    pole, omega = dataset.pole.values, dataset.omega.values
+    top = 1.15 * float(np.max(omega))
+    shown = np.where((pole.imag > -1e-9 * top) & (np.abs(pole) < 2 * top), pole, np.nan)
+    moving = [k for k in range(pole.shape[1]) if np.nanmax(pole[:, k].imag, initial=0.0) > 1e-6 * top]
+    for number, k in enumerate(moving):
+        left.plot(shown[:, k].real, shown[:, k].imag, color=MODES[number % 6], lw=1.6)
+    _damping_rays(left, top)
+    left.plot(np.zeros_like(omega), omega, ls="none", marker="x", ms=8, mew=1.8, color=INK, label="no control")
+    zero = dataset.zero.values[np.isfinite(dataset.zero.values)]
+    left.plot(np.zeros_like(zero), zero, "o", ms=7, mfc="none", mec=INK, mew=1.3, label="zeros", clip_on=False)
+    helps = dataset.attrs["best_damping"] > 0
+    if helps:
+        best = int(np.argmin(np.abs(dataset.gain.values - dataset.attrs["best_gain"])))
+        at = shown[best][shown[best].imag > 1e-6 * top]
+        left.plot(at.real, at.imag, "D", ms=6, color=ORANGE, mec="white", mew=0.8, label="most damping")
+    left.set(
+        xlim=(-top, 0.06 * top), ylim=(-0.02 * top, top), xlabel="real part, rad/s", ylabel="imaginary part, rad/s"
+    )
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower left", ncols=3, fontsize=9, frameon=False)
+    least = np.maximum(dataset.least_damping.values, -0.2)  # below zero it is unstable, however much
+    right.semilogx(dataset.gain.values, least, color=BLUE, lw=1.8)
+    right.axhspan(-0.25, 0, color=ORANGE, alpha=0.12, lw=0)
+    right.set_ylim(-0.22, 1.15 * max(dataset.attrs["best_damping"], 0.3))
+    right.annotate("unstable", (0.02, -0.11), xycoords=("axes fraction", "data"), color=INK, fontsize=9, va="center")
+    if helps:
+        peak = (dataset.attrs["best_gain"], dataset.attrs["best_damping"])
+        right.plot(*peak, "D", ms=7, color=ORANGE, mec="white")
+        words = f"{peak[1]:.3g} at {peak[0]:.4g} {dataset.gain.attrs['units']}"
+        right.annotate(words, peak, xytext=(-8, 4), textcoords="offset points", ha="right", color=INK, fontsize=9)
+    right.set(xlabel=f"gain, {dataset.gain.attrs['units']}", ylabel="least damping ratio")
+    for ax in (left, right):
+        dress(ax)
+    kind = {"force": "integral force feedback", "velocity": "direct velocity feedback"}[dataset.attrs["feedback"]]
+    leak = dataset.attrs["leak_rad_s"]
+    legs = dataset.attrs["legs"]
+    which = "all legs" if len(legs) == 6 else f"leg{'s' if len(legs) > 1 else ''} {', '.join(map(str, legs))}"
+    figure.suptitle(
+        f"{dataset.attrs['design']}: {kind}, {which}" + (f", leak {leak:.4g} rad/s" if leak else ""),
+        color=INK,
+        fontsize=11,
+    )
+    return figure
+
+
+def _damping_rays(ax: Axes, top: float) -> None:
+    for ratio in (0.1, 0.3, 0.5, 0.7):
+        x, y = -ratio, float(np.sqrt(1 - ratio**2))
+        ax.plot([0, 2 * top * x], [0, 2 * top * y], color=FAINT, lw=0.6, ls=(0, (1, 2)), zorder=0)
+        scale = 0.97 * top / max(y, ratio)
+        ax.annotate(f"{ratio:g}", (scale * x, scale * y), color=FAINT, fontsize=8, ha="right", va="top")
+
+
+def isolation(dataset: xr.Dataset, axes: tuple[str, ...] = ("x", "z")) -> Figure:
+    """Transmissibility with and without control, of the axes named, from `fx.control.controlled_transmissibility`."""
+    figure = Figure(figsize=(4.9 * len(axes) + 0.6, 4.0), layout="constrained", dpi=130)
+    hertz = dataset.omega.values / (2 * np.pi)
+    for ax, axis in zip(np.atleast_1d(figure.subplots(1, len(axes), sharey=True)), axes, strict=True):
+        for case, color, style in (("passive", FAINT, (0, (5, 2))), ("controlled", BLUE, "-")):
+            curve = np.abs(dataset[case].sel(output=axis, base=axis).values)
+            ax.loglog(hertz, curve, color=color, ls=style, lw=1.8, label={"passive": "no control"}.get(case, "control"))
+        ax.axhline(1.0, color=FAINT, lw=0.7)
+        ax.set(xlabel="frequency, Hz", title=f"{axis} of platform per {axis} of base")
+        ax.title.set(color=INK, fontsize=10)
+        ax.legend(fontsize=9, framealpha=0.9, edgecolor="none")
+        dress(ax)
+    figure.axes[0].set_ylabel("transmissibility")
+    figure.suptitle(f"{dataset.attrs['design']}: {dataset.attrs['controller']}", color=INK, fontsize=11)
+    return figure
+
+
+def controlled_run(dataset: xr.Dataset, axis: str = "z") -> Figure:
+    """Absolute acceleration of one axis in time, with and without control, and root mean squares of all axes beside
+    the tangent's prediction, from `fx.control.simulate_control`."""
+    figure = Figure(figsize=(10.5, 4.4), layout="constrained", dpi=130)
+    left, right = figure.subplots(1, 2, width_ratios=[1.7, 1])
+    unit = str(dataset.acceleration_unit.sel(axis=axis).values).replace("2", "²")
+    for case, color, width in (("passive", FAINT, 0.9), ("controlled", BLUE, 1.1)):
+        left.plot(
+            dataset.time, dataset.acceleration.sel(case=case, axis=axis), color=color, lw=width, label=_WORDS[case]
+        )
+    left.set(xlabel="time, s", ylabel=f"acceleration {axis}, {unit}")
+    left.legend(loc="upper right", fontsize=9, framealpha=0.9, edgecolor="none")
+    passive = dataset.rms_acceleration.sel(case="passive").values
+    shaken = passive > 1e-3 * passive.max()  # less is left by symmetry and second-order effects
+    place = np.arange(int(shaken.sum()))
+    for shift, case, color in ((-0.2, "passive", FAINT), (0.2, "controlled", BLUE)):
+        ratio = dataset.rms_acceleration.sel(case=case).values[shaken] / passive[shaken]
+        expected = dataset.predicted_rms_acceleration.sel(case=case).values[shaken] / passive[shaken]
+        right.bar(place + shift, ratio, 0.38, color=color, label=_WORDS[case])
+        label = "tangent" if case == "controlled" else None
+        right.plot(place + shift, expected, ls="none", marker="_", ms=17, mew=2.2, color=ORANGE, label=label)
+    right.set_xticks(place, list(dataset.axis.values[shaken]))
+    right.set_ylabel("RMS acceleration over that without control")
+    right.set_ylim(0, 1.3 * max(1.0, right.get_ylim()[1] / 1.05))
+    right.legend(fontsize=9, ncols=3, loc="upper center", framealpha=0.9, edgecolor="none", columnspacing=1.2)
+    for ax in (left, right):
+        dress(ax)
+    attrs = dataset.attrs
+    limited = f", force limited in {attrs['saturated']:.1%} of samples" if attrs["saturated"] else ""
+    figure.suptitle(
+        f"{attrs['design']}: {attrs['controller']}, sampled every {1e3 * attrs['dt_s']:.4g} ms{limited}",
+        color=INK,
+        fontsize=11,
+    )
+    return figure
+
+
+_WORDS = {"passive": "no control", "controlled": "control"}
+
+
+def schedule(dataset: xr.Dataset) -> Figure:
+    """Gain and least damping over one or two axes of `fx.control.gain_schedule`; of more, over the first two."""
+    figure = Figure(figsize=(10.5, 4.2), layout="constrained", dpi=130)
+    left, right = figure.subplots(1, 2)
+    dims = dataset.gain.dims
+    if len(dims) == 1:
+        _lines(dataset, str(dims[0]), left, right)
+    else:
+        rest = {str(name): dataset.sizes[name] // 2 for name in dims[2:]}
+        cut = dataset.isel(rest)
+        for ax, name in ((left, "gain"), (right, "fixed_damping")):
+            x, y = (str(name) for name in cut.gain.dims)
+            mesh = ax.pcolormesh(_shown(cut, x), _shown(cut, y), cut[name].values.T, cmap="viridis", shading="nearest")
+            figure.colorbar(mesh, ax=ax).set_label(_named(cut[name]), color=INK)
+            ax.set(xlabel=_label(cut, x), ylabel=_label(cut, y))
+    for ax in (left, right):
+        dress(ax)
+    figure.suptitle(f"{dataset.attrs['design']}: schedule of {dataset.attrs['law']} feedback", color=INK, fontsize=11)
+    return figure
+
+
+def _lines(dataset: xr.Dataset, name: str, left: Axes, right: Axes) -> None:
+    x = _shown(dataset, name) if name in dataset.coords else np.arange(dataset.sizes[name])
+    left.plot(x, dataset.gain, color=BLUE, lw=1.8, marker=".")
+    left.axhline(dataset.attrs["fixed_gain"], color=FAINT, lw=1.0, ls=(0, (5, 2)))
+    left.set(ylabel=_named(dataset.gain))
+    right.plot(x, dataset.least_damping, color=BLUE, lw=1.8, marker=".", label="gain follows the pose")
+    right.plot(x, dataset.fixed_damping, color=ORANGE, lw=1.4, ls=(0, (5, 2)), label="one gain")
+    right.set(ylabel="least damping ratio")
+    right.legend(fontsize=9, framealpha=0.9, edgecolor="none")
+    for ax in (left, right):
+        ax.set_xlabel(_label(dataset, name) if name in dataset.coords else name)
+
+
+def _shown(dataset: xr.Dataset, name: str) -> Array:
+    values = dataset[name].values
+    return np.degrees(values) if dataset[name].attrs.get("units") == "rad" else values
+
+
+def _named(values: xr.DataArray) -> str:
+    """What it is, and its unit where it has one."""
+    return ", ".join(str(values.attrs[key]) for key in ("long_name", "units") if key in values.attrs)
+
+
+def _label(dataset: xr.Dataset, name: str) -> str:
+    unit = dataset[name].attrs.get("units", "")
+    return f"{name}, {'deg' if unit == 'rad' else unit}"
+
+
+def _spread(ax: Axes, kd: Array, kp: Array) -> None:
+    """A logarithmic scale for gains that are spaced so."""
+    for values, scale in ((kd, ax.set_xscale), (kp, ax.set_yscale)):
+        if values.size > 2 and values.min() > 0 and values.max() > 30 * values.min():
+            scale("log")

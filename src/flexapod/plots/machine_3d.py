@@ -1,0 +1,179 @@
+"""The machine and its modes drawn in three dimensions. Without `ax` a new figure is made."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flexapod.design.hexapod import Hexapod
+from flexapod.errors import PoseError
+from flexapod.mechanics.kinematics import force_transformation, home_pose
+from flexapod.mechanics.modes import NaturalModes
+from flexapod.plots.style import AXES, BASE, FAINT, INK, LEG, PLATFORM, SHORTENED, STRETCHED, VIEW
+from flexapod.pose import Array, Pose, rpy_matrix
+
+if TYPE_CHECKING:
+    from mpl_toolkits.mplot3d.axes3d import Axes3D
+
+
+def machine(hexapod: Hexapod, pose: Pose | None = None, ax: Axes3D | None = None) -> Axes3D:
+    """The machine in 3-D at a pose (default: home): base, legs with their numbers, platform, both frames. m."""
+    where = _one_pose(hexapod, pose)
+    ax = _axes_3d() if ax is None else ax
+    b, p = hexapod.base_joints, _at(where, hexapod.platform_joints)
+    size = _frame(ax, b, p)
+    _plate(ax, b, BASE)
+    _plate(ax, p, PLATFORM)
+    for i in range(6):
+        middle = b[i] + 0.55 * (p[i] - b[i])
+        _line(ax, b[i], middle, color=LEG, lw=4.5)
+        _line(ax, middle, p[i], color=LEG, lw=2.0)
+        outward = b[i] - b.mean(axis=0)
+        place = b[i] + 0.08 * size * outward / max(float(np.linalg.norm(outward)), 1e-12) - [0, 0, 0.03 * size]
+        ax.text(*place, str(i + 1), color=INK, ha="center", va="center", fontsize=10, fontweight="bold")
+    _points(ax, b, BASE)
+    _points(ax, p, PLATFORM)
+    _triad(ax, Pose(np.zeros(3)), 0.2 * size, names=True)
+    _triad(ax, where, 0.14 * size, names=False)
+    center = _at(where, hexapod.platform_mass_center[None])[0]
+    ax.plot(*center[:, None], marker="P", ms=8, color=PLATFORM, mec="white", mew=0.8, ls="none", clip_on=False)
+    _ticks(ax)
+    return ax
+
+
+def mode(hexapod: Hexapod, pose: Pose | None, modes: NaturalModes, number: int, ax: Axes3D | None = None) -> Axes3D:
+    """Mode `number` (from 1) of one pose: the platform at rest (grey) and displaced, legs coloured by their strain.
+
+    The displacement is enlarged so that its largest part is a sixth of the machine. A leg is the wider and the more
+    coloured the more it is stretched (orange) or shortened (blue), relative to the leg that is strained most.
+    """
+    where = _one_pose(hexapod, pose)
+    if np.shape(modes.omega) != (6,) or not 1 <= number <= 6:
+        raise PoseError(f"mode {number} of modes of shape {np.shape(modes.omega)}: give modes of one pose and 1 to 6.")
+    ax = _axes_3d() if ax is None else ax
+    b, p = hexapod.base_joints, _at(where, hexapod.platform_joints)
+    size = _frame(ax, b, p, margin=0.12)
+    x = _enlarged(modes.shape[:, number - 1], p - where.position, size / 6)
+    strain = force_transformation(hexapod, where).T @ x
+    moved = _at(Pose(where.position + x[:3], rotation(x[3:]) @ where.matrix), hexapod.platform_joints)
+    _plate(ax, b, BASE)
+    _plate(ax, p, FAINT, alpha=0.0, ls="--")
+    _plate(ax, moved, PLATFORM)
+    largest = max(float(np.abs(strain).max()), 1e-9 * size)
+    for i in range(6):
+        _line(ax, b[i], p[i], color=FAINT, lw=0.8, ls="--")
+        part = float(strain[i]) / largest
+        _line(ax, b[i], moved[i], color=_strain_colour(part), lw=1.6 + 3.4 * abs(part))
+    _points(ax, b, BASE)
+    _points(ax, moved, PLATFORM)
+    ax.set_axis_off()
+    return ax
+
+
+def rotation(vector: Array) -> Array:
+    """Rotation matrix of a rotation vector (3,), rad."""
+    angle = float(np.linalg.norm(vector))
+    x, y, z = vector / angle if angle > 0 else np.zeros(3)
+    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return rpy_matrix(np.zeros(3)) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
+
+
+def _enlarged(twist: Array, joints: Array, travel: float) -> Array:
+    """A mode's twist scaled so that the joint that moves most moves by `travel`, towards the positive axes."""
+    moves = twist[:3] + np.cross(twist[3:], joints)
+    largest = float(np.linalg.norm(moves, axis=1).max())
+    if largest == 0:
+        return twist
+    mean = moves.mean(axis=0)
+    lead = mean if np.linalg.norm(mean) > 0.3 * largest else twist[3:]
+    sign = -1.0 if lead[np.abs(lead).argmax()] < 0 else 1.0
+    return twist * (sign * travel / largest)
+
+
+def _one_pose(hexapod: Hexapod, pose: Pose | None) -> Pose:
+    where = home_pose(hexapod) if pose is None else pose
+    if where is None:
+        raise PoseError(f"{hexapod.name!r} names no home pose: give the pose to draw.")
+    if where.shape:
+        raise PoseError(f"a figure shows one pose; this one has batch axes {where.shape}. Index it first.")
+    return where
+
+
+def _axes_3d() -> Axes3D:
+    import matplotlib.pyplot as plt
+
+    return plt.figure(figsize=(6, 6)).add_subplot(projection="3d")
+
+
+def _at(pose: Pose, points: Array) -> Array:
+    return pose.position + points @ pose.matrix.T
+
+
+def _frame(ax: Axes3D, b: Array, p: Array, margin: float = 0.06) -> float:
+    """Equal scales around the machine, seen without perspective; returns its size, m."""
+    points = np.vstack([b, p])
+    low, high = points.min(axis=0), points.max(axis=0)
+    size = float((high - low).max())
+    low, high = low - margin * size, high + margin * size
+    ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    ax.set_box_aspect(high - low, zoom=1.15)
+    ax.set_proj_type("ortho")
+    ax.view_init(**VIEW)
+    return size
+
+
+def _ticks(ax: Axes3D) -> None:
+    for axis, name in ((ax.xaxis, "x, m"), (ax.yaxis, "y, m"), (ax.zaxis, "z, m")):
+        axis.set_pane_color((1, 1, 1, 0))
+        axis.line.set_color(FAINT)
+        axis._axinfo["grid"].update(color=FAINT, linewidth=0.3)
+        axis.set_label_text(name, color=INK)
+        axis.set_major_locator(_few())
+    ax.tick_params(colors=INK, labelsize=8)
+
+
+def _few() -> Any:
+    from matplotlib.ticker import MaxNLocator
+
+    return MaxNLocator(4)
+
+
+def _plate(ax: Axes3D, joints: Array, color: str, alpha: float = 0.22, ls: str = "-") -> None:
+    """The outline of six joints, in order of their angle about their centre."""
+    from matplotlib.colors import to_rgba
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+    spread = joints - joints.mean(axis=0)
+    first, second = np.linalg.svd(spread)[2][:2]
+    order = np.argsort(np.arctan2(spread @ second, spread @ first))
+    face = to_rgba(color, alpha)
+    ax.add_collection3d(
+        Poly3DCollection([joints[order]], facecolor=face, edgecolor=color, linewidth=1.4, linestyle=ls, clip_on=False)
+    )
+
+
+def _line(ax: Axes3D, start: Array, end: Array, **style: Any) -> None:
+    ax.plot(*np.stack([start, end], axis=1), solid_capstyle="round", clip_on=False, **style)
+
+
+def _points(ax: Axes3D, points: Array, color: str) -> None:
+    ax.plot(*points.T, "o", ms=5, color=color, mec="white", mew=0.6, clip_on=False)
+
+
+def _triad(ax: Axes3D, frame: Pose, length: float, names: bool) -> None:
+    for i, (name, color) in enumerate(AXES):
+        tip = frame.position + length * frame.matrix[:, i]
+        _line(ax, frame.position, tip, color=color, lw=1.6)
+        if names:
+            place = frame.position + 1.22 * length * frame.matrix[:, i]
+            ax.text(*place, name, color=color, fontsize=9, ha="center", va="center")
+
+
+def _strain_colour(part: float) -> Any:
+    """From grey (no strain) to orange (stretched, 1) or blue (shortened, -1)."""
+    from matplotlib.colors import to_rgb
+
+    end = np.array(to_rgb(STRETCHED if part > 0 else SHORTENED))
+    weight = min(1.0, abs(part)) ** 0.7
+    return tuple((1 - weight) * np.array(to_rgb(FAINT)) + weight * end)

@@ -1,0 +1,153 @@
+"""Figures of optimal design and of robustness. Each function draws a result on a new Figure and returns it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from flexapod.mechanics.kinematics import home_pose
+from flexapod.optimisation.design_search import OptimalDesign
+from flexapod.optimisation.pareto import ParetoFront
+from flexapod.optimisation.uncertainty import Robustness
+from flexapod.plots.style import FAINT, INK, dress
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+BLUE, ORANGE, GREEN = "#0072b2", "#d55e00", "#009e73"  # Okabe and Ito
+_PARAMETERS = 14  # most that are drawn
+INDEX = "index, rad/s"
+
+
+def search(found: OptimalDesign) -> Figure:
+    """Every trial in its order, the best so far, what gradients made of it, and where the search began."""
+    figure, ax = _figure(7.6, 4.0)
+    trial, index = found.history.trial.values, found.history["index"].values
+    feasible = found.history["feasible"].values
+    if trial.size:
+        ax.plot(trial[~feasible], index[~feasible], "x", ms=5, color=FAINT, mew=1.0, label="breaks a constraint")
+        ax.plot(trial[feasible], index[feasible], "o", ms=4, color=BLUE, mew=0, alpha=0.75, label="trial")
+        best = np.fmax.accumulate(np.where(feasible, index, np.nan))
+        ax.step(trial, best, where="post", color=BLUE, lw=1.4, label="best so far")
+    ax.axhline(found.index, color=GREEN, lw=1.8, label=f"finished and verified: {found.index:.5g}")
+    ax.axhline(
+        found.start_index, color=ORANGE, lw=1.4, ls=(0, (5, 2)), label=f"design begun with: {found.start_index:.5g}"
+    )
+    if not trial.size:
+        ax.set_xticks([])
+    told = found.history["index"].attrs
+    ax.set(xlabel="trial", ylabel=told["label"] + (f", {told['units']}" if told["units"] else ""))
+    ax.set_ylim(bottom=0, top=1.08 * max(found.index, found.start_index, *index[np.isfinite(index)]))
+    figure.legend(loc="outside lower center", ncols=3, fontsize=9, frameon=False)
+    figure.suptitle(f"{found.start.name}: search", color=INK, fontsize=11)
+    return figure
+
+
+def plan(found: OptimalDesign) -> Figure:
+    """Both designs from above and from the side, at home: joints of base and platform, and the legs. mm."""
+    figure = Figure(figsize=(9.6, 4.8), layout="constrained", dpi=130)
+    above, beside = figure.subplots(1, 2)
+    shapes = ((found.start, ORANGE, (0, (4, 2)), 1.2), (found.hexapod, BLUE, "-", 1.8))
+    for hexapod, color, style, width in shapes:
+        pose = home_pose(hexapod)
+        position, turn = (np.zeros(3), np.eye(3)) if pose is None else (pose.position, pose.matrix)
+        base = 1e3 * hexapod.base_joints
+        platform = 1e3 * (position + hexapod.platform_joints @ turn.T)
+        for ax, (i, k) in ((above, (0, 1)), (beside, (0, 2))):
+            for b, p in zip(base, platform, strict=True):
+                ax.plot([b[i], p[i]], [b[k], p[k]], color=color, lw=width, ls=style)
+            ax.plot(base[:, i], base[:, k], "s", ms=5, color=color, mec="white", mew=0.7, zorder=4)
+            ax.plot(platform[:, i], platform[:, k], "o", ms=6, color=color, mec="white", mew=0.7, zorder=4)
+    above.set(xlabel="x, mm", ylabel="y, mm", aspect="equal", title="from above")
+    beside.set(xlabel="x, mm", ylabel="z, mm", aspect="equal", title="from the side")
+    lines = [Line2D([], [], color=c, ls=s, lw=w) for _, c, s, w in shapes]
+    lines += [Line2D([], [], color=FAINT, ls="none", marker=m, ms=6) for m in "so"]
+    names = ["design begun with", "better design", "base joint", "platform joint"]
+    for ax in (above, beside):
+        _dress(ax)
+        ax.title.set(color=INK, fontsize=10)
+    figure.legend(lines, names, loc="outside lower center", ncols=4, fontsize=9, frameon=False)
+    return figure
+
+
+def front(found: ParetoFront) -> Figure:
+    """The Pareto front among all trials, and the design one began with."""
+    figure, ax = _figure(7.2, 4.6)
+    told = found.history
+    keep = told["feasible"].values & (told["index"].values > 0)
+    ax.plot(told["against"].values[keep], told["index"].values[keep], ".", ms=5, color=FAINT, mew=0, label="trial")
+    ax.plot(found.against, found.index, "-o", ms=5.5, lw=1.6, color=BLUE, mec="white", mew=0.7, label="Pareto front")
+    ax.plot(
+        found.start[1],
+        found.start[0],
+        "D",
+        ms=8,
+        color=ORANGE,
+        mec="white",
+        mew=0.9,
+        ls="none",
+        label="design begun with",
+    )
+    seen = np.append(found.against, found.start[1])
+    if keep.any() and told["against"].values[keep].max() > 20 * seen.min():
+        ax.set_xscale("log")
+    ax.set(xlabel=f"{found.name}{f', {found.unit}' if found.unit else ''}", ylabel=INDEX)
+    ax.set_ylim(bottom=0)
+    ax.legend(fontsize=9, framealpha=0.9, edgecolor="none", loc="best")
+    figure.suptitle(f"{found.hexapod.name}: index against {found.name}", color=INK, fontsize=11)
+    return figure
+
+
+def spread(found: Robustness) -> Figure:
+    """The distribution of the index, with the nominal and the worst case."""
+    figure, ax = _figure(7.2, 4.0)
+    values = found.samples["index"].values
+    ax.hist(values, bins=min(80, max(12, int(np.sqrt(values.size)))), color=BLUE, alpha=0.55, density=True, lw=0)
+    lines = [
+        (found.nominal, GREEN, "-", f"as designed: {found.nominal:.5g}"),
+        (found.quantiles[0.01], BLUE, (0, (5, 2)), f"99 % are above {found.quantiles[0.01]:.5g}"),
+        (found.worst, ORANGE, "-", f"worst case: {found.worst:.5g}"),
+    ]
+    for value, color, style, label in lines:
+        ax.axvline(value, color=color, lw=1.8, ls=style, label=label)
+    ax.set(xlabel=f"least {INDEX}" if found.samples.attrs["poses"] > 1 else INDEX, ylabel="share of designs per rad/s")
+    figure.legend(loc="outside lower center", ncols=3, fontsize=9, frameon=False)
+    figure.suptitle(
+        f"{found.samples.attrs['design']}: index of {values.size} uncertain designs", color=INK, fontsize=11
+    )
+    return figure
+
+
+def importance(found: Robustness) -> Figure:
+    """Sobol indices of the parameters, the most important first, with their 95 % confidence."""
+    assert found.sensitivity is not None, "ask for a sensitivity"
+    told = found.sensitivity.sortby("total", ascending=False).isel(parameter=slice(0, _PARAMETERS))
+    figure, ax = _figure(7.2, 1.4 + 0.34 * told.sizes["parameter"])
+    y = np.arange(told.sizes["parameter"])[::-1]
+    bars = (("total", 0.19, BLUE, "with interactions"), ("first", -0.19, "#56b4e9", "on its own"))
+    for name, offset, color, label in bars:
+        error = told[f"{name}_confidence"].values
+        ax.barh(
+            y + offset, np.maximum(told[name].values, 0), 0.36, color=color, label=label, xerr=error,
+            error_kw={"ecolor": INK, "lw": 0.8, "capsize": 2},
+        )  # fmt: skip
+    ax.set_yticks(y, [str(name) for name in told.parameter.values])
+    ax.set(xlabel="share of the variance of the index")
+    ax.set_xlim(left=0)
+    figure.legend(loc="outside lower center", ncols=2, fontsize=9, frameon=False)
+    return figure
+
+
+def _figure(width: float, height: float) -> tuple[Figure, Axes]:
+    figure = Figure(figsize=(width, height), layout="constrained", dpi=130)
+    ax = figure.subplots()
+    _dress(ax)
+    return figure, ax
+
+
+def _dress(ax: Axes) -> None:
+    dress(ax)
+    ax.set_axisbelow(True)

@@ -1,0 +1,119 @@
+"""Figures of paths: the index along them, the plan beside the straight line, leg forces and travel.
+
+Each function draws a result of a study on a new matplotlib Figure and returns it.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
+
+from flexapod.paths.analysis import PathIndex
+from flexapod.plots.style import FAINT, INK, dress
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+BLUE, ORANGE, GREEN = "#0072b2", "#d55e00", "#009e73"  # Okabe and Ito
+LEGS = (BLUE, ORANGE, GREEN, "#cc79a7", "#56b4e9", "#e69f00")
+STYLES = ("-", "-", "-", (0, (5, 1.5)), (0, (5, 1.5)), (0, (5, 1.5)))
+
+
+def index_along(found: PathIndex, beside: PathIndex | None = None, ax: Axes | None = None) -> Figure:
+    """The index along a path against its bound, and cond(H) below; beside: another path, such as the straight one.
+
+    Paths of different duration are drawn over the share of it.
+    """
+    figure = Figure(figsize=(8.2, 5.4), layout="constrained", dpi=130)
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
+    shared = beside is not None and beside.samples.time.values[-1] != found.samples.time.values[-1]
+    paths = [(found, BLUE, "-", "path"), *([] if beside is None else [(beside, FAINT, (0, (5, 2)), "straight line")])]
+    for result, color, style, label in paths:
+        x = _x(result, shared)
+        above.plot(x, result.samples["index"], color=color, ls=style, lw=1.9, label=label)
+        below.semilogy(x, result.samples.condition_number, color=color, ls=style, lw=1.5)
+    where = np.interp(found.minimum_time, found.samples.time.values, _x(found, shared))
+    above.plot(where, found.minimum, "o", ms=6, color=BLUE, mec="white", mew=0.9)
+    above.annotate(
+        f"{found.minimum:.4g}", (where, found.minimum), xytext=(0, -14), textcoords="offset points", ha="center",
+        color=INK, fontsize=9,
+    )  # fmt: skip
+    if found.bound is not None:
+        above.axhline(found.bound, color=ORANGE, lw=1.3, label=f"bound {found.bound:.4g} rad/s")
+        for result, color, *_ in paths:
+            values = result.samples["index"].values
+            above.fill_between(
+                _x(result, shared), values, found.bound, where=values < found.bound, color=color, alpha=0.15, lw=0
+            )
+    above.set(ylabel=r"lowest natural frequency $\omega_1$, rad/s")
+    above.set_ylim(bottom=0)
+    above.legend(fontsize=9, framealpha=0.9, edgecolor="none", loc="best")
+    below.set(ylabel="cond(H)", xlabel="share of the path's time" if shared else "time, s")
+    for ax in (above, below):
+        dress(ax)
+    figure.suptitle(f"{found.samples.attrs['design']}: index along the path", color=INK, fontsize=11)
+    return figure
+
+
+def _x(result: PathIndex, shared: bool) -> np.ndarray:
+    t = np.asarray(result.samples.time.values)
+    return (t - t[0]) / (t[-1] - t[0]) if shared else t
+
+
+def plan_map(dataset: xr.Dataset) -> Figure:
+    """The index on the plane through start, goal and the planned path's farthest point, from `fx.paths.plan_slice`."""
+    width, height = np.ptp(dataset.along.values), np.ptp(dataset.aside.values)
+    figure = Figure(figsize=(7.4, 1.4 + 5.6 * min(height / width, 1.2)), layout="constrained", dpi=130)
+    ax = figure.subplots()
+    bound = dataset.attrs["bound"]
+    x, y, values = dataset.along.values, dataset.aside.values, dataset["index"].values
+    mesh = ax.pcolormesh(x, y, values, cmap="viridis", shading="gouraud", rasterized=True, vmin=0)
+    bar = figure.colorbar(mesh, ax=ax)
+    bar.set_label(r"lowest natural frequency $\omega_1$, rad/s", color=INK)
+    bar.ax.axhline(bound, color="white", lw=2)
+    weak = ax.contour(x, y, values, levels=[bound], colors="white", linewidths=1.6)
+    ax.clabel(weak, fmt={bound: f"{bound:.4g} rad/s"}, fontsize=9, colors="white")
+    blocked = np.where(dataset.met.values, np.nan, 1.0)
+    ax.contourf(x, y, np.nan_to_num(blocked), levels=[0.5, 1.5], colors="none", hatches=["////"])
+    ax.plot([0, dataset.attrs["straight"]], [0, 0], color=ORANGE, lw=2.0, ls=(0, (5, 2)), label="straight line")
+    ax.plot(dataset.path_along, dataset.path_aside, color="white", lw=4.0)
+    ax.plot(dataset.path_along, dataset.path_aside, color=INK, lw=2.2, label="planned path")
+    for place, name in ((0.0, "start"), (dataset.attrs["straight"], "goal")):
+        ax.plot(place, 0.0, "o", ms=8, color="white", mec=INK, mew=1.5, zorder=5)
+        ax.annotate(name, (place, 0.0), xytext=(0, -17), textcoords="offset points", ha="center", color="white")
+    ax.set(
+        xlabel="along the straight line from start to goal, m",
+        ylabel="aside, towards the path's farthest point, m",
+        xlim=(x[0], x[-1]),
+        ylim=(y[0], y[-1]),
+        aspect="equal",
+    )
+    ax.legend(loc="upper right", fontsize=9, framealpha=0.9, edgecolor="none")
+    ax.tick_params(color=FAINT, labelcolor=INK, labelsize=9)
+    figure.suptitle(
+        f"{dataset.attrs['design']}: round the weak region (hatched: a requirement is broken)", color=INK, fontsize=11
+    )
+    return figure
+
+
+def loads(dataset: xr.Dataset) -> Figure:
+    """Leg forces and leg lengths along a path, from `fx.paths.path_loads`; thin: the forces at rest."""
+    figure = Figure(figsize=(10.5, 4.4), layout="constrained", dpi=130)
+    left, right = figure.subplots(1, 2, sharex=True)
+    for i, leg in enumerate(dataset.leg.values):
+        line = {"color": LEGS[i], "ls": STYLES[i]}
+        left.plot(dataset.time, dataset.leg_force[:, i], lw=1.7, label=f"leg {leg}", **line)
+        left.plot(dataset.time, dataset.static_force[:, i], lw=0.6, alpha=0.7, **line)
+        right.plot(dataset.time, dataset.leg_length[:, i], lw=1.7, **line)
+    left.set(ylabel="leg force, N (thin: at rest)", xlabel="time, s")
+    right.set(ylabel="leg length, m", xlabel="time, s")
+    left.yaxis.set_major_formatter(EngFormatter())
+    for ax in (left, right):
+        dress(ax)
+    figure.legend(loc="outside lower center", ncols=6, fontsize=9, frameon=False)
+    figure.suptitle(f"{dataset.attrs['design']}: legs along the path", color=INK, fontsize=11)
+    return figure

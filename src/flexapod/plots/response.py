@@ -1,0 +1,230 @@
+"""Figures of vibration: frequency response, random response, stepped sine, displacement in time.
+
+Each function draws a result of a study on a new matplotlib Figure and returns it. Frequencies are in Hz unless asked
+for in rad/s; the rest is in SI units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, MaxNLocator, NullLocator
+
+from flexapod.plots.style import FAINT, INK, dress
+from flexapod.pose import Array
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+COLOURS = ("#0072b2", "#d55e00", "#009e73")  # Okabe and Ito; line styles tell them apart as well
+STYLES = ("-", (0, (6, 2)), (0, (2, 1.5)))
+_ROUNDING = 1e-9  # of the largest curve beside it: what is smaller is symmetry broken by rounding, and left out
+OUTPUT_NAMES = {
+    "x": "translation x",
+    "y": "translation y",
+    "z": "translation z",
+    "roll": "rotation about x",
+    "pitch": "rotation about y",
+    "yaw": "rotation about z",
+}
+_VARIABLES = {
+    "absolute": ("base", "motion per base motion"),
+    "relative": ("base", "motion relative to the base per base motion"),
+    "compliance": ("wrench", "compliance"),
+    "command": ("leg", "motion per leg command"),
+}
+
+
+def frequency_response(
+    dataset: xr.Dataset, variable: str = "absolute", given: str = "z", natural: Iterable[float] = ()
+) -> Figure:
+    """Amplitude and phase of the six outputs for one input of `fx.transmissibility`'s result.
+
+    variable: "absolute", "relative", "compliance" or "command"; given: the input, an axis or a leg's number. natural:
+    frequencies in rad/s to mark.
+    """
+    dimension, words = _VARIABLES[variable]
+    natural, response = list(natural), dataset[variable].sel({dimension: given})
+    hertz = dataset.omega.values / (2 * np.pi)
+    unit = "m" if dimension == "leg" else str(dataset[f"{dimension}_unit"].sel({dimension: given}).values)
+    figure = _figure(10, 6.2)
+    grid = figure.subplots(2, 2, sharex=True, height_ratios=[2, 1])
+    least = _ROUNDING * np.nanmax(_positive(np.abs(response.values)), initial=0.0)
+    for column, outputs in enumerate((("x", "y", "z"), ("roll", "pitch", "yaw"))):
+        above, below = grid[0, column], grid[1, column]
+        for i, output in enumerate(outputs):
+            values = response.sel(output=output).values
+            line = {"color": COLOURS[i], "ls": STYLES[i], "lw": 1.6}
+            moves = np.nanmax(_positive(np.abs(values)), initial=0.0) > least
+            label = OUTPUT_NAMES[output] + ("" if moves else ": none")
+            shown = values if moves else np.full_like(values, np.nan)
+            above.loglog(hertz, _positive(np.abs(shown)), label=label, **line)
+            below.semilogx(hertz, _unwrapped_once(np.degrees(np.angle(shown))), **line)
+        moved = "rad" if column else "m"
+        above.set_ylabel(f"amplitude, {_ratio_unit(moved, unit)}")
+        _span(above)
+        below.set(ylabel="phase, deg", ylim=(-190, 190), yticks=[-180, -90, 0, 90, 180], xlabel="frequency, Hz")
+        for ax in (above, below):
+            dress(ax)
+            _mark(ax, natural)
+            _plain_decades(ax)
+        above.legend(loc="best", frameon=True, framealpha=0.85, edgecolor="none", fontsize=9)
+    source = f"leg {given}" if dimension == "leg" else f"{dimension} {given}"
+    figure.suptitle(f"{dataset.attrs['design']}: {words}, {source}", color=INK, fontsize=12)
+    return figure
+
+
+def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figure:
+    """Spectral density and cumulative RMS of a quantity of `fx.random_response`'s result, per Hz."""
+    density, cumulative = dataset[f"psd_{quantity}"], dataset[f"cumulative_{quantity}"]
+    along = density.dims[1]
+    hertz = dataset.omega.values / (2 * np.pi)
+    groups = [("x", "y", "z"), ("roll", "pitch", "yaw")] if along == "output" else [("1", "2", "3"), ("4", "5", "6")]
+    figure = _figure(10, 6.2)
+    grid = figure.subplots(2, 2, sharex=True)
+    least = _ROUNDING * float(cumulative[-1].max())
+    for column, names in enumerate(groups):
+        for i, name in enumerate(names):
+            line = {"color": COLOURS[i], "ls": STYLES[i], "lw": 1.6}
+            rms = cumulative.sel({along: name}).values
+            seen = 1.0 if rms[-1] > least else np.nan
+            label = f"{OUTPUT_NAMES.get(name, f'leg {name}')}: {rms[-1] if seen == 1 else 0:.4g}"
+            grid[0, column].loglog(hertz, _positive(seen * 2 * np.pi * density.sel({along: name}).values), **line)
+            grid[1, column].loglog(hertz, _positive(seen * rms), label=label, **line)
+        unit = _quantity_unit(quantity, column)
+        grid[0, column].set_ylabel(f"density, {unit if unit == 'N' else f'({unit})'}²/Hz")
+        grid[1, column].set(ylabel=f"RMS below, {unit}", xlabel="frequency, Hz")
+        for ax in grid[:, column]:
+            dress(ax)
+            _span(ax)
+            _plain_decades(ax)
+        grid[1, column].legend(loc="best", fontsize=9, framealpha=0.85, edgecolor="none", title=f"total RMS, {unit}")
+    figure.suptitle(
+        f"{dataset.attrs['design']}: {quantity.replace('_', ' ')} on the moving base", color=INK, fontsize=12
+    )
+    return figure
+
+
+def stepped_ratio(
+    dataset: xr.Dataset,
+    natural: Iterable[float] = (),
+    linear: xr.DataArray | None = None,
+    scale: Literal["linear", "log"] = "linear",
+) -> Figure:
+    """Fig. 9: ratio of response amplitude to base amplitude against frequency (rad/s), six outputs.
+
+    Dots: the non-linear machine (`fx.stepped_sine`); line: the tangent, from `linear` (omega, output; complex) where a
+    finer one is at hand. natural: frequencies in rad/s to mark. scale: of the frequencies.
+    """
+    line = dataset["linear"] if linear is None else linear
+    natural, least = list(natural), _ROUNDING * float(np.abs(line).max())
+    figure = _figure(10.5, 6.2)
+    for i, (name, ax) in enumerate(zip(OUTPUT_NAMES, figure.subplots(2, 3, sharex=True).ravel(), strict=True)):
+        smooth = np.abs(line.sel(output=name).values)
+        dots = dataset.ratio.sel(output=name).values
+        if smooth.max() <= least:
+            smooth, dots = np.full_like(smooth, np.nan), np.full_like(dots, np.nan)
+            ax.text(0.5, 0.5, "none", transform=ax.transAxes, ha="center", color=FAINT)
+            ax.yaxis.set_visible(False)
+        ax.set_xscale(scale)
+        ax.semilogy(line.omega.values, _positive(smooth), color=FAINT, lw=1.2, label="tangent")
+        ax.semilogy(dataset.omega.values, _positive(dots), "o", color=COLOURS[0], ms=2.6, mew=0, label="non-linear")
+        _span(ax)
+        if scale == "log":
+            _plain_decades(ax)
+        _mark(ax, natural, hertz=False)
+        dress(ax)
+        _name(ax, i, name)
+        unit = "rad" if i > 2 else "m"
+        ax.set_ylabel(f"ratio, {_ratio_unit(unit, dataset.attrs['amplitude_unit'])}")
+        if i > 2:
+            ax.set_xlabel("base frequency, rad/s")
+    handles = ax.get_legend_handles_labels()
+    figure.legend(*handles, loc="outside lower right", ncols=2, frameon=False, labelcolor=INK)
+    return figure
+
+
+def displacements(times: Array, displacement: Array, bound: Array | None = None, bound_name: str = "bound") -> Figure:
+    """Figs 7 and 8: displacement from equilibrium (m, 6), m and rad, against time (m,) s, six outputs.
+
+    bound: (m, 6), drawn on both sides of zero.
+    """
+    figure = _figure(10.5, 6.2)
+    for i, (name, ax) in enumerate(zip(OUTPUT_NAMES, figure.subplots(2, 3, sharex=True).ravel(), strict=True)):
+        ax.plot(times, displacement[:, i], color=COLOURS[0], lw=0.5)
+        if bound is not None:
+            ax.plot(times, bound[:, i], color=COLOURS[1], lw=1.1, label=bound_name)
+            ax.plot(times, -bound[:, i], color=COLOURS[1], lw=1.1)
+        dress(ax)
+        _name(ax, i, name)
+        ax.yaxis.set_major_formatter(EngFormatter(unit="rad" if i > 2 else "m"))
+        ax.yaxis.set_major_locator(MaxNLocator(5))
+        ax.margins(x=0)
+        if i > 2:
+            ax.set_xlabel("time, s")
+    if bound is not None:
+        figure.legend(*ax.get_legend_handles_labels(), loc="outside lower right", frameon=False, labelcolor=INK)
+    return figure
+
+
+def _figure(width: float, height: float) -> Figure:
+    return Figure(figsize=(width, height), layout="constrained", dpi=130)
+
+
+def _name(ax: Axes, i: int, output: str) -> None:
+    ax.set_title(f"({'abcdef'[i]}) {OUTPUT_NAMES[output]}", loc="left", fontsize=10, color=INK)
+
+
+def _mark(ax: Axes, natural: Iterable[float], hertz: bool = True) -> None:
+    low, high = ax.get_xlim()
+    for omega in natural:
+        place = omega / (2 * np.pi) if hertz else omega
+        if low < place < high:
+            ax.axvline(place, color=FAINT, lw=0.7, ls=(0, (1, 2)), zorder=0)
+
+
+def _plain_decades(ax: Axes) -> None:
+    """Plain numbers at 1, 2, 5 of every decade of the horizontal axis, where they have room."""
+    low, high = ax.get_xlim()
+    ax.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 3e3 else (1,)))
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:,.10g}"))
+    ax.xaxis.set_minor_locator(NullLocator())
+
+
+def _span(ax: Axes, decades: float = 9.0) -> None:
+    """Limits a logarithmic axis to what is above rounding: `decades` below the largest value drawn."""
+    drawn: list[Any] = [np.asarray(line.get_ydata(), dtype=float) for line in ax.get_lines()]
+    finite = np.concatenate([values[np.isfinite(values)] for values in drawn]) if drawn else np.array([])
+    if finite.size == 0 or finite.max() <= 0:
+        return
+    top = finite.max()
+    bottom = max(finite[finite > 0].min(), top * 10.0**-decades)
+    margin = (top / bottom) ** 0.06 if top > bottom else 2.0
+    ax.set_ylim(bottom / margin, top * margin)
+
+
+def _positive(values: Array) -> Array:
+    """Values for a logarithmic axis; what it cannot show is left out."""
+    return np.where(np.isfinite(values) & (values > 0), values, np.nan)
+
+
+def _unwrapped_once(degrees: Array) -> Array:
+    """Phase with a gap instead of a vertical line where it wraps."""
+    jump = np.abs(np.diff(degrees, prepend=degrees[:1])) > 270
+    return np.where(jump, np.nan, degrees)
+
+
+def _ratio_unit(above: str, below: str) -> str:
+    if above == below:
+        return f"{above}/{below}"
+    return f"{above}/({below})" if " " in below else f"{above}/{below}"
+
+
+def _quantity_unit(quantity: str, column: int) -> str:
+    if quantity == "leg_force":
+        return "N"
+    return ("rad" if column else "m") + ("/s²" if quantity == "acceleration" else "")

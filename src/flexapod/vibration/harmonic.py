@@ -1,0 +1,132 @@
+"""The linearised machine shaken at given frequencies: its steady response, accurate at the sharpest resonance too."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import eigh
+
+from flexapod.errors import ArgumentError
+from flexapod.mechanics.linearisation import Linearisation
+from flexapod.pose import Array
+
+Complex = NDArray[np.complexfloating[Any, Any]]
+
+_BLOCK = 4096  # frequencies solved at a time: bounds the memory
+
+
+class SteadyResponse(NamedTuple):
+    """Complex amplitudes (n, 6, 6) of x(t) = Re(X e^{i omega t}): the platform's small displacement, inertial axes.
+
+    relative: less the rigid motion with the base, per base displacement (absolute = carry + relative). wrench: per
+    wrench on the platform's reference point. command: per commanded change of each leg's unstretched length.
+    """
+
+    relative: Complex
+    wrench: Complex
+    command: Complex
+
+
+def frequencies(omega: ArrayLike) -> Array:
+    """`omega` as float64 (n,) rad/s; raises ArgumentError unless non-empty, finite and not negative."""
+    try:
+        array = np.atleast_1d(np.asarray(omega, dtype=np.float64))
+    except (TypeError, ValueError) as error:
+        raise ArgumentError(f"omega is {omega!r}; frequencies in rad/s are needed") from error
+    if array.ndim != 1 or array.size == 0:
+        raise ArgumentError(f"omega has shape {array.shape}; give a non-empty row of frequencies in rad/s")
+    wrong = np.flatnonzero(~(np.isfinite(array) & (array >= 0)))
+    if wrong.size:
+        raise ArgumentError(
+            f"omega[{wrong[0]}] is {array[wrong[0]]} rad/s; frequencies must be finite and not negative. "
+            "The response at -omega is the complex conjugate of that at omega."
+        )
+    return array
+
+
+def loss_factors(value: ArrayLike) -> Array:
+    """One loss factor for all legs or one for each, as (6,); raises ArgumentError unless finite and not negative."""
+    try:
+        eta = np.broadcast_to(np.asarray(value, dtype=np.float64), (6,))
+    except (TypeError, ValueError) as error:
+        raise ArgumentError(f"loss_factor is {value!r}; give one number, or six for the legs") from error
+    if not (np.isfinite(eta).all() and (eta >= 0).all()):
+        raise ArgumentError(f"loss_factor is {value!r}; it must be finite and not negative. Use 0 for lossless legs.")
+    return eta
+
+
+def steady_response(linear: Linearisation, omega: Array, loss_factor: ArrayLike = 0.0) -> SteadyResponse:
+    """Steady response at omega (n,) rad/s; infinite at an undamped resonance.
+
+    The legs' springs are K_i (1 + i eta_i), against base motion and against commands alike. Solved in the undamped
+    modes, where K - omega^2 M is (omega_m - omega)(omega_m + omega): its cancellation near resonance costs no digits.
+    """
+    eta = loss_factors(loss_factor)
+    out = SteadyResponse(*(np.empty((omega.size, 6, 6), dtype=np.complex128) for _ in range(3)))
+    basis = _Modes(linear, eta)
+    for start in range(0, omega.size, _BLOCK):
+        part = slice(start, start + _BLOCK)
+        X = basis.solve(omega[part])
+        for target, columns in zip(out, (X[..., :6], X[..., 6:12], X[..., 12:]), strict=True):
+            target[part] = columns
+    return out
+
+
+class _Modes:
+    """The dynamic stiffness and its right-hand sides in undamped modes."""
+
+    def __init__(self, linear: Linearisation, eta: Array) -> None:
+        square, self.shape = eigh(0.5 * (linear.K + linear.K.T), linear.M)
+        left = self.shape.T
+        self.square = square
+        self.skew = left @ (0.5 * (linear.K - linear.K.T)) @ self.shape  # only a wrench that turns makes K unsymmetric
+        spring = linear.H * linear.leg_stiffness  # wrench of unit stretches
+        self.loss = left @ (spring * eta) @ linear.H.T @ self.shape
+        self.friction = left @ linear.C @ self.shape
+        # Rigid motion with the base meets no spring, and a turned base turns gravity: K carry + K_b is known without
+        # the cancellation, which would drown slow motion. It meets no friction either, but in the model "spin_free".
+        lifted = (linear.M + linear.M_b)[:, :3]
+        self.tilt = left @ np.hstack([np.zeros((6, 3)), np.cross(linear.gravity, lifted)])
+        rubbed = linear.C @ linear.carry + linear.C_b
+        rounding = 1e-14 * np.abs(linear.C).max() * np.abs(linear.carry).max()
+        self.rubbed = left @ np.where(np.abs(rubbed) > rounding, rubbed, 0.0)
+        self.inertia = left @ (linear.M @ linear.carry + linear.M_b)
+        self.given = np.hstack([left, left @ (spring * (1 + 1j * eta))])
+
+    def solve(self, omega: Array) -> Complex:
+        """Displacements (n, 6, 18) per base displacement, wrench and command."""
+        w = omega[:, None, None]
+        root = np.sqrt(self.square.astype(np.complex128))  # imaginary for a mode that gravity topples
+        detuning = (root - omega[:, None]) * (root + omega[:, None])
+        Z = self.skew + 1j * self.loss + 1j * w * self.friction
+        Z[:, range(6), range(6)] += detuning
+        given = np.broadcast_to(self.given, (omega.size, 6, 12))
+        right = np.concatenate([w**2 * self.inertia - 1j * w * self.rubbed - self.tilt, given], axis=2)
+        return self.shape @ _solve(Z, right)
+
+
+def _solve(Z: Complex, right: Complex) -> Complex:
+    try:
+        solved: Complex = np.linalg.solve(Z, right)
+        return solved
+    except np.linalg.LinAlgError:  # an undamped resonance hit exactly
+        out = np.full_like(right, np.inf)
+        for i in np.flatnonzero(np.linalg.matrix_rank(Z) == 6):
+            out[i] = np.linalg.solve(Z[i], right[i])
+        return out
+
+
+def complex_poles(linear: Linearisation, loss_factor: ArrayLike = 0.0) -> Complex:
+    """Six poles (rad/s) with Im > 0 by size, of a motion e^{pt}, with the legs' loss factor: as seen at omega > 0."""
+    eta = loss_factors(loss_factor)
+    if not eta.any():
+        return linear.modes().pole.astype(np.complex128)
+    modes = _Modes(linear, eta)
+    zero, scale = np.zeros((6, 6)), np.sqrt(np.abs(modes.square).max())
+    stiffness = np.diag(modes.square) + modes.skew + 1j * modes.loss
+    A = np.block([[zero, scale * np.eye(6)], [-stiffness / scale, -modes.friction]])
+    poles = np.linalg.eigvals(A)
+    upper = poles[np.argsort(-poles.imag)[:6]]
+    return upper[np.argsort(np.abs(upper))]

@@ -1,0 +1,89 @@
+"""Frequency response for the page: six by six amplitudes and phases, and the base shaken at one frequency."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flexapod.mechanics.linearisation import linearise
+from flexapod.pose import Array
+from flexapod.vibration.frequency_response import transmissibility
+from flexapod.web import requests
+
+QUANTITIES = ("absolute", "relative", "compliance", "command", "leg_force")
+POINTS = 400  #: frequencies over the range, beside those at the resonances
+DRAWN = 0.15  #: greatest displacement drawn, as a part of the platform's size
+
+
+def response(asked: dict[str, Any]) -> dict[str, Any]:
+    """Amplitude and phase of outputs by inputs over frequency, the modes marked."""
+    question, quantity = requests.question(asked), requests.choice(asked, "quantity", QUANTITIES)
+    loss = requests.number(asked, "loss_factor", 0.0, 0.0, 2.0)
+    modes = linearise(question.hexapod, question.pose, joint=question.joint).modes()
+    omega = _frequencies(modes.omega, modes.damping_ratio)
+    data = transmissibility(question.hexapod, question.pose, omega, loss_factor=loss, joint=question.joint)
+    values = data[quantity]
+    _, outputs, inputs = values.dims
+    z = np.moveaxis(values.to_numpy(), 0, -1)
+    legs = [f"leg {n}" for n in range(1, 7)]
+    names = {"leg": legs, **{axis: list(requests.COORDINATES) for axis in ("output", "base", "wrench")}}
+    units = {"leg": ["N" if quantity == "leg_force" else "m"] * 6, **_units(data)}
+    return {
+        "omega": omega,
+        "magnitude": _short(np.abs(z)),
+        "phase": _short(np.degrees(np.angle(z))),
+        "outputs": names[str(outputs)],
+        "inputs": names[str(inputs)],
+        "output_units": units[str(outputs)],
+        "input_units": units[str(inputs)],
+        "modes": [{"name": str(i + 1), "omega": w} for i, w in enumerate(modes.omega) if w > 0],
+    }
+
+
+def _units(data: Any) -> dict[str, list[str]]:
+    return {axis: data[f"{axis}_unit"].to_numpy().tolist() for axis in ("output", "base", "wrench")}
+
+
+def _short(values: Array) -> Array:
+    """Five digits: more than a plot shows, in half the bytes."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        scale = 10.0 ** (4 - np.floor(np.log10(np.abs(values))))
+        return np.where(np.isfinite(scale), np.round(values * scale) / scale, values)
+
+
+def _frequencies(omega: Array, ratio: Array) -> Array:
+    """From a fifth of the lowest mode to three times the highest, dense about each resonance as its damping asks."""
+    real = omega[omega > 0]
+    low, high = 0.2 * real.min(), 3.0 * real.max()
+    grid = [np.geomspace(low, high, POINTS)]
+    for w, zeta in zip(omega, ratio, strict=True):
+        if w > 0:
+            near = np.geomspace(max(abs(zeta), 1e-6) / 8, 0.05, 14)
+            grid += [w * (1 - near), w * (1 + near), np.array([w * np.sqrt(max(1 - 2 * zeta**2, 0.5))])]
+    return np.unique(np.concatenate(grid))
+
+
+def shake(asked: dict[str, Any]) -> dict[str, Any]:
+    """The platform's complex displacement for a unit motion of the base along an axis, and how large to draw it."""
+    question, axis = requests.question(asked), requests.choice(asked, "axis", requests.COORDINATES)
+    omega = requests.number(asked, "omega", 1.0, 1e-9, 1e9)
+    data = transmissibility(question.hexapod, question.pose, [omega], joint=question.joint)
+    moved = data["absolute"].to_numpy()[0, :, requests.COORDINATES.index(axis)]
+    base = np.eye(6)[requests.COORDINATES.index(axis)]
+    hexapod = question.hexapod
+    size = float(np.linalg.norm(hexapod.platform_joints, axis=1).max())
+    largest = max(
+        _reach(np.abs(moved), hexapod.platform_joints), _reach(base, hexapod.base_joints), np.finfo(float).tiny
+    )
+    return {
+        "platform": {"real": moved.real, "imag": moved.imag},
+        "base": base,
+        "ratio": abs(moved[requests.COORDINATES.index(axis)]),
+        "reach": DRAWN * size / largest,
+    }
+
+
+def _reach(twist: Array, joints: Array) -> float:
+    """At most how far a displacement moves the farthest joint, m."""
+    return float(np.linalg.norm(twist[:3]) + np.linalg.norm(twist[3:]) * np.linalg.norm(joints, axis=1).max())

@@ -1,0 +1,40 @@
+"""What runs in a job's own process: one generator of messages for each kind of job."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable, Iterator
+from multiprocessing.connection import Connection
+from typing import Any
+
+from flexapod.errors import FlexapodError
+from flexapod.web import simulation, workspace
+
+Message = tuple[dict[str, Any], bytes]
+
+KINDS: dict[str, Callable[[dict[str, Any]], Iterator[Message]]] = {
+    "cloud": workspace.cloud,
+    "slice": workspace.slice_map,
+    "worst": workspace.worst,
+    "time": simulation.simulation,
+}
+
+
+def serve(pipe: Connection) -> None:
+    """Take jobs from the pipe until it closes; a job that fails says why and the process lives on."""
+    while True:
+        try:
+            kind, spec = pipe.recv()
+        except EOFError:
+            return
+        try:
+            for message in KINDS[kind](spec):
+                pipe.send(message)
+            pipe.send(({"type": "done"}, b""))
+        except FlexapodError as error:
+            pipe.send(({"type": "failed", "error": str(error)}, b""))
+        except (BrokenPipeError, ConnectionResetError):
+            return
+        except Exception as error:  # a fault of ours: told to the page, and in full on the server's terminal
+            traceback.print_exc()
+            pipe.send(({"type": "failed", "error": f"internal error ({type(error).__name__}); see the server"}, b""))

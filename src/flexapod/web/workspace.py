@@ -1,0 +1,86 @@
+"""Many poses for the page: the cloud of a pose box, a slice through it, and its worst pose, as float32 points."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from flexapod.pose import Array
+from flexapod.web import requests
+from flexapod.web.encode import float32
+from flexapod.workspace.pose_sets import Box, random_poses
+from flexapod.workspace.quantities import evaluate, thread_count
+
+CHUNK = 50_000  #: poses between two messages of progress: a hundredth of a second or so
+MOST_POINTS = 5_000_000  #: what a page's memory takes with ease: 8 numbers of 4 bytes each
+
+Message = tuple[dict[str, Any], bytes]
+
+
+def cloud(spec: dict[str, Any]) -> Iterator[Message]:
+    """Poses drawn in a box, with index and cond(H): rows x y z roll pitch yaw (m, degrees), omega_1, cond(H).
+
+    A pose is rounded to float32 before anything is computed there: the page shows the numbers of that very pose.
+    """
+    question, count = requests.question(spec), int(requests.number(spec, "points", 100_000, 1, MOST_POINTS))
+    poses = random_poses(_box(spec), count, int(requests.number(spec, "seed", 0, 0, 2**31)))
+    began = time.perf_counter()
+    for start in range(0, count, CHUNK):
+        stop = min(start + CHUNK, count)
+        six = poses.rows(start, stop)
+        six[:, 3:] = np.degrees(six[:, 3:])
+        six = six.astype("f4").astype(float)
+        rows = np.concatenate([six, _quantities(question, six, ("omega_1", "cond_H"))], axis=1)
+        yield _progress("points", stop, count, began), float32(rows)
+
+
+def slice_map(spec: dict[str, Any]) -> Iterator[Message]:
+    """Index, cond(H) and whether limits hold over a grid of two coordinates, the other four as the pose has them."""
+    question, (low, high) = requests.question(spec), requests.box(spec)
+    across = requests.COORDINATES.index(requests.choice(spec, "across", requests.COORDINATES))
+    up = requests.COORDINATES.index(requests.choice(spec, "up", requests.COORDINATES))
+    if across == up:
+        raise requests.AskingError("the two coordinates of a slice must differ; choose another one")
+    side = int(requests.number(spec, "side", 120, 2, 1000))
+    xs, ys = np.linspace(low[across], high[across], side), np.linspace(low[up], high[up], side)
+    began = time.perf_counter()
+    lines = max(1, CHUNK // side)
+    for first in range(0, side, lines):
+        part = ys[first : first + lines]
+        six = np.tile(question.six, (len(part) * side, 1))
+        six[:, across], six[:, up] = np.tile(xs, len(part)), np.repeat(part, side)
+        values = _quantities(question, six, ("omega_1", "cond_H", "within_limits"))
+        yield _progress("rows", first + len(part), side, began), float32(values)
+
+
+def worst(spec: dict[str, Any]) -> Iterator[Message]:
+    """The pose of the lowest index in the box, refined from low poses of a sweep to the true minimum."""
+    from flexapod.workspace.worst import worst_pose
+
+    question = requests.question(spec)
+    found = worst_pose(question.hexapod, _box(spec), question.joint)
+    pose = [*found.pose[:3].tolist(), *np.round(np.degrees(found.pose[3:]), 12).tolist()]
+    what = "singular poses lie in the box; here the index is" if found.singular else "least index"
+    edge = f"; on the box's edge in {', '.join(found.at_bounds)}" if found.at_bounds else ""
+    words = f"{what} {found.omega_1:.5g} rad/s, found by {found.agreed} of {found.starts} searches{edge}"
+    yield {"type": "found", "pose": pose, "index": found.omega_1, "words": words[0].upper() + words[1:]}, b""
+
+
+def _box(spec: dict[str, Any]) -> Box:
+    low, high = requests.box(spec)
+    scale = np.repeat([1.0, np.pi / 180], 3)
+    return Box(*zip(low * scale, high * scale, strict=True))
+
+
+def _quantities(question: requests.Question, six: Array, names: tuple[str, ...]) -> Array:
+    """Quantities of many poses (m, degrees), one column each. Half the machine's threads: other pages go on."""
+    rows = six * np.repeat([1.0, np.pi / 180], 3)
+    found = evaluate(question.hexapod, rows, names, question.joint, max(1, thread_count(None) // 2))
+    return np.stack([np.asarray(found[name], dtype=float) for name in names], axis=1)
+
+
+def _progress(kind: str, done: int, total: int, began: float) -> dict[str, Any]:
+    return {"type": kind, "done": done, "total": total, "seconds": time.perf_counter() - began}

@@ -1,0 +1,148 @@
+"""What a sweep can find at a pose: names, units and meanings, and the call of the compiled kernel that finds them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flexapod import _core
+from flexapod.design.hexapod import Hexapod
+from flexapod.errors import PoseError
+from flexapod.mechanics.inputs import JointModel, is_universal
+from flexapod.mechanics.kinematics import neutral_directions
+from flexapod.pose import Array
+from flexapod.workspace.pose_sets import COORDINATES, UNITS
+
+
+class Quantity(NamedTuple):
+    """`trailing`: name of a last axis of six, or ""."""
+
+    unit: str
+    meaning: str
+    trailing: str = ""
+    kernel: str = ""  #: the kernel's name for it, where it has another
+
+    @property
+    def dtype(self) -> str:
+        return "bool" if self.unit == "" and self.meaning.startswith("whether") else "float64"
+
+
+QUANTITIES: dict[str, Quantity] = {
+    "omega_1": Quantity("rad s-1", "lowest natural frequency (dynamic stability index)"),
+    "omega": Quantity("rad s-1", "natural frequencies", "mode"),
+    "cond_H": Quantity("1", "condition number of the force transformation H"),
+    "leg_length": Quantity("m", "leg length", "leg"),
+    "universal_angle": Quantity("rad", "universal joint angle from neutral", "leg", "joint_angle"),
+    "spherical_angle": Quantity("rad", "spherical joint angle from neutral", "leg", "joint_angle"),
+    "leg_distance": Quantity("m", "least distance between two leg axes"),
+    "leg_force": Quantity("N", "largest static leg force under gravity"),
+    "lowest_stiffness": Quantity("N m-1", "lowest stiffness against displacement of the reference point"),
+    "within_limits": Quantity("", "whether legs and joints are within the design's limits"),
+}
+DEFAULT = ("omega_1", "cond_H")
+#: Code of a pose that has not been computed yet, in a store that is being written.
+PENDING = 255
+_MEANINGS = {
+    "ok": "every value is right",
+    "singular": "the legs cannot hold the platform: the lowest frequency is zero to rounding, forces are NaN",
+    "no_leg": "a leg has no length or lies along its universal joint's axis: values are NaN",
+    "not_finite": "the pose holds NaN or infinity: values are NaN",
+    "no_inertia": "the inertia matrix is not positive definite: frequencies are NaN",
+    "pending": "not computed yet",
+}
+
+
+def statuses() -> dict[int, str]:
+    """Names of the status codes."""
+    return {**dict(enumerate(_core.SWEEP_STATUS)), PENDING: "pending"}
+
+
+def chosen(quantities: Iterable[str]) -> tuple[str, ...]:
+    """Quantities by name, in the order of the table, each once. Raises PoseError for an unknown name or none."""
+    names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
+    unknown = [name for name in names if name not in QUANTITIES]
+    if unknown:
+        from difflib import get_close_matches
+
+        near = get_close_matches(str(unknown[0]), QUANTITIES, n=1)
+        hint = f" Did you mean {near[0]!r}?" if near else ""
+        raise PoseError(f"there is no quantity {unknown[0]!r}.{hint} There are: {', '.join(QUANTITIES)}.")
+    if not names:
+        raise PoseError(f"no quantity was asked for; choose from {', '.join(QUANTITIES)}.")
+    return tuple(name for name in QUANTITIES if name in names)
+
+
+def evaluate(
+    hexapod: Hexapod,
+    rows: Array,
+    quantities: tuple[str, ...],
+    joint: JointModel,
+    threads: int,
+    limits: Array | None = None,
+) -> dict[str, Any]:
+    """The quantities and `status` at poses, rows (n, 6) or (n, 12), from the compiled kernel.
+
+    limits: `packed_limits(hexapod)`, for those who call often.
+    """
+    mask = 0
+    for name in quantities:
+        mask |= _core.SWEEP[QUANTITIES[name].kernel or name]
+    found = _core.sweep(
+        hexapod.packed, is_universal(joint), rows, mask, packed_limits(hexapod) if limits is None else limits, threads
+    )
+    return {name: found[name] for name in (*quantities, "status")}
+
+
+def packed_limits(hexapod: Hexapod) -> Array:
+    """Limits as the kernel takes them: neutral directions, leg length bounds, joint angles, leg distance."""
+    limits = hexapod.limits
+    lengths = (-np.inf, np.inf) if limits.leg_length is None else limits.leg_length
+    angles = [np.inf if a is None else a for a in (limits.universal_angle, limits.spherical_angle)]
+    distance = -np.inf if limits.leg_distance is None else limits.leg_distance
+    return np.concatenate(
+        [neutral_directions(hexapod).ravel(), np.broadcast_to(lengths, (6, 2)).ravel(), angles, [distance]]
+    )
+
+
+def thread_count(threads: int | None) -> int:
+    """Threads to use: those asked for, or all that this process may have."""
+    if threads is None:
+        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
+        raise PoseError(f"threads is {threads!r}; it must be a whole number, at least 1. Leave it out for all cores.")
+    return threads
+
+
+def attributes(name: str) -> dict[str, Any]:
+    """Attributes of a variable of a result, as the CF conventions name them."""
+    if name == "status":
+        codes = statuses()
+        return {
+            "long_name": "status of the pose",
+            "flag_values": np.array(list(codes), dtype=np.uint8),
+            "flag_meanings": " ".join(codes.values()),
+            "comment": "; ".join(f"{word}: {_MEANINGS[word]}" for word in codes.values()),
+        }
+    if name in COORDINATES:
+        k = COORDINATES.index(name)
+        turn = f"about the fixed axis {COORDINATES[k - 3]}" if k > 2 else "of the reference point, base frame"
+        return {"units": UNITS[k], "long_name": f"{name} {turn}"}
+    quantity = QUANTITIES[name]
+    return {"units": quantity.unit or "1", "long_name": quantity.meaning}
+
+
+def provenance(hexapod: Hexapod, joint: JointModel) -> dict[str, Any]:
+    """What a result was made from and with."""
+    from flexapod import __version__
+
+    return {
+        "title": f"Pose sweep of {hexapod.name}",
+        "design": hexapod.name,
+        "design_digest": hexapod.digest,
+        "joint": joint,
+        "source": f"flexapod {__version__}",
+        "instruction_set": _core.simd(),
+    }

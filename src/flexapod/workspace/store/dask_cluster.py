@@ -1,0 +1,126 @@
+"""Blocks of a stored sweep computed by the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError, ThreadPoolExecutor
+from contextlib import contextmanager
+from typing import Any
+
+from flexapod.errors import ClusterError
+from flexapod.optional import needed
+from flexapod.workspace.pose_sets import GivenPoses
+from flexapod.workspace.store.block_job import Finished, Job, compute_block
+
+LOCAL = "local"
+_POLL = 0.5  # s between looks at whether to stop
+
+
+class Cluster:
+    """See `flexapod.workspace.store.block_job.Workers`. A block whose worker dies is computed anew by another."""
+
+    def __init__(self, client: Any) -> None:
+        self.client = client
+
+    def compute(self, job: Job, numbers: Iterable[int], stop: Callable[[], bool]) -> Iterator[Finished]:
+        from distributed import KilledWorker, wait
+        from distributed.comm import CommClosedError
+
+        waiting = iter(numbers)
+        running: dict[Any, int] = {}
+        try:
+            while True:
+                while len(running) < self._most() and not stop():
+                    number = next(waiting, None)
+                    if number is None:
+                        break
+                    running[self._submit(job, number)] = number
+                if not running:
+                    return
+                try:
+                    wait(list(running), timeout=_POLL, return_when="FIRST_COMPLETED")
+                except TimeoutError:
+                    continue
+                for future in [future for future in running if future.done()]:
+                    del running[future]
+                    yield future.result()
+        except KilledWorker as error:
+            raise ClusterError(
+                f"the cluster lost several workers over one block ({error}). What is done is kept; look at the logs of "
+                "the workers, then go on with --resume."
+            ) from error
+        except (CancelledError, CommClosedError) as error:
+            raise ClusterError(
+                "the connection to the scheduler was lost. What is done is kept; go on with --resume."
+            ) from error
+        finally:
+            if self.client.status == "running":
+                self.client.cancel(list(running))
+
+    def _most(self) -> int:
+        """Blocks to have under way: enough that no worker waits for its next one."""
+        from distributed.comm import CommClosedError
+
+        if self.client.status != "running":
+            raise CommClosedError
+        return max(2, 2 * sum(self.client.nthreads().values()))
+
+    def _submit(self, job: Job, number: int) -> Any:
+        rows = None
+        if isinstance(job.points, GivenPoses):  # each worker gets the poses of its block, not all
+            block = job.blocks[number]
+            rows = job.points.rows(block.start, block.stop)
+            job = job._replace(points=None)
+        return self.client.submit(compute_block, job, number, rows, key=f"sweep-{job.token}-{number}", retries=2)
+
+
+def _knock(address: str, timeout: float) -> None:
+    """Raises OSError or ValueError where no scheduler answers.
+
+    A Client finds that out as well, but one that failed stays behind half made, and hangs the process when the garbage
+    collector takes it while another is made.
+    """
+    import asyncio
+
+    from distributed.comm import connect
+    from distributed.security import Security
+
+    async def try_to_connect() -> None:
+        comm = await connect(address, timeout=timeout, **Security().get_connection_args("client"))
+        await comm.close()
+
+    with ThreadPoolExecutor(1) as pool:  # an event loop may be running in this thread, as in a notebook
+        pool.submit(asyncio.run, asyncio.wait_for(try_to_connect(), timeout + 1)).result()
+
+
+@contextmanager
+def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
+    """The cluster of the Dask scheduler at an address such as tcp://host:8786; "local" starts one on this machine.
+
+    timeout: s. To be used in a `with` statement.
+
+    Raises: ClusterError where no scheduler answers within `timeout` seconds, or where it has no worker.
+    Source: own, with Dask.
+    """
+    dask = needed("distributed", "sweep", "a cluster needs dask.distributed")
+    if address == LOCAL:
+        local = dask.LocalCluster(threads_per_worker=1, dashboard_address="localhost:0")
+        with local, dask.Client(local) as client:
+            yield Cluster(client)
+        return
+    try:
+        _knock(address, timeout)
+        client = dask.Client(address, timeout=timeout)
+    except (OSError, ValueError, OverflowError) as error:
+        raise ClusterError(
+            f"no Dask scheduler answers at {address} ({str(error) or 'timed out'}). Start one with "
+            "`dask scheduler`, check the address (tcp://host:port), or use the address `local`."
+        ) from error
+    with client:
+        try:
+            client.wait_for_workers(1, timeout=timeout)
+        except TimeoutError:
+            raise ClusterError(
+                f"the scheduler at {address} has no workers. Start some with `dask worker {address}`."
+            ) from None
+        yield Cluster(client)

@@ -1,0 +1,113 @@
+"""A sweep in memory to one file: NetCDF, Parquet or CSV, by the ending of its name."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flexapod.errors import OutputError
+from flexapod.optional import needed
+from flexapod.workspace.pose_sets import COORDINATES
+from flexapod.workspace.quantities import QUANTITIES
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray as xr
+
+ZARR = ".zarr"
+MOST_BYTES = 4 * 2**30
+
+
+def save(sweep: xr.Dataset, path: str | Path) -> None:
+    """Write a sweep. The file is there when it is whole: until then it has another name.
+
+    Parquet and CSV have a row for each pose; CSV begins with lines `# name: value` that tell units and provenance.
+    Raises OutputError for another ending or where nothing can be written, MissingExtraError for a missing package.
+    """
+    path = Path(path)
+    write = _writer(path)
+    making = path.with_name(f".{path.name}.{os.getpid()}{path.suffix}")
+    try:
+        write(sweep, making)
+        os.replace(making, path)
+    except OSError as error:
+        raise OutputError(f"{path} cannot be written: {error.strerror or error}. Choose another place.") from error
+    finally:
+        making.unlink(missing_ok=True)
+
+
+def check_file(path: Path, poses: int, quantities: tuple[str, ...]) -> None:
+    """Raises OutputError, before anything is computed, for a file that would be too large or cannot be."""
+    _writer(path)
+    if not path.parent.is_dir():
+        raise OutputError(f"{path.parent} is no directory, so {path.name} cannot be written in it. Make it first.")
+    size = poses * (49 + sum(8 * (6 if QUANTITIES[name].trailing else 1) for name in quantities))
+    if size > MOST_BYTES:
+        raise OutputError(
+            f"{poses} poses take {size / 2**30:.1f} GiB in memory; a {path.suffix} file is written in one piece, up to "
+            f"{MOST_BYTES / 2**30:.0f} GiB. Stream to a store instead: {path.with_suffix(ZARR).name}"
+        )
+
+
+def _writer(path: Path) -> Callable[[xr.Dataset, Path], None]:
+    if path.suffix.lower() not in _WRITERS:
+        raise OutputError(f"{path.name} ends in {path.suffix!r}; it must end in .zarr, {', '.join(_WRITERS)}.")
+    return _WRITERS[path.suffix.lower()]
+
+
+def _netcdf(sweep: xr.Dataset, path: Path) -> None:
+    needed("h5netcdf", "sweep", "a .nc file needs h5netcdf")
+    sweep.to_netcdf(path, engine="h5netcdf")
+
+
+def _parquet(sweep: xr.Dataset, path: Path) -> None:
+    why = "a .parquet file needs PyArrow"
+    pyarrow, parquet = needed("pyarrow", "sweep", why), needed("pyarrow.parquet", "sweep", why)
+    table = pyarrow.Table.from_pandas(rows(sweep), preserve_index=False)
+    told = {"flexapod": json.dumps(_about(sweep))}
+    parquet.write_table(table.replace_schema_metadata({**(table.schema.metadata or {}), **told}), path)
+
+
+def _csv(sweep: xr.Dataset, path: Path) -> None:
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        for key, value in _about(sweep).items():
+            stream.write(f"# {key}: {value}\n")
+        rows(sweep).to_csv(stream, index=False, lineterminator="\n")
+
+
+def _about(sweep: xr.Dataset) -> dict[str, str]:
+    units = ", ".join(
+        f"{name} {variable.attrs['units']}" for name, variable in sweep.variables.items() if "units" in variable.attrs
+    )
+    codes = sweep["status"].attrs
+    words = [f"{k} {word}" for k, word in zip(codes["flag_values"], codes["flag_meanings"].split(), strict=True)]
+    return {**{str(key): str(value) for key, value in sweep.attrs.items()}, "units": units, "status": ", ".join(words)}
+
+
+def rows(sweep: xr.Dataset) -> pandas.DataFrame:
+    """A row for each pose: coordinates, every quantity (those of six in six columns, as omega_mode_1), status."""
+    import pandas
+
+    status = sweep["status"]
+    found: dict[str, Any] = {}
+    for name in COORDINATES:
+        found[name] = sweep[name].broadcast_like(status).transpose(*status.dims).values.ravel()
+    for key, variable in sweep.data_vars.items():
+        name = str(key)
+        if name == "status":
+            continue
+        values = np.asarray(variable.values)
+        if variable.ndim == status.ndim:
+            found[name] = values.ravel()
+        else:
+            for k, column in enumerate(values.reshape(-1, 6).T, start=1):
+                found[f"{name}_{variable.dims[-1]}_{k}"] = column
+    return pandas.DataFrame({**found, "status": status.values.ravel()})
+
+
+_WRITERS = {".nc": _netcdf, ".parquet": _parquet, ".csv": _csv}

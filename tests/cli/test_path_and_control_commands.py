@@ -1,0 +1,123 @@
+"""The commands path and control as a user meets them: numbers, files, messages."""
+
+import re
+
+import numpy as np
+import pytest
+
+import flexapod as fx
+
+pytest.importorskip("ompl")
+
+FROM = ["--from", 0, 0, 0.89, 0, -33, -10]
+TO = ["--to", 0, 0, 0.89, 0, 45, 53]
+
+
+def test_plan_writes_a_path_that_reads_back(run, result, tmp_path):
+    found = result("path", "mukherjee-i", *FROM, *TO, "--bound", 100, "--duration", 2, "--out", tmp_path)
+    assert found["above_bound"] is True
+    assert found["least_index_rad_s"] >= 100
+    assert found["plan"]["straight_least_index_rad_s"] < 5
+    names = {"path-index.png", "path-loads.png", "path-plane.png", "waypoints.csv", "path.html"}
+    assert {file.name for file in tmp_path.iterdir()} == names
+    again = result("path", "mukherjee-i", tmp_path / "waypoints.csv", "--bound", 100)
+    assert again["least_index_rad_s"] == pytest.approx(
+        found["least_index_rad_s"], rel=1e-9
+    )  # twelve digits in the file
+    assert again["duration_s"] == 2.0
+    html = (tmp_path / "path.html").read_text()
+    assert html.count("<svg") == 3
+    assert "http" not in re.sub(r'xmlns[:\w]*="[^"]*"', "", html)  # needs no network
+    code, out, _ = run("path", "mukherjee-i", tmp_path / "waypoints.csv", "--bound", 105)
+    assert code == 0
+    assert "BELOW it in places" in out
+
+
+def test_path_of_a_file(result, tmp_path):
+    rows = ["t,x,y,z,roll,pitch,yaw,weight", "0,0,0,0.89,0,0,0,1", "1,0.05,0.02,0.9,5,0,10,3", "2,0,0,0.95,0,0,0,1"]
+    file = tmp_path / "w.csv"
+    file.write_text("\n".join(rows))
+    found = result("path", "mukherjee-i", file, "--ends", "free")
+    poses = fx.Pose.from_rpy([0, 0.05, 0], [0, 0.02, 0], [0.89, 0.9, 0.95], np.radians([0, 5, 0]), 0,
+                             np.radians([0, 10, 0]))  # fmt: skip
+    path = fx.Trajectory(poses, [0, 1, 2], "free", weights=[1, 3, 1])
+    expected = fx.path_index(fx.load("mukherjee-i"), path)
+    assert found["least_index_rad_s"] == pytest.approx(expected.minimum)
+    assert found["weighted_mean_index_rad_s"] == pytest.approx(expected.weighted_mean)
+    assert found["bound_rad_s"] is None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["path", "mukherjee-i"], "give a FILE of waypoints, or --from and --to"),
+        (["path", "mukherjee-i", *FROM, *TO], "Give --bound RAD_S"),
+        (["path", "mukherjee-i", *FROM, *TO, "--bound", 150], "below the bound of 150 rad/s"),
+        (["path", "mukherjee-i", *FROM, *TO, "--bound", 100, "--least", "time"], "least time needs a LegSpeed"),
+        (["path", "mukherjee-i", *FROM, *TO, "--bound", 100, "--duration", 1, "--leg-rate", 1], "Give one of them"),
+        (["path", "mukherjee-i", "nowhere.csv"], "cannot be read"),
+        (["control", "cubic-isolator", "pid", "--kp", 1], "pid needs its gains"),
+        (["control", "cubic-isolator", "pid", "--kp", -1e6, "--kd", 1], "the machine is unstable with joint-space PID"),
+        (["control", "cubic-isolator", "force", "--gain", 60, "--leak", 0], "needs a leak"),
+        (["control", "cubic-isolator", "lqg", "--noise", 0.001, "--dt", 0.02], "sample faster"),
+        (["control", "cubic-isolator", "lqg", "--measure", "jerk"], "measure is"),
+    ],
+)
+def test_what_is_wrong_is_said(run, arguments, words):
+    code, _, err = run(*arguments)
+    assert code == 2
+    assert words in err
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        (["x,y,z"], "its first line must be t,x,y,z,roll,pitch,yaw"),
+        (["t,x,y,z,roll,pitch,yaw", "0,0,0,1,0,0,0", "1,0,0,high,0,0,0"], "waypoint 2 is 1,0,0,high,0,0,0"),
+        (["t,x,y,z,roll,pitch,yaw", "0,0,0,1,0,0,0"], "at least two poses"),
+        (["t,x,y,z,roll,pitch,yaw", "1,0,0,1,0,0,0", "0,0,0,1,0,0,0"], "times must increase"),
+    ],
+)
+def test_wrong_files_are_told_what_is_wrong(run, tmp_path, rows, words):
+    file = tmp_path / "w.csv"
+    file.write_text("\n".join(rows))
+    code, _, err = run("path", "mukherjee-i", file)
+    assert code == 2
+    assert words in err
+
+
+def test_control_gives_the_library_s_numbers(result, tmp_path):
+    h = fx.load("cubic-isolator")
+    pose = fx.home_pose(h)
+    found = result("control", "cubic-isolator", "lqg", "--shake", 0.01, "--duration", 2, "--out", tmp_path)
+    dt = fx.control.sampling_time(h, pose)
+    assert found["sampling_time_s"] == dt == found["recommended_sampling_time_s"]
+    loop = fx.control.closed_loop(h, pose, fx.control.lqg(h, pose).sampled(dt))
+    assert found["worst_damping"] == pytest.approx(loop.worst_damping)
+    assert found["run"]["rms_acceleration_controlled"][2] < 0.6 * found["run"]["rms_acceleration_passive"][2]
+    np.testing.assert_allclose(
+        found["run"]["rms_acceleration_controlled"][:3],
+        found["run"]["predicted_rms_acceleration_controlled"][:3],
+        rtol=0.05,
+    )
+    names = {"control-transmissibility.png", "control-run.png", "control.html"}
+    assert {file.name for file in tmp_path.iterdir()} == names
+
+
+def test_damping_gain_is_chosen_for_the_sampled_loop(result):
+    found = result("control", "precision-positioner", "velocity")
+    h = fx.load("precision-positioner")
+    continuous = fx.control.root_locus(h, fx.home_pose(h), "velocity").attrs["best_gain"]
+    assert found["best_gain"] == pytest.approx(continuous)
+    assert found["worst_damping"] > 0.5
+    slower = result("control", "precision-positioner", "velocity", "--dt", 4 * found["sampling_time_s"])
+    assert slower["worst_damping"] > 0.05
+    assert any("sample faster" in text for text in slower["cautions"])
+
+
+def test_pid_shows_where_gains_are_near(run, tmp_path):
+    code, out, _ = run("control", "motion-base", "pid", "--kp", 1e5, "--kd", 1e4, "--out", tmp_path)
+    assert code == 0
+    assert "Warning" in out
+    assert "within 10 % of a natural frequency" in out
+    assert (tmp_path / "control-gains.png").stat().st_size > 10_000

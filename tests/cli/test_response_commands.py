@@ -1,0 +1,155 @@
+"""The commands response and animate, and the figures of vibration."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from PIL import Image
+
+import flexapod as fx
+from flexapod.plots import response as plots_response
+
+CENTER = ["--pose", "0", "0", "0.085", "0", "0", "0"]
+AXES = ["x", "y", "z", "roll", "pitch", "yaw"]
+II = fx.Pose((0, 0, 0.085))
+
+
+# --- response ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "variable", "given"),
+    [
+        ([], "absolute", {"base": "z"}),
+        (["--relative", "--axis", "roll"], "relative", {"base": "roll"}),
+        (["--from", "wrench", "--axis", "x"], "compliance", {"wrench": "x"}),
+        (["--from", "command", "--axis", "4", "--loss-factor", "0.02"], "command", {"leg": "4"}),
+    ],
+)
+def test_response_prints_what_the_library_gives(result, arguments, variable, given):
+    found = result("response", "mukherjee-ii", *CENTER, "--omega-max", "2000", "--points", "50", *arguments)
+    omega = np.array(found["omega_rad_s"])
+    assert omega[-1] == pytest.approx(2000)
+    hexapod = fx.load("mukherjee-ii")
+    eta = found["loss_factor"]
+    expected = fx.transmissibility(hexapod, II, omega, loss_factor=eta)[variable].sel(given)
+    for axis in AXES:
+        complex_amplitude = np.array(found["amplitude"][axis]) * np.exp(1j * np.array(found["phase_rad"][axis]))
+        np.testing.assert_allclose(complex_amplitude, expected.sel(output=axis), rtol=1e-9, atol=1e-300)
+    inside = [w for w in found["damped_omega_rad_s"] if omega[0] < w < 2000]
+    assert len(inside) == 3
+    assert all(np.abs(omega / w - 1).min() < 1e-12 for w in inside)  # every resonance is a point of the curve
+
+
+def test_response_writes_files_that_read_back(run, tmp_path):
+    psd = tmp_path / "floor.csv"
+    psd.write_text("frequency_hz,z,roll\n1,1e-6,0\n80,1e-6,1e-7\n")
+    out = tmp_path / "made" / "here"
+    options = ["--amplitude", "1e-5", "--steps", "5", "--psd", psd, "--out", out, "--points", "40"]
+    code, text, _ = run("response", "cubic-isolator", *options)
+    assert code == 0
+    assert "5 of 5 frequencies" in text
+    names = {f"{name}.{kind}" for name in ("response", "stepped", "random") for kind in ("csv", "nc", "png")}
+    assert {path.name for path in out.iterdir()} == names
+    hexapod = fx.load("cubic-isolator")
+    home = fx.home_pose(hexapod)
+    with xr.open_dataset(out / "response.nc") as saved:
+        read = saved.absolute_re.values + 1j * saved.absolute_im.values
+        expected = fx.transmissibility(hexapod, home, saved.omega.values)
+        np.testing.assert_allclose(read, expected.absolute, rtol=1e-14, atol=1e-14)
+        assert saved.omega.attrs["units"] == "rad/s"
+    table = pd.read_csv(out / "response.csv")
+    np.testing.assert_allclose(table.frequency_hz * 2 * np.pi, table.omega_rad_s)
+    expected = fx.transmissibility(hexapod, home, table.omega_rad_s).absolute.sel(output="z", base="z")
+    np.testing.assert_allclose(table.z_amplitude, np.abs(expected), rtol=1e-12)
+    with xr.open_dataset(out / "random.nc") as saved:
+        grid = np.array([1.0, 80.0]) * 2 * np.pi
+        levels = np.zeros((2, 6))
+        levels[:, 2], levels[:, 3] = 1e-6, [0, 1e-7]
+        expected = fx.random_response(hexapod, home, levels / (2 * np.pi), grid)
+        np.testing.assert_allclose(saved.rms_leg_force, expected.rms_leg_force, rtol=1e-12)
+    stepped = pd.read_csv(out / "stepped.csv", index_col=0)
+    response = fx.transmissibility(hexapod, home, stepped.index.values).absolute.sel(output="z", base="z")
+    np.testing.assert_allclose(stepped.z, np.abs(response), rtol=1e-4)  # (amplitude / leg)^2 enlarged by resonance
+    for name in ("response", "stepped", "random"):
+        with Image.open(out / f"{name}.png") as picture:
+            assert min(picture.size) > 700
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--axis", "3"], "does not go with --from base"),
+        (["--from", "command", "--axis", "z"], "choose one of 1, 2, 3, 4, 5, 6"),
+        (["--from", "wrench", "--relative"], "--relative is for --from base"),
+        (["--omega-min", "500", "--omega-max", "100"], "less than"),
+        (["--omega-min", "-5"], "omega-min"),
+        (["--from", "wrench", "--amplitude", "1e-6"], "--amplitude shakes the base"),
+        (["--amplitude", "0"], "amplitude"),
+        (["--points", "1"], "points"),
+        (["--psd", "nowhere.csv"], "nowhere.csv"),
+        (["--set", "platform.mass=-1"], "platform.mass"),
+    ],
+)
+def test_response_wrong_command_lines(run, arguments, message):
+    code, out, err = run("response", "mukherjee-ii", *CENTER, *arguments)
+    assert code == 2
+    assert message in err
+    assert out == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "cannot be read"),
+        ("hz,z\n1,2\n", "must have frequency_hz"),
+        ("frequency_hz\n1\n", "must have frequency_hz"),
+        ("frequency_hz,up\n1,2\n", "must have frequency_hz"),
+        ("frequency_hz,z\n1,much\n2,3\n", "no number"),
+        ("frequency_hz,z\n2,1\n1,1\n", "ascending"),
+        ("frequency_hz,z\n1,1\n2,-1\n", "negative"),
+        ("frequency_hz,z\n1,1\n2,\n", "NaN"),
+    ],
+)
+def test_bad_spectrum_files(run, tmp_path, text, message):
+    path = tmp_path / "floor.csv"
+    path.write_text(text)
+    code, _, err = run("response", "mukherjee-ii", *CENTER, "--psd", path)
+    assert code == 2
+    assert message in err
+
+
+# --- animate -------------------------------------------------------------------------------------------------------
+
+
+def test_animate_command(result, run, tmp_path, monkeypatch):
+    path = tmp_path / "mode.gif"
+    found = result("animate", "mukherjee-ii", *CENTER, "--mode", "3", "--exaggeration", "5000", "--out", path)
+    assert (found["mode"], found["exaggeration"], found["file"]) == (3, 5000.0, str(path))
+    with Image.open(path) as picture:
+        assert picture.n_frames == 32
+    for arguments in (["--mode", "7"], ["--out", tmp_path / "a.png"], ["--exaggeration", "-1"]):
+        assert run("animate", "mukherjee-ii", *CENTER, *arguments)[0] == 2
+    monkeypatch.setitem(__import__("sys").modules, "imageio_ffmpeg", None)
+    code, _, err = run("animate", "mukherjee-ii", *CENTER, "--out", tmp_path / "a.mp4")
+    assert code == 2
+    assert "flexapod[video]" in err
+
+
+# --- figures -------------------------------------------------------------------------------------------------------
+
+
+def test_figures_say_what_they_show():
+    hexapod = fx.load("motion-base")
+    pose = fx.home_pose(hexapod)
+    response = fx.transmissibility(hexapod, pose, np.geomspace(5, 200, 30))
+    figure = plots_response.frequency_response(response, "absolute", "x")
+    labels = [ax.get_ylabel() for ax in figure.axes]
+    assert labels == ["amplitude, m/m", "amplitude, rad/m", "phase, deg", "phase, deg"]
+    legend = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+    assert legend == ["translation x", "translation y: none", "translation z: none"]  # none, where symmetry has it
+    wrench = plots_response.frequency_response(response, "compliance", "roll")
+    assert wrench.axes[0].get_ylabel() == "amplitude, m/(N m)"
+    random = plots_response.random_spectra(fx.random_response(hexapod, pose, [1.0, 1.0], [5, 200], axis="z"))
+    assert random.axes[0].get_ylabel() == "density, (m/s²)²/Hz"
+    assert random.axes[2].get_xlabel() == "frequency, Hz"

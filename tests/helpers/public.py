@@ -1,0 +1,37 @@
+"""The public names of the library: those of `flexapod` and of the packages of its subjects."""
+
+import inspect
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+import flexapod as fx
+
+PACKAGES = [
+    name for name in fx.__all__ if isinstance(getattr(fx, name), ModuleType) and name not in ("errors", "plots")
+]
+
+
+def _all() -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for place in (fx, *(import_module(f"flexapod.{name}") for name in PACKAGES)):
+        for name in place.__all__:
+            thing = getattr(place, name)
+            if not isinstance(thing, ModuleType):
+                assert found.setdefault(name, thing) is thing, f"{name} is two things"
+    errors = {name: thing for name, thing in vars(fx.errors).items() if inspect.isclass(thing) and name != "Any"}
+    return found | errors
+
+
+#: Name -> what it is, each name once. No name has two meanings.
+PUBLIC = _all()
+FUNCTIONS = sorted(name for name, thing in PUBLIC.items() if inspect.isfunction(thing))
+CLASSES = sorted(name for name, thing in PUBLIC.items() if inspect.isclass(thing))
+
+
+def call_name(name: str) -> str:
+    """How a user writes a public name: `load`, `control.lqg`."""
+    if name in fx.__all__:
+        return name
+    (package,) = [place for place in [*PACKAGES, "errors"] if hasattr(getattr(fx, place), name)]
+    return f"{package}.{name}"

@@ -1,0 +1,122 @@
+"""The folders are the architecture: imports only point down, files and functions stay small."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).parents[2] / "src" / "flexapod"
+CORE = SOURCE.parent / "core"
+
+#: Folders and modules directly below flexapod, from the ground up. Each may import those before it.
+ORDER = [
+    "_core",
+    "errors",
+    "optional",
+    "pose",
+    "design",
+    "mechanics",
+    "workspace",
+    "excitation",
+    "simulation",
+    "vibration",
+    "paths",
+    "optimisation",
+    "control",
+    "interchange",
+    "plots",
+    "paper",
+    "report",
+    "web",
+    "cli",
+    "__main__",
+]
+#: The same for the folders of the core.
+CORE_ORDER = ("numbers", "simd", "decomposition", "model", "sweep", "simulation", "bench", "bindings")
+
+FILES = sorted(SOURCE.rglob("*.py"))
+IDS = [str(path.relative_to(SOURCE)) for path in FILES]
+SOURCES = sorted(CORE.rglob("*.[hc]pp"))
+
+
+def place(path: Path) -> str:
+    """The module or folder directly below flexapod that a file belongs to."""
+    return path.relative_to(SOURCE).parts[0].removesuffix(".py")
+
+
+def imported(tree: ast.Module) -> set[str]:
+    """Names directly below flexapod that a file imports: also for types, inside functions, and by import_module.
+
+    A module that imports flexapod itself can reach every name, and counts as one that imports the top.
+    """
+    names = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names if alias.name.split(".")[0] == "flexapod"}
+        elif isinstance(node, ast.ImportFrom) and node.module == "flexapod":
+            names |= {f"flexapod.{alias.name}" for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "imports are absolute"
+            names |= {node.module} if node.module and node.module.startswith("flexapod.") else set()
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] == "import_module":
+            names |= {text for text in _strings(node.args[0]) if text.split(".")[0] == "flexapod"}
+    below = {name.split(".")[1] if "." in name else "flexapod" for name in names}
+    return below - {"__version__", "_version"}
+
+
+def _strings(node: ast.expr) -> set[str]:
+    """The constant beginnings of what may be an f-string."""
+    if isinstance(node, ast.JoinedStr):
+        node = node.values[0]
+    return {str(node.value)} if isinstance(node, ast.Constant) else set()
+
+
+def floor(name: str) -> int:
+    return ORDER.index(name) if name != "flexapod" else len(ORDER)
+
+
+def test_every_folder_has_its_place_in_the_order():
+    there = {path.stem for path in SOURCE.iterdir() if path.name not in ("__pycache__", "__init__.py", "__init__.pyi")}
+    assert {name.split(".")[0] for name in there} - {"py"} == set(ORDER)
+    assert {path.name for path in CORE.iterdir()} - {"README.md"} == set(CORE_ORDER)
+
+
+@pytest.mark.parametrize("path", FILES, ids=IDS)
+def test_imports_only_point_down(path):
+    here = place(path)
+    if here == "__init__":
+        return  # it names everything, lazily, in its stub
+    above = {name for name in imported(ast.parse(path.read_text())) if name != here and floor(name) >= floor(here)}
+    assert not above, f"{here} imports {sorted(above)}, which do not lie below it"
+
+
+def test_the_rule_sees_a_wrong_import():
+    code = (
+        "from flexapod import cli, errors\nimport flexapod.report.page\nfrom flexapod.pose import Pose\n"
+        "def late():\n    import flexapod as fx\n    import_module(f'flexapod.web.{name}')\n"
+    )
+    assert imported(ast.parse(code)) == {"cli", "errors", "report", "pose", "flexapod", "web"}
+    assert floor("mechanics") < floor("workspace") < floor("cli") < floor("flexapod")
+
+
+@pytest.mark.parametrize("path", FILES, ids=IDS)
+def test_files_and_functions_are_small(path):
+    text = path.read_text()
+    assert len(text.splitlines()) <= 450
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            lines = (node.end_lineno or 0) - node.lineno + 1
+            assert lines < 50, f"{node.name} has {lines} lines"
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(CORE)))
+def test_the_core_includes_downwards_and_knows_python_in_its_bindings_only(path):
+    text = path.read_text()
+    assert len(text.splitlines()) <= 400
+    here = CORE_ORDER.index(path.parent.name)
+    for line in text.splitlines():
+        if line.startswith('#include "'):
+            folder = line.split('"')[1].split("/")[0]
+            assert CORE_ORDER.index(folder) <= here, f"{path.parent.name} includes {line}"
+    if path.parent.name != "bindings":
+        assert "nanobind" not in text

@@ -1,0 +1,42 @@
+"""What a release says of itself in several places is the same."""
+
+import re
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+import yaml
+
+import flexapod as fx
+
+ROOT = Path(__file__).resolve().parents[2]
+CITATION = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
+
+
+def test_the_version_is_one():
+    changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert CITATION["version"] == fx.__version__
+    assert metadata.version("flexapod") == fx.__version__
+    assert re.search(r"^## (\S+)", changelog, re.MULTILINE)[1] == fx.__version__
+
+
+def test_a_dated_changelog_has_a_dated_citation():
+    heading = re.search(r"^## .*", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)[0]
+    assert ("unreleased" in heading) == ("date-released" not in CITATION)
+
+
+def test_the_paper_is_cited():
+    (paper,) = CITATION["references"]
+    assert paper["title"] in (ROOT / "README.md").read_text(encoding="utf-8").replace("\n", " ")
+    assert CITATION["license"] == metadata.metadata("flexapod")["License-Expression"]
+
+
+@pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.stem)
+def test_workflows_ask_for_what_the_makefile_has(path):
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
+    jobs = yaml.safe_load(path.read_text(encoding="utf-8"))["jobs"]
+    steps = [step for job in jobs.values() for step in job["steps"]]
+    asked = {match for step in steps for match in re.findall(r"make ([a-z-]+)", step.get("run", ""))}
+    assert asked <= targets
+    assert all(re.search(r"@(v\d+|release/v\d+)$", step["uses"]) for step in steps if "uses" in step)

@@ -1,0 +1,329 @@
+"""The report: what it says is what the library says, at every kind of pose, in one file that needs nothing else."""
+
+import json
+import re
+from html.parser import HTMLParser
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from scipy.spatial.transform import Rotation
+
+import flexapod as fx
+from flexapod import plots
+from flexapod.cli import main
+from flexapod.plots import machine_3d, style
+from flexapod.report import gather, page
+from flexapod.report.numbers import brief, shown
+
+matplotlib.use("Agg")
+
+SINGULAR = fx.Pose.from_rpy(0, 0, 0.244, 0, 0, np.pi / 2)  # of precision-positioner: hexagon over hexagon, turned
+
+
+@pytest.fixture(scope="module")
+def reports():
+    """Findings and page of every packaged design at home, made once."""
+    made = {}
+
+    def get(name):
+        if name not in made:
+            h = fx.load(name)
+            findings = gather(h, fx.home_pose(h))
+            made[name] = (findings, page(findings))
+        return made[name]
+
+    return get
+
+
+class Elements(HTMLParser):
+    """Every element of a page, and that each one is closed."""
+
+    VOID = ("meta", "link", "br", "img", "use")
+
+    def __init__(self, text):
+        super().__init__()
+        self.found, self.open, self.words = [], [], []
+        self.feed(text)
+        self.close()
+        assert not self.open
+
+    def handle_starttag(self, tag, attrs):
+        self.found.append((tag, dict(attrs)))
+        if tag not in self.VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        self.found.append((tag, dict(attrs)))
+
+    def handle_endtag(self, tag):
+        if tag not in self.VOID:
+            assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+
+@pytest.mark.parametrize("name", fx.packaged_designs())
+def test_the_page_is_whole_and_needs_nothing_else(reports, name):
+    findings, html = reports(name)
+    elements = Elements(html)
+    tags = [tag for tag, _ in elements.found]
+    assert tags.count("svg") == 8  # machine, frequencies, six modes
+    assert not {"script", "link", "img", "iframe"} & set(tags)
+    for tag, attributes in elements.found:
+        for key in ("src", "href", "xlink:href"):
+            target = attributes.get(key)
+            assert target is None or target.startswith("#"), f"<{tag} {key}={target}>"
+    assert "@import" not in html
+    assert not re.search(r"url\((?!#)", html)
+    ids = [attributes["id"] for _, attributes in elements.found if "id" in attributes]
+    assert len(ids) == len(set(ids))
+    assert {target[1:] for target in re.findall(r'(?:href="|url\()(#[^")]+)', html)} <= set(ids)
+    text = " ".join(elements.words)
+    for omega in findings.omega:
+        assert shown(omega, 6) in text
+        assert shown(omega / (2 * np.pi), 5) in text
+    for description in findings.descriptions:
+        assert description.text[1:] in text
+    assert shown(findings.conditioning.metres) in text
+    for value in (*findings.rest.leg_force, *findings.damped.damping_ratio[:1]):
+        assert shown(value, 4) in text or shown(value, 3) in text
+
+
+@pytest.mark.parametrize("name", fx.packaged_designs())
+def test_the_neutral_colours_follow_light_and_dark(reports, name):
+    _, html = reports(name)
+    body = html[html.index("<body>") :]
+    for color in (style.INK, style.FAINT, style.BASE, style.LEG, style.PLATFORM, "#000000"):
+        assert color not in body
+    css = html[: html.index("</style>")]
+    assert set(re.findall(r"var\(--([a-z]+)", body)) <= set(re.findall(r"--([a-z-]+):", css))
+
+
+def test_findings_are_the_librarys():
+    h = fx.load("motion-base")
+    pose = fx.Pose.from_rpy(0.2, -0.1, 2.5, 0.05, 0.1, -0.2)
+    f = gather(h, pose, "spin_free")
+    omega = fx.natural_modes(h, pose, "spin_free").omega
+    damped = fx.linearise(h, pose, joint="spin_free").modes()
+    assert np.array_equal(f.omega, omega)
+    assert np.array_equal(f.damped.pole, damped.pole)
+    assert np.array_equal(f.rest.leg_force, fx.hold(h, pose).leg_force)
+    assert f.conditioning.metres == fx.condition_number(h, pose)
+    assert f.conditioning.scaled == fx.condition_number(h, pose, 1.6)  # the radius of its platform joints
+    assert f.sampling_time == pytest.approx(2 * np.pi / (20 * omega[-1]), rel=1e-15)
+
+
+def test_influences_are_what_small_changes_do():
+    # Manipulator I off home: six distinct frequencies. The effects are first-order ones, so that halving a change
+    # leaves a difference of second order: with changes of 1e-4 of those in the report about 1e-4 of the effect.
+    h = fx.load("mukherjee-i")
+    pose = fx.Pose.from_rpy(0.05, 0.15, 0.85, 0.1, -0.1, 0.2)
+    found = {one.change: one for one in gather(h, pose).influences}
+    index, part = fx.stability_index(h, pose), 1e-4
+    move = 0.01 * np.linalg.norm(h.platform_joints, axis=1).max()
+    changes = {
+        "platform mass + 1 %": {"platform.mass": h.platform_mass * (1 + 0.01 * part)},
+        "platform inertia + 1 %": {"platform.inertia": h.platform_inertia * (1 + 0.01 * part)},
+        "stiffness of leg 6 + 1 %": {"legs.stiffness[5]": h.legs.stiffness[5] * (1 + 0.01 * part)},
+        "mass of the legs' lower parts + 1 %": {"legs.lower.mass": h.legs.lower.mass * (1 + 0.01 * part)},
+    }
+    for plate, joints in (("platform", h.platform_joints), ("base", h.base_joints)):
+        one = found[f"{plate} joint 6 moved by {move * 1e3:.2g} mm"]
+        changes[one.change] = {f"{plate}.joints[5]": joints[5] + part * move * np.array(one.direction)}
+    center = found[f"platform mass centre moved by {move * 1e3:.2g} mm"]
+    moved = h.platform_mass_center + part * move * np.array(center.direction)
+    changes[center.change] = {"platform.mass_center": moved}
+    for change, values in changes.items():
+        effect = (fx.stability_index(h.replace(values), pose) / index - 1) / part
+        # 1e-3: second-order part 1e-4, and rounding 1e-13 over changes of 1e-7 to 1e-9.
+        assert found[change].effect == pytest.approx(effect, rel=1e-3, abs=1e-8), change
+    assert found["stiffness of all legs + 1 %"].effect == pytest.approx(0.005, rel=1e-12)  # omega ~ sqrt(K)
+
+
+def test_the_effect_on_repeated_modes_is_that_on_their_mean():
+    h = fx.load("precision-positioner")  # threefold symmetry: modes 1 and 2 are one pair
+    pose = fx.home_pose(h)
+    f = gather(h, pose)
+    assert f.clusters[0] == [0, 1]
+    one = next(one for one in f.influences if one.change == "stiffness of leg 1 + 1 %")
+    part = 1e-3
+    changed = h.replace({"legs.stiffness[0]": h.legs.stiffness[0] * (1 + 0.01 * part)})
+    before, after = (fx.natural_modes(x, pose).omega[:2].mean() for x in (h, changed))
+    assert one.effect == pytest.approx((after / before - 1) / part, rel=1e-3)  # second order: 1e-5; rounding: 1e-8
+
+
+def test_a_singular_pose_is_reported():
+    h = fx.load("precision-positioner")
+    f = gather(h, SINGULAR)
+    assert f.omega[0] == 0
+    assert f.rest is f.damped is f.influences is None
+    assert "The pose is singular" in f.cautions[0]
+    text = " ".join(Elements(page(f)).words)
+    assert "not available" in text
+    assert np.isfinite(f.shares.strain[:, 1:]).all()
+    assert np.isnan(f.shares.strain[:, 0]).all()
+
+
+def test_near_a_singular_pose_it_warns():
+    f = gather(fx.load("precision-positioner"), fx.Pose.from_rpy(0, 0, 0.244, 0, 0, np.radians(89.5)))
+    assert f.cautions[0].startswith("Near a singular pose")
+    assert f.rest is not None
+    assert np.abs(f.rest.leg_force).max() > 0
+
+
+def test_a_machine_that_falls_over_is_said_to():
+    # The isolator on springs twenty times softer: its weight, above them, wins.
+    h = fx.load("cubic-isolator").replace({"legs.stiffness": 500.0})
+    f = gather(h, fx.home_pose(h))
+    assert (f.damped.pole.real > 0).any()
+    assert any(text.startswith("Not stable at rest") for text in f.cautions)
+    assert any(text.startswith("Weight and preload change mode") for text in f.cautions)
+    assert "Not stable at rest" in page(f)
+
+
+def test_what_to_beware_of_is_said(reports):
+    f, html = reports("mukherjee-ii")
+    assert any("Modes 1 and 2 are nearly repeated" in text for text in f.cautions)
+    assert all(text in f.cautions for text in f.hexapod.warnings)
+    assert html.count("<li>") == len(f.cautions)
+    h = fx.load("motion-base")
+    high = gather(h, fx.Pose([0, 0, 3.5]))
+    assert sum("length 4." in text or "length 3." in text for text in high.cautions) == 6
+    assert page(high).count('<td class="over">') == 6
+    overdamped = h.replace({"legs.damping.prismatic": 1e7})
+    assert any("does not vibrate" in text for text in gather(overdamped, fx.home_pose(h)).cautions)
+    homeless = h.replace({"home": None})
+    assert any("has no home pose" in text for text in gather(homeless, fx.home_pose(h)).cautions)
+    assert gather(h.replace({"legs.stiffness[0]": 7e6}), fx.Pose.from_rpy(0.1, 0.2, 2.4, 0, 0.1, 0)).cautions == []
+
+
+def test_names_cannot_break_the_page():
+    h = fx.load("motion-base").replace({"name": '<script>alert("x")</script> & co'})
+    html = page(gather(h, fx.home_pose(h)))
+    assert "<script" not in html
+    assert "&lt;script&gt;" in html
+    Elements(html)
+
+
+def test_the_command_prints_a_summary_and_writes_the_page(tmp_path, capsys):
+    out = tmp_path / "deep" / "down"
+    assert main(["report", "mukherjee-ii", "--out", str(out)]) == 0
+    text = capsys.readouterr().out
+    assert "492.239 rad/s = 78.342 Hz" in text  # corrections' table, universal
+    assert "Warning: " in text
+    file = out / "mukherjee-ii.html"
+    assert str(file) in text.replace("\n", "")
+    assert "492.239" in file.read_text(encoding="utf-8")
+
+
+def test_the_command_prints_json(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["report", "mukherjee-ii", "--set", "platform.mass=400", "--joint", "spin_free", "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["stability_index_rad_s"] == pytest.approx(119.656, abs=6e-4)  # corrections' table, M = 400
+    assert found["changes"] == ["platform.mass=400"]
+    assert found["html"] is None
+    assert not list(tmp_path.iterdir())
+    pose = ["--pose", "0", "0", "0.244", "0", "0", "90"]
+    assert main(["report", "precision-positioner", *pose, "--json", "--out", "."]) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert found["stability_index_rad_s"] == 0
+    assert found["static_leg_force_n"] is found["tangent"] is found["condition_number"] is None
+    assert (tmp_path / "precision-positioner.html").exists()
+
+
+def test_an_odd_name_makes_a_plain_file(tmp_path, capsys):
+    assert main(["report", "motion-base", "--set", "name=../a b/ü", "--out", str(tmp_path)]) == 0
+    assert [path.name for path in tmp_path.iterdir()] == ["a-b-ü.html"]
+    assert "name=../a b/ü" in " ".join(capsys.readouterr().out.split())  # changes are said
+    assert "name=../a b/ü" in (tmp_path / "a-b-ü.html").read_text(encoding="utf-8")
+
+
+def test_a_place_that_cannot_be_written_exits_with_2(tmp_path, capsys):
+    (tmp_path / "file").write_text("")
+    assert main(["report", "motion-base", "--out", str(tmp_path / "file" / "below")]) == 2
+    assert "--out" in capsys.readouterr().err
+
+
+def test_the_machine_is_drawn_where_it_is():
+    h = fx.load("mukherjee-i")
+    pose = fx.Pose.from_rpy(0.1, 0.2, 0.8, 0.1, 0.2, 0.3)
+    ax = plots.machine(h, pose, Figure().add_subplot(projection="3d"))
+    drawn = np.concatenate([np.stack(line.get_data_3d(), axis=1) for line in ax.lines])
+    for point in (*h.base_joints, *(pose.position + h.platform_joints @ pose.matrix.T)):
+        assert np.linalg.norm(drawn - point, axis=1).min() < 1e-12
+
+
+@pytest.mark.parametrize("number", range(1, 7))
+def test_a_mode_is_drawn_as_a_rigid_motion(number):
+    h = fx.load("mukherjee-i")
+    pose = fx.home_pose(h)
+    ax = plots.mode(h, None, fx.natural_modes(h, pose), number, Figure().add_subplot(projection="3d"))
+    lines = [np.stack(line.get_data_3d(), axis=1) for line in ax.lines]
+    moved = next(points for points in reversed(lines) if len(points) == 6)
+    rest = pose.position + h.platform_joints
+
+    def distances(points):
+        return np.linalg.norm(points[:, None] - points[None], axis=-1)
+
+    assert np.allclose(distances(moved), distances(rest), rtol=0, atol=1e-12)
+    points = np.vstack([h.base_joints, rest])
+    size = np.ptp(points, axis=0).max()
+    travel = np.linalg.norm(moved - rest, axis=1).max()
+    assert 0.14 * size < travel < 0.18 * size  # a sixth, but for the turn being finite
+
+
+def test_legs_are_coloured_by_their_strain():
+    h = fx.load("motion-base")
+    modes = fx.natural_modes(h, fx.home_pose(h))
+    heave = [d.dominant for d in fx.describe_modes(h, fx.home_pose(h))].index("z")
+    ax = plots.mode(h, None, modes, heave + 1, Figure().add_subplot(projection="3d"))
+    legs = [line for line in ax.lines if line.get_linewidth() > 4]
+    assert len(legs) == 6  # heave, upwards, stretches all alike
+    orange = matplotlib.colors.to_rgb(style.STRETCHED)
+    assert all(np.allclose(matplotlib.colors.to_rgb(line.get_color()), orange, atol=0.01) for line in legs)
+
+
+def test_plots_refuse_what_they_cannot_draw():
+    h = fx.load("motion-base")
+    batch = fx.Pose(np.array([[0, 0, 2.3], [0, 0, 2.4]]))
+    with pytest.raises(fx.PoseError, match="batch axes"):
+        plots.machine(h, batch)
+    with pytest.raises(fx.PoseError, match="1 to 6"):
+        plots.mode(h, None, fx.natural_modes(h, fx.home_pose(h)), 7)
+    with pytest.raises(fx.PoseError, match="no home pose"):
+        plots.machine(h.replace({"home": None}))
+
+
+def test_rotation_is_rodrigues():
+    for vector in ([0.3, -1.2, 0.7], [0, 0, 1e-9], [0, 0, 0]):
+        exact = Rotation.from_rotvec(vector).as_matrix()
+        assert np.allclose(machine_3d.rotation(np.array(vector, dtype=float)), exact, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [
+        (492.2391, 6, "492.239"),
+        (16158.9, 6, "16158.9"),
+        (0.0087857, 3, "0.00879"),
+        (999.96, 4, "1000"),
+        (0.0, 4, "0"),
+        (-0.0, 4, "0"),
+        (5.598e-6, 3, "5.60e-6"),
+        (2.5e9, 3, "2.50e9"),
+        (-7910.6, 4, "-7911"),
+        (np.inf, 4, "\u221e"),
+        (np.nan, 4, "\u2013"),
+        (None, 4, "\u2013"),
+    ],
+)
+def test_numbers_are_shown(value, digits, text):
+    assert shown(value, digits) == text
+
+
+def test_given_numbers_are_shown_without_trailing_zeros():
+    assert [brief(x) for x in (40.0, 0.4, 1234.0, 2e9)] == ["40", "0.4", "1234", "2.000e9"]
