@@ -5,26 +5,25 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from flexapod.errors import PoseError
+from flexapod.conventions import Array
+from flexapod.errors import FlexapodError, PoseError
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
 
-Array = NDArray[np.float64]
 
-
-def vectors(value: ArrayLike, name: str, width: int = 3) -> Array:
-    """A copy of `value` as finite float64 of shape (..., width); raises PoseError otherwise."""
+def vectors(value: ArrayLike, name: str, width: int = 3, error_type: type[FlexapodError] = PoseError) -> Array:
+    """A copy of `value` as finite float64 of shape (..., width); raises `error_type` otherwise."""
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise PoseError(f"{name} is {value!r}; {width} numbers are needed") from error
+        raise error_type(f"{name} is {value!r}; {width} numbers are needed") from error
     if array.ndim == 0 or array.shape[-1] != width:
-        raise PoseError(f"{name} has shape {array.shape}; its last axis must hold {width} numbers")
+        raise error_type(f"{name} has shape {array.shape}; its last axis must hold {width} numbers")
     if not np.isfinite(array).all():
-        raise PoseError(f"{name} holds NaN or infinity; all its numbers must be finite")
+        raise error_type(f"{name} holds NaN or infinity; all its numbers must be finite")
     return array
 
 
@@ -128,6 +127,18 @@ def rpy_matrix(rpy: ArrayLike) -> Array:
         [-sp, cp * sr, cp * cr],
     ]
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def as_pose(value: Any, name: str = "pose") -> Pose:
+    """A Pose from a Pose, or from x, y, z (m), roll, pitch, yaw (rad) as (..., 6) numbers; or PoseError."""
+    if isinstance(value, Pose):
+        return value
+    if isinstance(value, Motion) or np.ndim(value) == 0 or isinstance(value, str):
+        raise PoseError(
+            f"{name} is {type(value).__name__}; give a flexapod Pose, or x, y, z in m and roll, pitch, yaw in rad"
+        )
+    six = vectors(value, name, 6)
+    return Pose(six[..., :3], rpy_matrix(six[..., 3:]))
 
 
 def orthonormal(matrix: Array) -> Array:

@@ -12,6 +12,7 @@ CORE = SOURCE.parent / "core"
 ORDER = [
     "_core",
     "errors",
+    "conventions",
     "optional",
     "pose",
     "design",

@@ -66,7 +66,7 @@ A, D = fx.ArgumentError, fx.DesignError
 CASES = [
     # designs, poses, places
     (lambda: fx.check_limits(machine(), ZERO), fx.PoseError, "pose is ndarray; it must be a flexapod Pose"),
-    (lambda: fx.hold(machine(), "home"), fx.PoseError, "it must be a flexapod Pose"),
+    (lambda: fx.hold(machine(), "home"), fx.PoseError, "pose is str; give a flexapod Pose"),
     (lambda: fx.Box.about(PAIR, 0.1, 0.1), fx.PoseError, r"a box lies about one pose; this one has batch axes \(2,\)"),
     (lambda: fx.pose_grid(x="wide"), fx.PoseError, "x is 'wide'; it must be a number or a list of numbers, in m"),
     (lambda: fx.static_equilibrium(machine(), np.ones((2, 6))), fx.KinematicsError, "takes one set of six"),
@@ -106,7 +106,7 @@ CASES = [
         "a periodic path needs at least three waypoints",
     ),
     (lambda: fx.paths.LegSpeed(rate=-1.0), fx.errors.PathError, "leg speed is -1.0 m/s and inf m/s2; both must be > 0"),
-    (lambda: fx.plan_path(machine(), "here", FAR, 90.0), fx.PoseError, "start is str; it must be a flexapod Pose"),
+    (lambda: fx.plan_path(machine(), "here", FAR, 90.0), fx.PoseError, "start is str; give a flexapod Pose"),
     (lambda: planned(objective="energy"), fx.errors.PathError, "objective is 'energy'; it must be 'length' or 'time'"),
     (lambda: planned(timing=0.0), fx.errors.PathError, "timing is 0.0; it must be a duration > 0 s, or a LegSpeed"),
     (lambda: fx.paths.plan_slice(machine(), planned()), fx.errors.PathError, "the planned path is straight; it spans no plane"),

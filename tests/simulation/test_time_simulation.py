@@ -562,7 +562,7 @@ def test_a_quiet_recording_is_not_stepped_over():
         ({"duration": 1.0, "threads": 0}, ArgumentError, "threads is 0"),
         ({"duration": 1.0, "tolerance": 1e-9}, ArgumentError, "'tolerance' is no argument"),
         ({"duration": 1.0, "start": "moving"}, ArgumentError, "start is 'moving'"),
-        ({"duration": 1.0, "joint": "ball"}, PoseError, "joint is 'ball'"),
+        ({"duration": 1.0, "joint": "ball"}, fx.ArgumentError, "joint is 'ball'"),
         ({"duration": 1.0, "force": [1.0, 2.0]}, PoseError, "force has shape"),
         ({"duration": 1.0, "force": fx.harmonic("roll", 1.0, 1.0)}, ArgumentError, "force drives 'roll'"),
         ({"duration": 1.0, "moment": fx.harmonic("1", 1.0, 1.0)}, ArgumentError, "moment drives '1'"),

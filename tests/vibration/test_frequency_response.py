@@ -8,7 +8,7 @@ from tests.helpers.states import CENTER
 from tests.helpers.support import apart
 
 import flexapod as fx
-from flexapod.mechanics.linearisation import AXES
+from flexapod.conventions import AXES
 from flexapod.vibration.harmonic import complex_poles, steady_response
 
 II = fx.Pose(CENTER["mukherjee-ii"])

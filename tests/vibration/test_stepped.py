@@ -5,7 +5,7 @@ import pytest
 from tests.helpers.states import CENTER
 
 import flexapod as fx
-from flexapod.mechanics.linearisation import AXES
+from flexapod.conventions import AXES
 from flexapod.simulation.integrator import Method, Run, integrate
 
 II = fx.Pose(CENTER["mukherjee-ii"])
@@ -142,7 +142,7 @@ def test_progress_ends_at_one(paper):
         ({"amplitude": 0.0}, fx.ArgumentError, "amplitude"),
         ({"amplitude": np.nan}, fx.ArgumentError, "amplitude"),
         ({"pose": fx.Pose([[0, 0, 0.08]])}, fx.PoseError, "batch"),
-        ({"joint": "ball"}, fx.PoseError, "'ball'"),
+        ({"joint": "ball"}, fx.ArgumentError, "'ball'"),
     ],
 )
 def test_bad_arguments(paper, change, error, message):

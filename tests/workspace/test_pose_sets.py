@@ -8,7 +8,8 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import kstest, qmc
 
 import flexapod as fx
-from flexapod.workspace.pose_sets import COORDINATES, described, pose_set
+from flexapod.conventions import AXES
+from flexapod.workspace.pose_sets import described, pose_set
 
 BOX = fx.Box(x=(-0.1, 0.3), y=(0, 0.4), z=(0.6, 1.0), roll=(-0.3, 0.2), pitch=0.1, yaw=(-1, 1))
 SETS = {
@@ -128,4 +129,4 @@ def test_bad_sets_are_told(make, words):
 
 
 def test_coordinates_are_the_box_keywords():
-    assert list(BOX.ranges()) == list(COORDINATES)
+    assert list(BOX.ranges()) == list(AXES)

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import flexapod as fx
-from flexapod.workspace.pose_sets import COORDINATES
+from flexapod.conventions import AXES
 from flexapod.workspace.quantities import QUANTITIES, evaluate
 
 I = fx.load("mukherjee-i")
@@ -27,7 +27,7 @@ def test_every_quantity_is_that_of_the_single_pose_function(name, joint):
     reach = np.ptp(design.base_joints, axis=0).max()
     box = fx.Box.about(fx.home_pose(design), 0.05 * reach, 0.1)
     found = fx.sweep(design, fx.random_poses(box, 37), quantities=QUANTITIES, joint=joint)
-    pose = fx.Pose.from_rpy(*(found[name].values for name in COORDINATES))
+    pose = fx.Pose.from_rpy(*(found[name].values for name in AXES))
     omega = fx.natural_modes(design, pose, joint).omega
     angles = fx.joint_angles(design, pose)
     stiffness = design.legs.stiffness
@@ -118,7 +118,7 @@ def test_a_bad_pose_is_data():
     ],
 )
 def test_bad_arguments_are_told(arguments, words):
-    with pytest.raises(fx.PoseError) as caught:
+    with pytest.raises(fx.ArgumentError if "joint" in arguments else fx.PoseError) as caught:
         fx.sweep(I, **{"poses": fx.random_poses(BOX, 5), **arguments})
     assert words in str(caught.value)
 
@@ -227,7 +227,7 @@ def test_files_hold_the_numbers_and_where_they_come_from(tmp_path, ending):
 
     table = pandas.read_parquet(path) if ending == ".parquet" else pandas.read_csv(path, comment="#")
     assert len(table) == 6
-    assert list(table)[:7] == [*COORDINATES, "omega_1"]
+    assert list(table)[:7] == [*AXES, "omega_1"]
     row = table[(table.x == 0.1) & (table.z == 0.9)]
     # CSV: pandas writes the shortest text that reads back as the same number, and reads it to an ulp by default
     assert row.omega_mode_6.item() == pytest.approx(float(found.omega.sel(x=0.1, z=0.9, mode=6)), rel=1e-15)

@@ -13,11 +13,12 @@ from scipy.optimize import linear_sum_assignment
 
 from flexapod.control.closed_loop_poles import least_damping
 from flexapod.control.controllers import ALL, GAIN_UNIT, Feedback, best_gain, default_gains, make
-from flexapod.control.plant import Complex, Plant, damping_ratios, poles
+from flexapod.control.plant import Plant, damping_ratios, poles
+from flexapod.conventions import Array, Complex
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import Linearisation, RestOptions, linearise
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 
 def open_zeros(linear: Linearisation, feedback: Feedback, legs: Sequence[int] = ALL) -> Array:

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexapod.control.plant import Complex, Controller, Plant, damping_ratios, is_stable, poles
-from flexapod.pose import Array
+from flexapod.control.plant import Controller, Plant, damping_ratios, is_stable, poles
+from flexapod.conventions import Array, Complex
 
 
 class ClosedLoop(NamedTuple):

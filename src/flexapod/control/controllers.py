@@ -16,9 +16,9 @@ from scipy.optimize import minimize_scalar
 
 from flexapod.control.closed_loop_poles import least_damping
 from flexapod.control.plant import Controller, Law, Measure, Plant, poles, six_by_six, static
+from flexapod.conventions import Array
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import Linearisation
-from flexapod.pose import Array
 
 Space = Literal["joint", "task"]
 Actuator = Literal["force", "command"]

@@ -13,12 +13,13 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from flexapod.control.plant import MEASURES, Complex, Controller, Law, Measure, Plant, is_stable, poles
+from flexapod.control.plant import MEASURES, Controller, Law, Measure, Plant, is_stable, poles
+from flexapod.conventions import AXES, Array, Complex
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, UnstableError
-from flexapod.mechanics.linearisation import AXES, RestOptions, linearise
+from flexapod.mechanics.linearisation import RestOptions, linearise
 from flexapod.optional import needed
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 
 def lqg(

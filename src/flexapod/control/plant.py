@@ -10,14 +10,13 @@ from dataclasses import dataclass, replace
 from typing import Literal, Protocol, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from flexapod.conventions import Array, Complex
 from flexapod.errors import ArgumentError, UnstableError
 from flexapod.mechanics.linearisation import Linearisation
 from flexapod.optional import needed
-from flexapod.pose import Array
 
-Complex = NDArray[np.complex128]
 Measure = Literal["leg_length", "leg_rate", "leg_force", "position", "velocity", "acceleration"]
 MEASURES: tuple[Measure, ...] = get_args(Measure)
 UNITS = dict(zip(MEASURES, ("m", "m/s", "N", "m, rad", "m/s, rad/s", "m/s2, rad/s2"), strict=True))

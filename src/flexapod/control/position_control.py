@@ -13,11 +13,12 @@ from numpy.typing import ArrayLike
 
 from flexapod.control.closed_loop_poles import ClosedLoop, assess, distances, nearest, pole_words, unstable_words
 from flexapod.control.controllers import PID
-from flexapod.control.plant import Complex, Law, Plant, damping_ratios, is_stable, poles
+from flexapod.control.plant import Law, Plant, damping_ratios, is_stable, poles
+from flexapod.conventions import Array, Complex
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, UnstableError
 from flexapod.mechanics.linearisation import RestOptions, linearise
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 
 class GainWarning(UserWarning):

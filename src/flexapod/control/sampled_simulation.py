@@ -14,12 +14,13 @@ from scipy.linalg import expm
 from flexapod import _core
 from flexapod.control.closed_loop_poles import assess, unstable_words
 from flexapod.control.plant import MEASURES, Controller, Plant, static
+from flexapod.conventions import AXES, LEGS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, SimulationError, UnstableError
 from flexapod.excitation.excitation import Excitation
 from flexapod.mechanics.inputs import ZERO, is_universal
-from flexapod.mechanics.linearisation import AXES, LEGS, RestOptions, linearise
-from flexapod.pose import Array, Pose
+from flexapod.mechanics.linearisation import RestOptions, linearise
+from flexapod.pose import Pose
 from flexapod.simulation.integrator import OUTCOMES, Run, prepare
 
 CASES = ("controlled", "passive")

@@ -7,13 +7,13 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import minimize, minimize_scalar
 
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
-from flexapod.mechanics.inputs import JointModel
 from flexapod.mechanics.modes import advised_sampling_time as rule
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paths.trajectory import Trajectory
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 from flexapod.workspace.pose_sets import Box, low_discrepancy
 from flexapod.workspace.quantities import evaluate, thread_count
 

@@ -13,11 +13,12 @@ from scipy.optimize import brentq
 from flexapod.control.closed_loop_poles import least_damping
 from flexapod.control.controllers import GAIN_UNIT, best_gain, default_gains, make
 from flexapod.control.plant import Law, Plant, poles
+from flexapod.conventions import AXES, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError, SingularPoseError
 from flexapod.mechanics.linearisation import RestOptions, linearise
-from flexapod.pose import Array, Pose, rpy_matrix
-from flexapod.workspace.pose_sets import COORDINATES, UNITS, GridPoses, PoseSet, pose_set
+from flexapod.pose import Pose, rpy_matrix
+from flexapod.workspace.pose_sets import UNITS, GridPoses, PoseSet, pose_set
 
 STATUS = ("ok", "no_rest", "no_gain")
 Rule = str | Callable[[float], Law]
@@ -150,11 +151,11 @@ def _dataset(points: PoseSet, rows: Array, found: _Found) -> xr.Dataset:
     variables["status"] = (points.dims, found.status.reshape(points.shape))
     coordinates: dict[str, Any] = {}
     if isinstance(points, GridPoses):
-        for name, unit in zip(COORDINATES, UNITS, strict=True):
+        for name, unit in zip(AXES, UNITS, strict=True):
             axis = points.axes[name]
             value = (name, axis) if name in points.dims else ((), axis[0])
             coordinates[name] = (*value, {"units": unit})
     elif rows.shape[1] == 6:
-        for k, (name, unit) in enumerate(zip(COORDINATES, UNITS, strict=True)):
+        for k, (name, unit) in enumerate(zip(AXES, UNITS, strict=True)):
             coordinates[name] = (points.dims, rows[:, k].reshape(points.shape), {"units": unit})
     return xr.Dataset(variables, coordinates)

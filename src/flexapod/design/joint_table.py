@@ -11,9 +11,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from flexapod.conventions import Array
 from flexapod.design.units import UNITS, to_si
 from flexapod.errors import DesignError
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 GROUPS = {
     "base": "base",

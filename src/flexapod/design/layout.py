@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import _core
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.schema import KEYS, Key, resolve
 from flexapod.design.units import to_si
 from flexapod.errors import ArgumentError, DesignError
-from flexapod.pose import Array
 
 HOME = slice(_core.design_size, _core.design_size + 6)
 SIZE = HOME.stop

@@ -16,11 +16,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.conventions import AXES, LEGS, Array
 from flexapod.errors import ArgumentError
-from flexapod.pose import Array, Motion, Pose
+from flexapod.pose import Motion, Pose
 
-AXES = ("x", "y", "z", "roll", "pitch", "yaw")
-LEGS = ("1", "2", "3", "4", "5", "6")
 SINUSOIDS, CHIRP, PIECES = 0.0, 1.0, 2.0
 
 

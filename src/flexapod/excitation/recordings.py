@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly, make_interp_spline
 
+from flexapod.conventions import AXES, LEGS, Array
 from flexapod.errors import ArgumentError
-from flexapod.excitation.excitation import AXES, LEGS, Excitation, sampled_term
-from flexapod.pose import Array
+from flexapod.excitation.excitation import Excitation, sampled_term
 
 Recorded = Literal["value", "velocity", "acceleration"]
 INTEGRATIONS = {"value": 0, "velocity": 1, "acceleration": 2}

@@ -8,9 +8,9 @@ from typing import Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.conventions import Array
 from flexapod.errors import ArgumentError
 from flexapod.excitation.excitation import Excitation, harmonic
-from flexapod.pose import Array
 
 Quantity = Literal["displacement", "velocity", "acceleration"]
 HERTZ = 2 * np.pi  # rad/s

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from flexapod import __version__
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import OutputError
-from flexapod.interchange.multibody import pose_or_home
+from flexapod.mechanics.inputs import single_pose
 from flexapod.mechanics.linearisation import RestOptions, linearise
 from flexapod.pose import Pose
 
@@ -43,7 +43,7 @@ def write_mat(path: str | Path, hexapod: Hexapod, pose: Pose | None = None, **re
     """
     from scipy.io import savemat
 
-    where = pose_or_home(hexapod, pose)
+    where = single_pose(hexapod, pose)
     tangent = linearise(hexapod, where, **rest)
     system = tangent.state_space()
     content = {

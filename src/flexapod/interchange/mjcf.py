@@ -9,12 +9,13 @@ from pathlib import Path
 import numpy as np
 
 from flexapod import __version__
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.interchange.multibody import Body, Leg, Machine, standing
 from flexapod.interchange.xml_files import add, document, write
 from flexapod.mechanics.modes import natural_modes
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 STEPS = 50  # of a simulation for each period of the fastest mode
 SOCKET = 1e-3  # part of the platform that goes to each spherical joint with friction, where it has so much to give

@@ -6,13 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod, LegPart
-from flexapod.errors import PoseError
 from flexapod.interchange.rigid_bodies import check_physical
-from flexapod.mechanics.inputs import check_pose_of_one
-from flexapod.mechanics.kinematics import home_pose
+from flexapod.mechanics.inputs import single_pose
 from flexapod.mechanics.statics import hold
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 
 class Body(NamedTuple):
@@ -58,22 +57,13 @@ def standing(hexapod: Hexapod, pose: Pose | None = None) -> Machine:
     Raises PoseError without one pose, SingularPoseError where no leg forces hold it, DesignError for bodies that
     rigid-body programs refuse.
     """
-    where = pose_or_home(hexapod, pose)
+    where = single_pose(hexapod, pose)
     check_physical(hexapod)
     rest = hold(hexapod, where)
     platform = Body(hexapod.platform_mass, hexapod.platform_mass_center, hexapod.platform_inertia)
     legs = tuple(_leg(hexapod, where, i, float(rest.leg_force[i])) for i in range(6))
     name = "".join(filter(str.isprintable, hexapod.name)) or "hexapod"  # XML takes no control characters
     return Machine(name, hexapod.gravity, where, platform, legs)
-
-
-def pose_or_home(hexapod: Hexapod, pose: Pose | None) -> Pose:
-    """One pose: the given one, or the design's home. Raises PoseError where there is neither."""
-    where = home_pose(hexapod) if pose is None else pose
-    if where is None:
-        raise PoseError(f"{hexapod.name!r} names no home pose. Give a pose, or add [home] to the design.")
-    check_pose_of_one(where, "pose")
-    return where
 
 
 def _leg(hexapod: Hexapod, pose: Pose, i: int, force: float) -> Leg:

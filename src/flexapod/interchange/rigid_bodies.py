@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import DesignError
-from flexapod.pose import Array
 
 LEAST_MASS = 1e-4  # of the platform's mass, in place of none
 LEAST_SPREAD = 1e-6  # of the largest second moment, or of mass times the machine's height squared

@@ -8,10 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from flexapod import __version__
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.interchange.multibody import Body, Leg, Machine, standing
 from flexapod.interchange.xml_files import add, document, say, write
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 VERSION = "1.9"
 UNLIMITED = 1e16  # SDF's own value for no limit

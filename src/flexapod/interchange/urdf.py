@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from flexapod import __version__
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.interchange.multibody import Body, Leg, Machine, standing
 from flexapod.interchange.xml_files import add, document, write
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 UNLIMITED = 1e9  # URDF wants a number for every limit of a sliding joint
 AXES = {"x": [1.0, 0.0, 0.0], "y": [0.0, 1.0, 0.0], "z": [0.0, 0.0, 1.0]}

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
-from flexapod.mechanics.inputs import NO_LEGS, ZERO, JointModel, is_universal, per_leg, states, wrench
-from flexapod.pose import Array, Motion, Pose
+from flexapod.mechanics.inputs import NO_LEGS, ZERO, is_universal, per_leg, states, wrench
+from flexapod.pose import Motion, Pose
 
 
 class EquationsOfMotion(NamedTuple):

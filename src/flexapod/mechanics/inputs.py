@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple, get_args
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.conventions import JOINT_MODELS, Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import DesignError, PoseError
-from flexapod.pose import Array, Motion, Pose, vectors
+from flexapod.errors import ArgumentError, DesignError, PoseError, shown
+from flexapod.pose import Motion, Pose, as_pose, rpy_matrix, vectors
 
-JointModel = Literal["universal", "spin_free"]
 LEAST_SINE = 1e-7  # of the angle between a leg and its universal joint's axis
 ZERO = (0.0, 0.0, 0.0)
 NO_LEGS = (0.0,) * 6
@@ -29,16 +29,50 @@ class States(NamedTuple):
     shape: tuple[int, ...]
 
 
-def states(hexapod: Hexapod, platform: Pose | Motion, base: Pose | Motion | None = None) -> States:
+def as_hexapod(value: object) -> Hexapod:
+    """The design itself; raises DesignError for anything that is not a Hexapod, such as a design's name."""
+    if not isinstance(value, Hexapod):
+        raise DesignError(
+            f"hexapod is {shown(value)}; it must be a flexapod Hexapod. Read one with flexapod.load(name or path)."
+        )
+    return value
+
+
+def pose_or_home(hexapod: Hexapod, pose: Pose | ArrayLike | None, name: str = "pose") -> Pose:
+    """A pose as `as_pose` takes it, or the design's home where it is None."""
+    if pose is not None:
+        return as_pose(pose, name)
+    home = as_hexapod(hexapod).home
+    if home is None:
+        raise PoseError(
+            f"{name} is not given, and {hexapod.name!r} names no home pose. Give a pose, or add [home] to the design."
+        )
+    position, rpy = home
+    return Pose(position, rpy_matrix(rpy))
+
+
+def single_pose(hexapod: Hexapod, pose: Pose | ArrayLike | None, name: str = "pose") -> Pose:
+    """The same where only one pose makes sense; raises PoseError for a batch."""
+    found = pose_or_home(hexapod, pose, name)
+    if found.shape:
+        raise PoseError(f"{name} has batch axes {found.shape}; one pose is needed. Index it first.")
+    return found
+
+
+def states(
+    hexapod: Hexapod, platform: Pose | Motion | ArrayLike | None, base: Pose | Motion | ArrayLike | None = None
+) -> States:
     """Rows for the core. A single pose that no leg can take raises PoseError; in a batch its row is NaN."""
-    if not isinstance(hexapod, Hexapod):
-        raise DesignError(f"hexapod is {hexapod!r}; it must be a flexapod Hexapod, as flexapod.load returns it")
-    motions = [_motion(platform, "platform"), _AT_ORIGIN if base is None else _motion(base, "base")]
+    as_hexapod(hexapod)
+    motions = [
+        platform if isinstance(platform, Motion) else Motion(pose_or_home(hexapod, platform)),
+        _AT_ORIGIN if base is None else base if isinstance(base, Motion) else Motion(as_pose(base, "base")),
+    ]
     try:
         shape = np.broadcast_shapes(*(motion.shape for motion in motions))
     except ValueError:
         raise PoseError(
-            f"platform has batch axes {motions[0].shape}, base {motions[1].shape}; they must be equal or 1"
+            f"pose has batch axes {motions[0].shape}, base {motions[1].shape}; they must be equal or 1"
         ) from None
     rows = [np.ascontiguousarray(_spread(m.packed, shape).reshape(-1, 24)) for m in motions]
     length, sine = _core.leg_fit(hexapod.packed, *rows)
@@ -48,14 +82,6 @@ def states(hexapod: Hexapod, platform: Pose | Motion, base: Pose | Motion | None
             _refuse(hexapod, length[0], sine[0])
         rows[0] = np.where(good, rows[0], np.nan)
     return States(rows[0], rows[1], shape)
-
-
-def _motion(value: Pose | Motion, name: str) -> Motion:
-    if isinstance(value, Motion):
-        return value
-    if isinstance(value, Pose):
-        return Motion(value)
-    raise PoseError(f"{name} is {type(value).__name__}; it must be a flexapod Pose or Motion")
 
 
 def _shortest(hexapod: Hexapod) -> float:
@@ -76,29 +102,25 @@ def _refuse(hexapod: Hexapod, length: Array, sine: Array) -> None:
     )
 
 
-def check_pose_of_one(pose: Pose, name: str) -> None:
-    """Raises PoseError unless `pose` is one Pose."""
-    if not isinstance(pose, Pose):
-        raise PoseError(f"{name} is {type(pose).__name__}; it must be a flexapod Pose")
-    if pose.shape:
-        raise PoseError(f"{name} has batch axes {pose.shape}; one pose is needed. Index it first.")
-
-
 def is_universal(joint: str) -> bool:
-    """True for the exact joint model; raises PoseError for an unknown name."""
-    if joint not in get_args(JointModel):
-        raise PoseError(f"joint is {joint!r}; it must be 'universal' (exact) or 'spin_free' (the paper's W.s = 0)")
+    """True for the exact joint model; raises ArgumentError for an unknown name."""
+    if joint not in JOINT_MODELS:
+        raise ArgumentError(
+            f"joint is {joint!r}; it must be 'universal' (exact) or 'spin_free' (legs that do not spin)"
+        )
     return joint == "universal"
 
 
 def per_leg(value: ArrayLike, name: str, shape: tuple[int, ...]) -> Array:
     """Six numbers for each state, as contiguous rows (n, 6)."""
-    return _fitted(vectors(value, name, 6), name, shape)
+    return _fitted(vectors(value, name, 6, ArgumentError), name, shape)
 
 
 def wrench(force: ArrayLike, moment: ArrayLike, shape: tuple[int, ...]) -> Array:
     """Force (N) and moment (N m) in the platform's frame at its reference point, as rows (n, 6)."""
-    parts = [_fitted(vectors(v, name), name, shape) for v, name in ((force, "force"), (moment, "moment"))]
+    parts = [
+        _fitted(vectors(v, name, 3, ArgumentError), name, shape) for v, name in ((force, "force"), (moment, "moment"))
+    ]
     return np.ascontiguousarray(np.concatenate(parts, axis=-1))
 
 
@@ -111,7 +133,7 @@ def _fitted(value: Array, name: str, shape: tuple[int, ...]) -> Array:
     try:
         spread = _spread(value, shape)
     except ValueError:
-        raise PoseError(
+        raise ArgumentError(
             f"{name} has shape {value.shape}, which does not fit the batch axes {shape} of the states"
         ) from None
     return np.ascontiguousarray(spread.reshape(-1, value.shape[-1]))

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import KinematicsError, PoseError
 from flexapod.mechanics.inputs import states
-from flexapod.pose import Array, Motion, Pose, orthonormal, rpy_matrix, vectors
+from flexapod.pose import Motion, Pose, orthonormal, rpy_matrix, vectors
 
 
 class LegRates(NamedTuple):

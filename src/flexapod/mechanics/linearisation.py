@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.conventions import AXES, LEGS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import ZERO, JointModel, is_universal, states, wrench
+from flexapod.mechanics.inputs import ZERO, is_universal, states, wrench
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.optional import needed
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 if TYPE_CHECKING:
     import control
@@ -24,8 +25,6 @@ __all__ = ["DampedModes", "Linearisation", "StateSpace", "linearise"]
 STATES = ("position", "velocity")
 INPUTS = ("base_acceleration", "leg_force", "wrench", "leg_command")
 OUTPUTS = ("position", "leg_length", "leg_force", "acceleration")
-AXES = ("x", "y", "z", "roll", "pitch", "yaw")
-LEGS = ("1", "2", "3", "4", "5", "6")
 
 
 class RestOptions(TypedDict, total=False):

@@ -7,13 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import _core
+from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import JointModel, is_universal, states
+from flexapod.mechanics.inputs import is_universal, states
 from flexapod.mechanics.kinematics import force_transformation
-from flexapod.pose import Array, Pose
-
-DIRECTIONS = ("x", "y", "z", "roll", "pitch", "yaw")
+from flexapod.pose import Pose
 
 
 class NaturalModes(NamedTuple):
@@ -158,16 +157,16 @@ def _describe(twist: Array, J: Array, mass_center: Array) -> ModeDescription:
     speed, spin = np.linalg.norm(v), np.linalg.norm(w)
     first = int(np.argmax(share))
     others = [i for i in np.argsort(-share) if i != first and share[i] > 0.1]
-    words = f"mostly {DIRECTIONS[first]} ({min(share[first], 1.0):.0%})"  # coupling may give a direction more than all
+    words = f"mostly {AXES[first]} ({min(share[first], 1.0):.0%})"  # coupling may give a direction more than all
     if others:
-        words += " with " + ", ".join(f"{DIRECTIONS[i]} ({share[i]:.0%})" for i in others)
+        words += " with " + ", ".join(f"{AXES[i]} ({share[i]:.0%})" for i in others)
     if spin == 0 or (first < 3 and spin * 1e6 < speed):
-        return ModeDescription(words, DIRECTIONS[first], share, np.full(3, np.nan), np.full(3, np.nan), np.inf)
+        return ModeDescription(words, AXES[first], share, np.full(3, np.nan), np.full(3, np.nan), np.inf)
     center = mass_center + np.cross(w, v) / spin**2
     axis, pitch = w / spin, float(w @ v / spin**2)
     if share[3:].sum() > 0.01:  # a mode that hardly turns has an axis, but nobody would see it turn about it
         words += f", turning about ({_rounded(center)}) m"
-    return ModeDescription(words, DIRECTIONS[first], share, center, axis, pitch)
+    return ModeDescription(words, AXES[first], share, center, axis, pitch)
 
 
 def _rounded(point: Array) -> str:

@@ -7,12 +7,13 @@ from typing import NamedTuple
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import KinematicsError, SingularPoseError
 from flexapod.mechanics.dynamics import inverse_dynamics
-from flexapod.mechanics.inputs import ZERO, JointModel, is_universal, states, wrench
+from flexapod.mechanics.inputs import ZERO, is_universal, states, wrench
 from flexapod.mechanics.kinematics import forward_kinematics, inverse_kinematics
-from flexapod.pose import Array, Pose, orthonormal, vectors
+from flexapod.pose import Pose, orthonormal, vectors
 
 
 class Equilibrium(NamedTuple):

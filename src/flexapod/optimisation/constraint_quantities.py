@@ -9,9 +9,9 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from flexapod.conventions import Array
 from flexapod.design.layout import PLACES
 from flexapod.optimisation.derivatives import Slopes, soft_least, soft_most
-from flexapod.pose import Array
 
 Found = Mapping[str, Any]
 Side = Literal["least", "most"]

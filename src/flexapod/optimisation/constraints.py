@@ -9,12 +9,13 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.optimisation import constraint_quantities
 from flexapod.optimisation.constraint_quantities import Kind, Side, Values
 from flexapod.optimisation.derivatives import Slopes
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 from flexapod.workspace.pose_sets import Box
 from flexapod.workspace.region import Places, places
 

@@ -7,8 +7,9 @@ from functools import cached_property
 import numpy as np
 
 from flexapod import _core
+from flexapod.conventions import Array
 from flexapod.design.layout import HOME, PLACES
-from flexapod.pose import Array, Motion, Pose
+from flexapod.pose import Motion, Pose
 from flexapod.workspace.worst import twist_of_coordinates
 
 _FREQUENCIES, _FORCES, _LEGS = 1, 2, 4

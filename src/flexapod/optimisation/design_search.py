@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, InfeasibleError
-from flexapod.mechanics.inputs import JointModel
 from flexapod.optimisation.constraints import Constraint
 from flexapod.optimisation.global_search import Progress, Stop, Study, Trial
 from flexapod.optimisation.local_search import finish
 from flexapod.optimisation.objectives import LeastIndex, MeanIndex, Objective
 from flexapod.optimisation.problem import Assessment, Problem
 from flexapod.optimisation.variables import JointCircle, Variable
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 from flexapod.workspace.worst import worst_pose
 
 if TYPE_CHECKING:

@@ -17,10 +17,10 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, OutputError
 from flexapod.optimisation.problem import Assessment, Problem
 from flexapod.optional import needed
-from flexapod.pose import Array
 
 Progress = Callable[[int, int, float], None]  # trials finished, trials wanted, best index so far (NaN for none)
 Stop = Callable[[], bool]

@@ -14,13 +14,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, numbers
 from flexapod.errors import DesignError, PoseError
 from flexapod.optimisation.constraints import Requirement
 from flexapod.optimisation.derivatives import Slopes
 from flexapod.optimisation.problem import Assessment, Problem
-from flexapod.pose import Array
 from flexapod.workspace.worst import worst_pose
 
 _SHARPNESS = (40.0, 400.0, 4000.0, 4000.0, 4000.0)

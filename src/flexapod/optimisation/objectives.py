@@ -8,10 +8,11 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flexapod.conventions import Array
 from flexapod.errors import ArgumentError
 from flexapod.optimisation.constraint_quantities import Conditioning
 from flexapod.optimisation.derivatives import Slopes, index_slopes
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 from flexapod.workspace.pose_sets import Box
 from flexapod.workspace.region import Places, PoseList, places
 

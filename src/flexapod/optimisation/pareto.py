@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, InfeasibleError
 from flexapod.optimisation.constraints import Constraint, Requirement
@@ -18,7 +19,6 @@ from flexapod.optimisation.local_search import finish
 from flexapod.optimisation.objectives import LeastIndex, Objective
 from flexapod.optimisation.problem import Assessment, Problem
 from flexapod.optimisation.variables import JointCircle, Variable
-from flexapod.pose import Array
 
 if TYPE_CHECKING:
     import xarray as xr

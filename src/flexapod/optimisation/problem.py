@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, numbers
 from flexapod.errors import ArgumentError, DesignError, PoseError
-from flexapod.mechanics.inputs import JointModel, is_universal
+from flexapod.mechanics.inputs import is_universal
 from flexapod.optimisation.constraint_quantities import Kind, Side
 from flexapod.optimisation.constraints import Constraint, Requirement
 from flexapod.optimisation.objectives import Objective
 from flexapod.optimisation.variables import DesignMap, JointCircle, Variable
-from flexapod.pose import Array
 from flexapod.workspace.box_minimum import descend
 from flexapod.workspace.pose_sets import Box
 from flexapod.workspace.quantities import evaluate, thread_count

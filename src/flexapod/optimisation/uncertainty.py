@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, PLACES, entries, numbers
 from flexapod.errors import ArgumentError
-from flexapod.mechanics.inputs import JointModel, is_universal
+from flexapod.mechanics.inputs import is_universal
 from flexapod.optional import needed
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 from flexapod.workspace.pose_sets import Box
 from flexapod.workspace.quantities import thread_count
 from flexapod.workspace.region import Places, places

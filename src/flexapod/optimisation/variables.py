@@ -17,11 +17,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from flexapod.conventions import Array
 from flexapod.design import layout
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.schema import Key
 from flexapod.errors import ArgumentError, DesignError
-from flexapod.pose import Array
 
 Kind = Literal["set", "add", "scale"]
 Range = tuple[float, float]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from flexapod.mechanics.inputs import JointModel
+from flexapod.conventions import JointModel
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from matplotlib.figure import Figure
 
+from flexapod.conventions import Array
 from flexapod.plots.style import FAINT, dress
-from flexapod.pose import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -15,8 +15,8 @@ from matplotlib.figure import Figure
 from scipy.linalg import eig
 from scipy.spatial.transform import Rotation
 
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import load
-from flexapod.mechanics.inputs import JointModel
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
@@ -26,7 +26,7 @@ from flexapod.paper.printed_errors import MISPRINTS, State, acceleration, legs_a
 from flexapod.paper.reference_answers import Answer, answers, disagreement
 from flexapod.paper.scatter import CASES
 from flexapod.paper.vibration import PRINTED
-from flexapod.pose import Array, Motion, Pose, rpy_matrix
+from flexapod.pose import Motion, Pose, rpy_matrix
 from flexapod.workspace.pose_sets import random_poses
 from flexapod.workspace.sweeping import sweep
 

@@ -12,8 +12,8 @@ import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod, load
-from flexapod.mechanics.inputs import JointModel
 from flexapod.mechanics.kinematics import condition_number
 from flexapod.mechanics.modes import natural_modes
 from flexapod.optimisation.constraints import Footprint
@@ -23,7 +23,7 @@ from flexapod.optimisation.variables import Variable
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.charts import BLUE, GREEN, ORANGE
 from flexapod.plots.style import FAINT, INK, dress
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 DESIGN = "mukherjee-ii"
 REACH = 0.01  # m, of a joint

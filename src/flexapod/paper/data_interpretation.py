@@ -8,17 +8,16 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod, load
 from flexapod.interchange.rigid_bodies import nearest_physical
 from flexapod.mechanics.dynamics import equations_of_motion
-from flexapod.mechanics.inputs import JointModel
 from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.charts import BLUE, ORANGE, Dots, percent, rows_of_dots
 from flexapod.paper.frequencies import MODES, R_U0_OF_I, home
-from flexapod.pose import Array
 
 Changes = Mapping[str, Any]
 _TURNED = np.diag([-1.0, -1.0, 1.0])  # half a turn about z: local x from the platform to the base

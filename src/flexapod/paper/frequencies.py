@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod, load
-from flexapod.mechanics.inputs import JointModel
 from flexapod.mechanics.kinematics import condition_number, home_pose
 from flexapod.mechanics.modes import advised_sampling_time, natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.charts import BLUE, FAINT, ORANGE, Dots, rows_of_dots
 from flexapod.paper.vibration import PRINTED
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 MODES = [f"omega_{mode}" for mode in range(1, 7)]
 R_U0_OF_I = {"legs.upper.mass_center": [-0.6, -0.08, 0.08]}

@@ -20,16 +20,15 @@ from flexapod.control.closed_loop_poles import assess
 from flexapod.control.controllers import PID
 from flexapod.control.plant import Controller, Plant, held, joined, static
 from flexapod.control.sampled_simulation import simulate_control
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import load
 from flexapod.excitation.excitation import half_sine_shock
-from flexapod.mechanics.inputs import JointModel
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import advised_sampling_time
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.charts import ORANGE
 from flexapod.paper.frequencies import home
 from flexapod.plots.style import dress
-from flexapod.pose import Array
 
 DESIGN = "mukherjee-ii"
 FRICTION = 3000.0  # N s/m in each leg: damping ratios of 1 to 30 %

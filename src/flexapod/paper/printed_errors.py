@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.dynamics import EquationsOfMotion, equations_of_motion
-from flexapod.mechanics.inputs import JointModel
-from flexapod.pose import Array, Motion
+from flexapod.pose import Motion
 
 
 class State(NamedTuple):

@@ -12,9 +12,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from flexapod.conventions import Array
 from flexapod.design.hexapod import load
 from flexapod.paper.printed_errors import State
-from flexapod.pose import Array, Motion, Pose
+from flexapod.pose import Motion, Pose
 
 _FILE = Path(__file__).parent / "engine.json"
 

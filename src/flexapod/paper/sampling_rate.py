@@ -17,18 +17,17 @@ from flexapod.control.closed_loop_poles import assess
 from flexapod.control.controllers import PID
 from flexapod.control.plant import Controller, Plant
 from flexapod.control.sampled_simulation import simulate_control
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import load
 from flexapod.errors import UnstableError
 from flexapod.excitation.excitation import Excitation
 from flexapod.excitation.spectra import flat_spectrum, random_motion
-from flexapod.mechanics.inputs import JointModel
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import advised_sampling_time
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.charts import BLUE, ORANGE
 from flexapod.paper.frequencies import home
 from flexapod.plots.style import FAINT, INK, dress
-from flexapod.pose import Array
 
 DESIGN = "mukherjee-ii"
 DAMPING = 0.1  # of the highest mode, by the continuous controller

@@ -13,14 +13,14 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import load
 from flexapod.excitation.excitation import harmonic
-from flexapod.mechanics.inputs import JointModel
-from flexapod.mechanics.linearisation import AXES, Linearisation, linearise
+from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.plots import response
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 from flexapod.simulation.integrator import Method, Run, integrate
 from flexapod.vibration.frequency_response import transmissibility
 from flexapod.vibration.harmonic import complex_poles, steady_response

@@ -12,16 +12,16 @@ from numpy.typing import ArrayLike
 from scipy.integrate import cumulative_simpson
 from scipy.optimize import brentq, minimize_scalar
 
+from flexapod.conventions import LEGS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PathError, PoseError, SingularPoseError
 from flexapod.mechanics.dynamics import inverse_dynamics
-from flexapod.mechanics.inputs import ZERO, JointModel
+from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.kinematics import check_limits, condition_number, force_transformation, leg_rates
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paths.trajectory import Trajectory
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
-LEGS = ("1", "2", "3", "4", "5", "6")
 _ZERO_INDEX = 1e-6  # of the largest index on the path: what a singular pose leaves of the lowest frequency
 
 

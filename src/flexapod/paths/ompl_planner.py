@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from flexapod.conventions import Array
 from flexapod.optional import needed
-from flexapod.pose import Array
 
 BATCHES, BATCH = 40, 120
 _PARTS = ("base", "geometric", "util")

@@ -9,16 +9,17 @@ from typing import Any, Literal, get_args
 import numpy as np
 import xarray as xr
 
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PathError, SingularPoseError
-from flexapod.mechanics.inputs import check_pose_of_one
+from flexapod.mechanics.inputs import single_pose
 from flexapod.mechanics.kinematics import force_transformation
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paths.ompl_planner import search
 from flexapod.paths.requirements import Margins, PathRequirements
 from flexapod.paths.smoothing import Smoother, Speeds, duration, resampled
 from flexapod.paths.trajectory import Chart, Trajectory
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 Objective = Literal["length", "time"]
 Progress = Callable[[str, float], None]
@@ -168,7 +169,7 @@ class _Task:
         if not isinstance(timing, LegSpeed) and not (np.isfinite(timing) and timing > 0):
             raise PathError(f"timing is {timing!r}; it must be a duration > 0 s, or a LegSpeed")
         for pose, name in ((start, "start"), (goal, "goal")):
-            check_pose_of_one(pose, name)
+            single_pose(hexapod, pose, name)
         needed = requirements if isinstance(requirements, PathRequirements) else PathRequirements(float(requirements))
         self.hexapod, self.required, self.objective, self.timing = hexapod, needed, objective, timing
         self.margins = Margins(hexapod, needed)

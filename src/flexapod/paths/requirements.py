@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PathError
-from flexapod.mechanics.inputs import JointModel
 from flexapod.mechanics.kinematics import check_limits, condition_number, inverse_kinematics, limit_excess
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 from flexapod.workspace.quantities import evaluate, packed_limits
 
 _SHARPNESS = 80.0  # of smooth minima: they lie below the true one by at most log(12)/80, 3 %

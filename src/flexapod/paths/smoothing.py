@@ -8,11 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import minimize
 
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.kinematics import leg_rates
 from flexapod.paths.requirements import Margins, smooth_minimum
 from flexapod.paths.trajectory import Chart, spline, turning
-from flexapod.pose import Array, Motion
+from flexapod.pose import Motion
 
 _STEP = 1e-6  # of central differences, in scaled coordinates: truncation and rounding both near 1e-10
 _ROUGHNESS = 2e-3  # weight of the mean squared acceleration against length: fixes how fast the line is run

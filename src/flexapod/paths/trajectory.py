@@ -9,8 +9,9 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike
 
+from flexapod.conventions import Array
 from flexapod.errors import PathError
-from flexapod.pose import Array, Motion, Pose
+from flexapod.pose import Motion, Pose
 
 Ends = Literal["rest", "free", "periodic"]
 _WIDEST = 0.9 * pi  # of a turn from the middle orientation: the rotation vector's chart ends at pi

@@ -15,13 +15,13 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
-from flexapod.mechanics.inputs import JointModel
 from flexapod.mechanics.modes import describe_modes, natural_modes
 from flexapod.optional import needed
 from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, VIEW
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 if TYPE_CHECKING:
     from matplotlib.animation import AbstractMovieWriter

@@ -12,8 +12,8 @@ import xarray as xr
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from flexapod.conventions import Array
 from flexapod.plots.style import FAINT, INK, dress
-from flexapod.pose import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,12 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
 from flexapod.mechanics.kinematics import force_transformation, home_pose
 from flexapod.mechanics.modes import NaturalModes
 from flexapod.plots.style import AXES, BASE, FAINT, INK, LEG, PLATFORM, SHORTENED, STRETCHED, VIEW
-from flexapod.pose import Array, Pose, rpy_matrix
+from flexapod.pose import Pose, rpy_matrix
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D

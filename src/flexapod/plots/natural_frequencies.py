@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from flexapod.conventions import Array
 from flexapod.plots.style import FAINT, INK, PLATFORM, STRETCHED
-from flexapod.pose import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

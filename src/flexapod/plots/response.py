@@ -14,8 +14,8 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, MaxNLocator, NullLocator
 
+from flexapod.conventions import Array
 from flexapod.plots.style import FAINT, INK, dress
-from flexapod.pose import Array
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

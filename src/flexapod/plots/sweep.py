@@ -14,10 +14,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flexapod.conventions import AXES, Array
 from flexapod.errors import OutputError, PoseError
 from flexapod.optional import needed
-from flexapod.pose import Array
-from flexapod.workspace.pose_sets import COORDINATES
 from flexapod.workspace.quantities import QUANTITIES
 from flexapod.workspace.summary import columns
 
@@ -209,7 +208,7 @@ def _grid(sweep: xr.Dataset, quantity: str, varied: int) -> xr.DataArray:
         raise PoseError(f"this sweep has no {quantity}; it has {', '.join(map(str, sweep.data_vars))}.")
     values = sweep[quantity]
     dims = [str(dim) for dim in values.dims]
-    if len(dims) != varied or any(dim not in COORDINATES for dim in dims):
+    if len(dims) != varied or any(dim not in AXES for dim in dims):
         raise PoseError(
             f"this figure needs a grid with {varied} varied coordinates; {quantity} here has the axes {dims}. "
             "Sweep such a pose_grid, or select one value of the others (sweep.isel)."
@@ -220,7 +219,7 @@ def _grid(sweep: xr.Dataset, quantity: str, varied: int) -> xr.DataArray:
 def _axis(values: xr.DataArray, name: str) -> tuple[Array, str]:
     """Positions along a coordinate as people read them, and its label."""
     positions = np.asarray(values[name].values, dtype=float)
-    if name in COORDINATES[3:]:
+    if name in AXES[3:]:
         return np.degrees(positions), f"{name} (°)"
     if np.abs(positions).max() <= 1:
         return 1000 * positions, f"{name} (mm)"
@@ -230,12 +229,10 @@ def _axis(values: xr.DataArray, name: str) -> tuple[Array, str]:
 def _held(values: xr.DataArray) -> str:
     """The coordinates that do not vary."""
     words = []
-    for name in COORDINATES:
+    for name in AXES:
         if name in values.coords and name not in values.dims:
             number = float(values[name])
-            words.append(
-                f"{name} {np.degrees(number):.4g}°" if name in COORDINATES[3:] else f"{name} {1000 * number:.4g} mm"
-            )
+            words.append(f"{name} {np.degrees(number):.4g}°" if name in AXES[3:] else f"{name} {1000 * number:.4g} mm")
     return ", ".join(words)
 
 
@@ -276,7 +273,7 @@ def _axes_3d() -> Axes3D:
 def auto(sweep: xr.Dataset, level: float | None = None) -> Axes:
     """The figure that fits a sweep: a map of a grid of two coordinates, a surface of one of three, else the scatter."""
     dims = [str(dim) for dim in sweep["omega_1"].dims] if "omega_1" in sweep else []
-    if all(dim in COORDINATES for dim in dims):
+    if all(dim in AXES for dim in dims):
         if len(dims) == 2:
             return index_map(sweep)
         if len(dims) == 3:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.conditioning import SINGULAR, singularity
 from flexapod.mechanics.kinematics import check_limits
 from flexapod.mechanics.linearisation import DampedModes
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 TANGENT_DIFFERS = 0.01  # of a frequency: more than this, and gravity and preload must not be left out
 

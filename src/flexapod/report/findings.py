@@ -8,10 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
 from flexapod.mechanics.conditioning import SINGULAR, platform_radius
-from flexapod.mechanics.inputs import JointModel
 from flexapod.mechanics.kinematics import JointAngles, condition_number, inverse_kinematics, joint_angles, leg_distance
 from flexapod.mechanics.linearisation import DampedModes, linearise
 from flexapod.mechanics.modes import (
@@ -24,11 +24,10 @@ from flexapod.mechanics.modes import (
     near_repeated,
 )
 from flexapod.mechanics.statics import Equilibrium, hold
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 from flexapod.report.cautions import cautions
 from flexapod.report.influence import Influence, influences
 
-TURN = 2 * np.pi
 _NOTHING = 1e-12  # of the highest frequency: what is below is rounding at a singular pose
 
 
@@ -148,7 +147,7 @@ def as_dict(f: Findings) -> dict[str, Any]:
         "joint": f.joint,
         "stability_index_rad_s": f.omega[0],
         "omega_rad_s": f.omega,
-        "frequency_hz": f.omega / TURN,
+        "frequency_hz": f.omega / TWO_PI,
         "mode_shapes": f.shape,
         "descriptions": [mode.text for mode in f.descriptions],
         "strain_energy_share_legs_modes": f.shares.strain,

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.mechanics.inputs import JointModel
 from flexapod.mechanics.modes import Sensitivity, frequency_sensitivity, natural_modes
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
 MOVE = 0.01  # of the distance of the farthest platform joint from the platform's reference point
 NOTHING = 5e-6  # relative changes of the index below this are left out: they would print as 0.000 %

@@ -7,11 +7,11 @@ from html import escape
 
 import numpy as np
 
+from flexapod.conventions import TWO_PI, Array
 from flexapod.mechanics.kinematics import limit_excess
 from flexapod.plots.style import SHORTENED, STRETCHED
-from flexapod.pose import Array
 from flexapod.report import figures
-from flexapod.report.findings import TURN, Findings
+from flexapod.report.findings import Findings
 from flexapod.report.html import foot, frame, table
 from flexapod.report.influence import MOVE, Influence, leading
 from flexapod.report.numbers import DASH, brief, percent, pose_words, shown
@@ -45,7 +45,7 @@ def _head(f: Findings) -> str:
     force = "" if f.rest is None else shown(float(np.abs(f.rest.leg_force).max()))
     cards = [
         ("Dynamic stability index", shown(f.omega[0], 5), "rad/s", "first"),
-        ("which is", shown(f.omega[0] / TURN, 5), "Hz", ""),
+        ("which is", shown(f.omega[0] / TWO_PI, 5), "Hz", ""),
         ("Condition number of H", shown(f.conditioning.metres), "in metres", ""),
         ("Largest static leg force", force or DASH, "N" if force else "not available", ""),
         ("Sampling time at most", shown(1e3 * f.sampling_time, 3), "ms", ""),
@@ -98,11 +98,11 @@ def _frequencies(f: Findings) -> str:
         head += ["tangent, rad/s", "damped, rad/s", "damped, Hz", "damping ratio"]
     rows = []
     for i in range(6):
-        row = [f"{i + 1}", shown(f.omega[i], 6), shown(f.omega[i] / TURN, 5)]
+        row = [f"{i + 1}", shown(f.omega[i], 6), shown(f.omega[i] / TWO_PI, 5)]
         if tangent is not None:
             turning = abs(tangent.pole[i].imag)
             ratio = shown(tangent.damping_ratio[i], 3)
-            row += [shown(tangent.omega[i], 6), shown(turning, 6), shown(turning / TURN, 5), ratio]
+            row += [shown(tangent.omega[i], 6), shown(turning, 6), shown(turning / TWO_PI, 5), ratio]
         rows.append([*row, escape(f.descriptions[i].dominant)])
     note = (
         "First columns: Eq. 5, undamped, without weight or preload. Tangent: the exact linearisation at static "
@@ -117,7 +117,7 @@ def _frequencies(f: Findings) -> str:
 def _modes(f: Findings) -> str:
     cards = []
     for i, description in enumerate(f.descriptions):
-        hz = f'<span class="hz">{shown(f.omega[i] / TURN)} Hz</span>'
+        hz = f'<span class="hz">{shown(f.omega[i] / TWO_PI)} Hz</span>'
         words = escape(description.text[:1].upper() + description.text[1:])
         cards.append(
             f"<figure><h3>Mode {i + 1} {hz}</h3>{figures.mode(f, i + 1)}<figcaption>{words}</figcaption></figure>"

@@ -8,7 +8,8 @@ import numpy as np
 from rich.table import Table
 from rich.text import Text
 
-from flexapod.report.findings import TURN, Findings
+from flexapod.conventions import TWO_PI
+from flexapod.report.findings import Findings
 from flexapod.report.influence import leading
 from flexapod.report.numbers import percent, pose_words, shown
 
@@ -35,7 +36,7 @@ def summary(f: Findings, out: Console) -> None:
 
 def _key(f: Findings) -> Table:
     table = Table.grid(padding=(0, 2))
-    index = f"{shown(f.omega[0], 6)} rad/s = {shown(f.omega[0] / TURN, 5)} Hz"
+    index = f"{shown(f.omega[0], 6)} rad/s = {shown(f.omega[0] / TWO_PI, 5)} Hz"
     c = f.conditioning
     table.add_row("Dynamic stability index", Text(index, style="bold"))
     table.add_row(
@@ -53,7 +54,7 @@ def _frequencies(f: Findings) -> Table:
     table.add_column("motion")
     for i, description in enumerate(f.descriptions):
         tangent, ratio = (f.damped.omega[i], f.damped.damping_ratio[i]) if f.damped else (None, None)
-        numbers = (shown(f.omega[i], 6), shown(f.omega[i] / TURN, 5), shown(tangent, 6), shown(ratio, 3))
+        numbers = (shown(f.omega[i], 6), shown(f.omega[i] / TWO_PI, 5), shown(tangent, 6), shown(ratio, 3))
         table.add_row(str(i + 1), *numbers, Text(description.text.split(", turning")[0]))
     return table
 

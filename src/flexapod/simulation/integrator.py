@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.conventions import AXES, LEGS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
-from flexapod.excitation.excitation import AXES, LEGS, Excitation, check_channels
-from flexapod.mechanics.inputs import JointModel, is_universal
+from flexapod.excitation.excitation import Excitation, check_channels
+from flexapod.mechanics.inputs import is_universal
 from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.mechanics.statics import hold
-from flexapod.pose import Array, Motion, Pose, vectors
+from flexapod.pose import Motion, Pose, vectors
 
 OUTCOMES = (
     "complete",

@@ -12,14 +12,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from flexapod.conventions import AXES, LEGS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, SimulationError
-from flexapod.excitation.excitation import AXES, LEGS, Excitation
+from flexapod.excitation.excitation import Excitation
 from flexapod.mechanics.dynamics import energy, joint_reactions
-from flexapod.mechanics.inputs import JointModel
 from flexapod.mechanics.kinematics import leg_rates
 from flexapod.mechanics.modes import advised_sampling_time, natural_modes
-from flexapod.pose import Array, Motion, Pose
+from flexapod.pose import Motion, Pose
 from flexapod.simulation.integrator import Load, Method, Run, Start, Trajectories, integrate
 
 MOST_SAMPLES = 20_000

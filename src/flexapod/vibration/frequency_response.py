@@ -9,20 +9,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from flexapod.conventions import AXES, LEGS, Array, Complex
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.excitation.spectra import Quantity, Spectrum
 from flexapod.mechanics.inputs import ZERO
-from flexapod.mechanics.linearisation import AXES, LEGS, Linearisation, RestOptions, linearise
-from flexapod.pose import Array, Pose, vectors
-from flexapod.vibration.harmonic import (
-    Complex,
-    SteadyResponse,
-    complex_poles,
-    frequencies,
-    loss_factors,
-    steady_response,
-)
+from flexapod.mechanics.linearisation import Linearisation, RestOptions, linearise
+from flexapod.pose import Pose, vectors
+from flexapod.vibration.harmonic import SteadyResponse, complex_poles, frequencies, loss_factors, steady_response
 
 __all__ = ["random_response", "transmissibility"]
 

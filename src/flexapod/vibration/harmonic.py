@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg import eigh
 
+from flexapod.conventions import Array, Complex
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import Linearisation
-from flexapod.pose import Array
-
-Complex = NDArray[np.complexfloating[Any, Any]]
 
 _BLOCK = 4096  # frequencies solved at a time: bounds the memory
 
@@ -100,7 +98,7 @@ class _Modes:
         w = omega[:, None, None]
         root = np.sqrt(self.square.astype(np.complex128))  # imaginary for a mode that gravity topples
         detuning = (root - omega[:, None]) * (root + omega[:, None])
-        Z = self.skew + 1j * self.loss + 1j * w * self.friction
+        Z: Complex = self.skew + 1j * self.loss + 1j * w * self.friction
         Z[:, range(6), range(6)] += detuning
         given = np.broadcast_to(self.given, (omega.size, 6, 12))
         right = np.concatenate([w**2 * self.inertia - 1j * w * self.rubbed - self.tilt, given], axis=2)
@@ -109,10 +107,9 @@ class _Modes:
 
 def _solve(Z: Complex, right: Complex) -> Complex:
     try:
-        solved: Complex = np.linalg.solve(Z, right)
-        return solved
+        return np.asarray(np.linalg.solve(Z, right), dtype=np.complex128)
     except np.linalg.LinAlgError:  # an undamped resonance hit exactly
-        out = np.full_like(right, np.inf)
+        out: Complex = np.full(right.shape, np.inf, dtype=np.complex128)
         for i in np.flatnonzero(np.linalg.matrix_rank(Z) == 6):
             out[i] = np.linalg.solve(Z[i], right[i])
         return out

@@ -12,14 +12,14 @@ from numpy.typing import ArrayLike
 from scipy.linalg import eigh, expm
 from scipy.spatial.transform import Rotation
 
+from flexapod.conventions import AXES, Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.excitation.excitation import harmonic
-from flexapod.mechanics.inputs import JointModel
-from flexapod.mechanics.linearisation import AXES, Linearisation, linearise
-from flexapod.pose import Array, Motion, Pose
+from flexapod.mechanics.linearisation import Linearisation, linearise
+from flexapod.pose import Motion, Pose
 from flexapod.simulation.integrator import Method, Run, integrate
-from flexapod.vibration.harmonic import Complex, frequencies, steady_response
+from flexapod.vibration.harmonic import frequencies, steady_response
 
 __all__ = ["stepped_sine"]
 

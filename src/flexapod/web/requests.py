@@ -10,13 +10,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from starlette.requests import Request
 
+from flexapod.conventions import AXES, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import FlexapodError
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 from flexapod.web import designs
 from flexapod.web.security import MAX_BODY
-
-COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")  #: of a pose, in m and degrees
 
 
 class AskingError(FlexapodError, ValueError):
@@ -115,7 +114,5 @@ def box(asked: dict[str, Any]) -> tuple[Array, Array]:
         raise AskingError("box must have low and high, six numbers each")
     low, high = (np.array(numbers(given.get(side), f"box.{side}", 6)) for side in ("low", "high"))
     for i in np.flatnonzero(low > high):
-        raise AskingError(
-            f"the box of {COORDINATES[i]} runs from {low[i]:g} to {high[i]:g}; the first must not be the larger"
-        )
+        raise AskingError(f"the box of {AXES[i]} runs from {low[i]:g} to {high[i]:g}; the first must not be the larger")
     return low, high

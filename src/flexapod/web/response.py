@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.conventions import AXES, Array
 from flexapod.mechanics.linearisation import linearise
-from flexapod.pose import Array
 from flexapod.vibration.frequency_response import transmissibility
 from flexapod.web import requests
 
@@ -27,7 +27,7 @@ def response(asked: dict[str, Any]) -> dict[str, Any]:
     _, outputs, inputs = values.dims
     z = np.moveaxis(values.to_numpy(), 0, -1)
     legs = [f"leg {n}" for n in range(1, 7)]
-    names = {"leg": legs, **{axis: list(requests.COORDINATES) for axis in ("output", "base", "wrench")}}
+    names = {"leg": legs, **{axis: list(AXES) for axis in ("output", "base", "wrench")}}
     units = {"leg": ["N" if quantity == "leg_force" else "m"] * 6, **_units(data)}
     return {
         "omega": omega,
@@ -66,11 +66,11 @@ def _frequencies(omega: Array, ratio: Array) -> Array:
 
 def shake(asked: dict[str, Any]) -> dict[str, Any]:
     """The platform's complex displacement for a unit motion of the base along an axis, and how large to draw it."""
-    question, axis = requests.question(asked), requests.choice(asked, "axis", requests.COORDINATES)
+    question, axis = requests.question(asked), requests.choice(asked, "axis", AXES)
     omega = requests.number(asked, "omega", 1.0, 1e-9, 1e9)
     data = transmissibility(question.hexapod, question.pose, [omega], joint=question.joint)
-    moved = data["absolute"].to_numpy()[0, :, requests.COORDINATES.index(axis)]
-    base = np.eye(6)[requests.COORDINATES.index(axis)]
+    moved = data["absolute"].to_numpy()[0, :, AXES.index(axis)]
+    base = np.eye(6)[AXES.index(axis)]
     hexapod = question.hexapod
     size = float(np.linalg.norm(hexapod.platform_joints, axis=1).max())
     largest = max(
@@ -79,7 +79,7 @@ def shake(asked: dict[str, Any]) -> dict[str, Any]:
     return {
         "platform": {"real": moved.real, "imag": moved.imag},
         "base": base,
-        "ratio": abs(moved[requests.COORDINATES.index(axis)]),
+        "ratio": abs(moved[AXES.index(axis)]),
         "reach": DRAWN * size / largest,
     }
 

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.conventions import AXES, Array
 from flexapod.errors import SimulationError
 from flexapod.excitation.excitation import Excitation, half_sine_shock, harmonic, sine_sweep, smooth_step
 from flexapod.excitation.recordings import parse_time_series
 from flexapod.mechanics.modes import natural_modes
-from flexapod.pose import Array
 from flexapod.simulation.time_simulation import simulate
 from flexapod.web import requests
 from flexapod.web.encode import float32
@@ -90,7 +90,7 @@ def _motion(spec: dict[str, Any], duration: float) -> Excitation:
         if not isinstance(text, str):
             raise requests.AskingError("csv must be the text of a CSV file")
         return parse_time_series(text.lstrip("\ufeff"))
-    axis = requests.choice(spec, "axis", requests.COORDINATES)
+    axis = requests.choice(spec, "axis", AXES)
     if kind == "shock":
         return half_sine_shock(
             axis, requests.number(spec, "peak", 10.0, -1e6, 1e6), requests.number(spec, "pulse", 0.011, 1e-6, 1e3)

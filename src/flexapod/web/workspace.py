@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from flexapod.pose import Array
+from flexapod.conventions import AXES, Array
 from flexapod.web import requests
 from flexapod.web.encode import float32
 from flexapod.workspace.pose_sets import Box, random_poses
@@ -40,8 +40,8 @@ def cloud(spec: dict[str, Any]) -> Iterator[Message]:
 def slice_map(spec: dict[str, Any]) -> Iterator[Message]:
     """Index, cond(H) and whether limits hold over a grid of two coordinates, the other four as the pose has them."""
     question, (low, high) = requests.question(spec), requests.box(spec)
-    across = requests.COORDINATES.index(requests.choice(spec, "across", requests.COORDINATES))
-    up = requests.COORDINATES.index(requests.choice(spec, "up", requests.COORDINATES))
+    across = AXES.index(requests.choice(spec, "across", AXES))
+    up = AXES.index(requests.choice(spec, "up", AXES))
     if across == up:
         raise requests.AskingError("the two coordinates of a slice must differ; choose another one")
     side = int(requests.number(spec, "side", 120, 2, 1000))

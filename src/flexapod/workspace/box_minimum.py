@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod import _core
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.pose import Array
 from flexapod.workspace.pose_sets import Box
 
 _STARTS = 16

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.conventions import AXES, Array
 from flexapod.errors import PoseError
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 
-COORDINATES = ("x", "y", "z", "roll", "pitch", "yaw")
 UNITS = ("m", "m", "m", "rad", "rad", "rad")
 _PIECE = 4096  # rows made at a time, so that they stay in cache
 _SOBOL_BITS = 32  # the most with which scipy.stats.qmc.Sobol can be wound forward
@@ -41,7 +41,7 @@ class Box:
         pitch: ArrayLike = 0.0,
         yaw: ArrayLike = 0.0,
     ) -> None:
-        given = dict(zip(COORDINATES, (x, y, z, roll, pitch, yaw), strict=True))
+        given = dict(zip(AXES, (x, y, z, roll, pitch, yaw), strict=True))
         bounds = np.array([_range(name, value) for name, value in given.items()])
         self.low: Array = bounds[:, 0].copy()
         self.high: Array = bounds[:, 1].copy()
@@ -61,7 +61,7 @@ class Box:
     @property
     def free(self) -> tuple[str, ...]:
         """Names of the coordinates that vary."""
-        return tuple(name for name, vary in zip(COORDINATES, self.high > self.low, strict=True) if vary)
+        return tuple(name for name, vary in zip(AXES, self.high > self.low, strict=True) if vary)
 
     @property
     def volume(self) -> float:
@@ -72,7 +72,7 @@ class Box:
     @property
     def volume_unit(self) -> str:
         """Such as "m3 rad3"."""
-        free = [unit for name, unit in zip(COORDINATES, UNITS, strict=True) if name in self.free]
+        free = [unit for name, unit in zip(AXES, UNITS, strict=True) if name in self.free]
         counts = [(unit, free.count(unit)) for unit in ("m", "rad")]
         return " ".join(f"{unit}{count if count > 1 else ''}" for unit, count in counts if count)
 
@@ -82,7 +82,7 @@ class Box:
 
     def ranges(self) -> dict[str, list[float]]:
         """Least and largest value of each coordinate."""
-        return {name: [float(a), float(b)] for name, a, b in zip(COORDINATES, self.low, self.high, strict=True)}
+        return {name: [float(a), float(b)] for name, a, b in zip(AXES, self.low, self.high, strict=True)}
 
     def __repr__(self) -> str:
         ranges = (f"{name}={a:.6g}" + (f"..{b:.6g}" if b > a else "") for name, (a, b) in self.ranges().items())
@@ -90,7 +90,7 @@ class Box:
 
 
 def _range(name: str, value: ArrayLike) -> tuple[float, float]:
-    unit = UNITS[COORDINATES.index(name)]
+    unit = UNITS[AXES.index(name)]
     try:
         pair = np.broadcast_to(np.asarray(value, dtype=np.float64), 2)
     except (TypeError, ValueError):
@@ -230,23 +230,23 @@ class GridPoses(PoseSet):
 
     def __init__(self, axes: Mapping[str, Array]) -> None:
         self.axes = axes
-        self.dims = tuple(name for name in COORDINATES if axes[name].size > 1) or ("pose",)
+        self.dims = tuple(name for name in AXES if axes[name].size > 1) or ("pose",)
         self.shape = tuple(axes[name].size for name in self.dims) if self.dims != ("pose",) else (1,)
-        self.box = Box(*((axes[name].min(), axes[name].max()) for name in COORDINATES))
+        self.box = Box(*((axes[name].min(), axes[name].max()) for name in AXES))
 
     def rows(self, start: int, stop: int) -> Array:
-        sizes = tuple(self.axes[name].size for name in COORDINATES)
+        sizes = tuple(self.axes[name].size for name in AXES)
         run = sizes[5]
         first, last = start // run, -(-stop // run)  # whole runs of the last coordinate that cover what is asked for
         out = np.empty((last - first, run, 6))
         places = np.unravel_index(np.arange(first, last), sizes[:5])
         for k, place in enumerate(places):
-            out[:, :, k] = self.axes[COORDINATES[k]][place][:, None]
+            out[:, :, k] = self.axes[AXES[k]][place][:, None]
         out[:, :, 5] = self.axes["yaw"]
         return out.reshape(-1, 6)[start - first * run : stop - first * run]
 
     def describe(self) -> dict[str, Any]:
-        return {"kind": "grid", "axes": {name: self.axes[name].tolist() for name in COORDINATES}}
+        return {"kind": "grid", "axes": {name: self.axes[name].tolist() for name in AXES}}
 
 
 class GivenPoses(PoseSet):
@@ -310,7 +310,7 @@ def pose_grid(
     Source: own.
     """
     axes: dict[str, Array] = {}
-    for name, value, unit in zip(COORDINATES, (x, y, z, roll, pitch, yaw), UNITS, strict=True):
+    for name, value, unit in zip(AXES, (x, y, z, roll, pitch, yaw), UNITS, strict=True):
         try:
             axis = np.atleast_1d(np.asarray(value, dtype=np.float64))
         except (TypeError, ValueError):

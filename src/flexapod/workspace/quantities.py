@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flexapod import _core
+from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import JointModel, is_universal
+from flexapod.mechanics.inputs import is_universal
 from flexapod.mechanics.kinematics import neutral_directions
-from flexapod.pose import Array
-from flexapod.workspace.pose_sets import COORDINATES, UNITS
+from flexapod.workspace.pose_sets import UNITS
 
 
 class Quantity(NamedTuple):
@@ -126,9 +126,9 @@ def attributes(name: str) -> dict[str, Any]:
             "flag_meanings": " ".join(codes.values()),
             "comment": "; ".join(f"{word}: {_MEANINGS[word]}" for word in codes.values()),
         }
-    if name in COORDINATES:
-        k = COORDINATES.index(name)
-        turn = f"about the fixed axis {COORDINATES[k - 3]}" if k > 2 else "of the reference point, base frame"
+    if name in AXES:
+        k = AXES.index(name)
+        turn = f"about the fixed axis {AXES[k - 3]}" if k > 2 else "of the reference point, base frame"
         return {"units": UNITS[k], "long_name": f"{name} {turn}"}
     quantity = QUANTITIES[name]
     return {"units": quantity.unit or "1", "long_name": quantity.meaning}

@@ -8,8 +8,9 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, PoseError
-from flexapod.pose import Array, Pose
+from flexapod.pose import Pose
 from flexapod.workspace.pose_sets import Box, low_discrepancy
 
 ZERO = np.zeros(6)

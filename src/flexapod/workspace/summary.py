@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from flexapod.conventions import AXES, Array
 from flexapod.errors import PoseError
-from flexapod.pose import Array
-from flexapod.workspace.pose_sets import COORDINATES, described
+from flexapod.workspace.pose_sets import described
 from flexapod.workspace.quantities import PENDING, statuses
 from flexapod.workspace.store.blocks import Blocks, blocks
 
@@ -159,8 +159,8 @@ def _at(sweep: xr.Dataset, number: int) -> At:
     omega = sweep["omega_1"]
     place = dict(zip(omega.dims, np.unravel_index(number, omega.shape), strict=True))
     one = sweep.isel(place)
-    if all(name in one.coords for name in COORDINATES):
-        pose = np.array([float(one[name]) for name in COORDINATES])
+    if all(name in one.coords for name in AXES):
+        pose = np.array([float(one[name]) for name in AXES])
     else:
         points = described(json.loads(sweep.attrs["poses"]))
         pose = np.full(6, np.nan) if points is None else points.rows(number, number + 1)[0]

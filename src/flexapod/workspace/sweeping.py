@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import JointModel, is_universal
-from flexapod.pose import Array, Pose
-from flexapod.workspace.pose_sets import COORDINATES, GridPoses, PoseSet, pose_set
+from flexapod.mechanics.inputs import is_universal
+from flexapod.pose import Pose
+from flexapod.workspace.pose_sets import GridPoses, PoseSet, pose_set
 from flexapod.workspace.quantities import (
     DEFAULT,
     QUANTITIES,
@@ -88,13 +89,11 @@ def dataset(points: PoseSet, rows: Array, found: dict[str, Any], attrs: dict[str
 def coordinates(points: PoseSet, rows: Array) -> dict[str, Any]:
     """The six pose coordinates as xarray takes them: axes of a grid, or one value a pose."""
     if isinstance(points, GridPoses):
-        axes = {name: (name if name in points.dims else (), points.axes[name]) for name in COORDINATES}
+        axes = {name: (name if name in points.dims else (), points.axes[name]) for name in AXES}
         return {name: (dims, axis if dims else axis[0], attributes(name)) for name, (dims, axis) in axes.items()}
     if rows.shape[1] == 12:
         from flexapod.pose import Pose
 
         pose = Pose(np.nan_to_num(rows[:, :3]), rows[:, 3:].reshape(-1, 3, 3))
         rows = np.concatenate([rows[:, :3], pose.rpy], axis=1)
-    return {
-        name: (points.dims, rows[:, k].reshape(points.shape), attributes(name)) for k, name in enumerate(COORDINATES)
-    }
+    return {name: (points.dims, rows[:, k].reshape(points.shape), attributes(name)) for k, name in enumerate(AXES)}

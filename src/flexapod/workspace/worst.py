@@ -7,11 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import _core
+from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import JointModel, is_universal, states
-from flexapod.pose import Array, Pose
-from flexapod.workspace.pose_sets import COORDINATES, Box, low_discrepancy
+from flexapod.mechanics.inputs import is_universal, states
+from flexapod.pose import Pose
+from flexapod.workspace.pose_sets import Box, low_discrepancy
 from flexapod.workspace.quantities import evaluate, thread_count
 
 SINGULAR = 1e-9  # omega_1 / omega_6 below which the index is zero to rounding
@@ -81,7 +82,7 @@ def worst_pose(
         pose=pose,
         omega_1=least,
         gradient=gradient,
-        at_bounds=tuple(name for name, at in zip(COORDINATES, edge & free, strict=True) if at),
+        at_bounds=tuple(name for name, at in zip(AXES, edge & free, strict=True) if at),
         singular=least <= SINGULAR * search.scale,
         starts=len(found),
         agreed=agreed,

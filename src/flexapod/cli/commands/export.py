@@ -10,8 +10,8 @@ import click
 from flexapod.cli.options import common
 
 if TYPE_CHECKING:
+    from flexapod.conventions import JointModel
     from flexapod.design.hexapod import Hexapod
-    from flexapod.mechanics.inputs import JointModel
     from flexapod.pose import Pose
 
 SUFFIXES = {"mjcf": ".xml", "urdf": ".urdf", "sdf": ".sdf", "mat": ".mat"}

@@ -7,12 +7,10 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.conventions import TWO_PI
 
 if TYPE_CHECKING:
-    from flexapod.mechanics.inputs import JointModel
-    from flexapod.pose import Array
-
-TURN = 6.283185307179586
+    from flexapod.conventions import Array, JointModel
 
 
 @click.command()
@@ -46,7 +44,7 @@ def command(
                 "pose_m_deg": common.pose_numbers(where),
                 "joint": joint,
                 "omega_rad_s": omega,
-                "frequency_hz": omega / TURN,
+                "frequency_hz": omega / TWO_PI,
                 "stability_index_rad_s": omega[0],
                 "condition_number": condition,
                 "characteristic_length_m": characteristic_length,
@@ -74,5 +72,5 @@ def _show(title: str, omega: Array, descriptions: list[str]) -> None:
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("motion")
     for i, words in enumerate(descriptions):
-        table.add_row(f"{i + 1}", f"{omega[i]:.6g}", f"{omega[i] / TURN:.5g}", words)
+        table.add_row(f"{i + 1}", f"{omega[i]:.6g}", f"{omega[i] / TWO_PI:.5g}", words)
     common.console().print(table)

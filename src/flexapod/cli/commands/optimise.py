@@ -11,7 +11,7 @@ import click
 from flexapod.cli.options import common, problem
 
 if TYPE_CHECKING:
-    from flexapod.mechanics.inputs import JointModel
+    from flexapod.conventions import JointModel
     from flexapod.optimisation.design_search import OptimalDesign
     from flexapod.optimisation.objectives import Objective
     from flexapod.optimisation.pareto import ParetoFront

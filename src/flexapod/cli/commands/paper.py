@@ -10,9 +10,10 @@ import click
 
 from flexapod.cli.options import common
 from flexapod.cli.output.stages import stages
+from flexapod.conventions import JOINT_MODELS
 
 if TYPE_CHECKING:
-    from flexapod.mechanics.inputs import JointModel
+    from flexapod.conventions import JointModel
     from flexapod.paper import Part
 
 PAGE = "index.html"
@@ -53,7 +54,7 @@ class FigureNumber(click.ParamType):
 )
 @click.option(
     "--joint",
-    type=click.Choice(common.JOINT_MODELS),
+    type=click.Choice(JOINT_MODELS),
     default="spin_free",
     show_default=True,
     help="Model of the base joints: the paper's legs that do not spin, or exact.",

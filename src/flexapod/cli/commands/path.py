@@ -13,8 +13,8 @@ from flexapod.cli.options import common
 from flexapod.cli.output.stages import Report, stages
 
 if TYPE_CHECKING:
+    from flexapod.conventions import JointModel
     from flexapod.design.hexapod import Hexapod
-    from flexapod.mechanics.inputs import JointModel
     from flexapod.paths.planning import LegSpeed, Plan
     from flexapod.report.studies.path import PathFindings
 

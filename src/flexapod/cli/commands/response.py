@@ -8,18 +8,17 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from flexapod.cli.options import common
+from flexapod.conventions import AXES, LEGS
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
     from rich.table import Table
 
+    from flexapod.conventions import Array, Complex
     from flexapod.design.hexapod import Hexapod
-    from flexapod.pose import Array, Pose
-    from flexapod.vibration.harmonic import Complex
+    from flexapod.pose import Pose
 
-AXES = ("x", "y", "z", "roll", "pitch", "yaw")
-LEGS = ("1", "2", "3", "4", "5", "6")
 POSITIVE = click.FloatRange(min=0, min_open=True)
 
 _response_options = common.stack(

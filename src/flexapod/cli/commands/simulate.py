@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from flexapod.cli.options import common
-from flexapod.cli.options.drives import AXES, QUANTITY, drive_options, drives
+from flexapod.cli.options.drives import QUANTITY, drive_options, drives
+from flexapod.conventions import AXES
 
 if TYPE_CHECKING:
     import xarray as xr

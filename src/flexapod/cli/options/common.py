@@ -26,6 +26,8 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.shell_completion import CompletionItem
 
+from flexapod.conventions import JOINT_MODELS
+
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
@@ -33,8 +35,6 @@ if TYPE_CHECKING:
 
     from flexapod.design.hexapod import Hexapod
     from flexapod.pose import Pose
-
-JOINT_MODELS = ("universal", "spin_free")
 
 
 class DesignName(click.ParamType):

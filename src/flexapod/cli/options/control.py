@@ -11,7 +11,7 @@ import click
 from flexapod.cli.options import common
 
 if TYPE_CHECKING:
-    from flexapod.mechanics.inputs import JointModel
+    from flexapod.conventions import JointModel
 
 LAWS = ("pid", "force", "velocity", "lqg", "h-infinity")
 

@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from flexapod.cli.options import common
+from flexapod.conventions import AXES, TWO_PI
 
 if TYPE_CHECKING:
     from flexapod.excitation.excitation import Excitation
     from flexapod.excitation.spectra import Spectrum
 
-AXES = ("x", "y", "z", "roll", "pitch", "yaw")
 USES = {"base": "base_motion", "force": "force", "moment": "moment", "leg": "leg_command"}
-TURN = 6.283185307179586
 UNITS = {
     "": 1.0,
     "m": 1.0,
@@ -27,7 +26,7 @@ UNITS = {
     "rad": 1.0,
     "mrad": 1e-3,
     "urad": 1e-6,
-    "deg": TURN / 360,
+    "deg": TWO_PI / 360,
     "N": 1.0,
     "kN": 1e3,
     "Nm": 1.0,
@@ -35,8 +34,8 @@ UNITS = {
     "g": 9.80665,
     "rad/s2": 1.0,
     "rad/s": 1.0,
-    "Hz": TURN,
-    "rpm": TURN / 60,
+    "Hz": TWO_PI,
+    "rpm": TWO_PI / 60,
     "s": 1.0,
     "ms": 1e-3,
     "min": 60.0,

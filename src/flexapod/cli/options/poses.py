@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 if TYPE_CHECKING:
+    from flexapod.conventions import Array
     from flexapod.design.hexapod import Hexapod
-    from flexapod.pose import Array
     from flexapod.workspace.pose_sets import Box, PoseSet
 
 
@@ -82,17 +82,17 @@ def _csv(path: Path) -> Array:
 
 
 def _parts(option: str, texts: Iterable[str]) -> dict[str, str]:
-    from flexapod.workspace.pose_sets import COORDINATES
+    from flexapod.conventions import AXES
 
     found: dict[str, str] = {}
     for text in ",".join(texts).replace(" ", "").split(","):
         if not text:
             continue
         name, equals, value = text.partition("=")
-        if name not in COORDINATES or not equals or not value:
+        if name not in AXES or not equals or not value:
             raise click.UsageError(
                 f"{option} {text} says nothing about a coordinate; write NAME=VALUES with a name of "
-                f"{', '.join(COORDINATES)} (m, degrees)."
+                f"{', '.join(AXES)} (m, degrees)."
             )
         if name in found:
             raise click.UsageError(f"{option} gives {name} twice. Leave one of them out.")
@@ -110,13 +110,13 @@ def _number(option: str, name: str, text: str) -> float:
 
 def _with_home(hexapod: Hexapod, option: str, given: dict[str, Any]) -> dict[str, Any]:
     """The coordinates that were not named, from the home pose."""
-    from flexapod.workspace.pose_sets import COORDINATES
+    from flexapod.conventions import AXES
 
-    if len(given) == len(COORDINATES):
+    if len(given) == len(AXES):
         return given
     home = _home(hexapod, option)
     values = [*home.position, *home.rpy]
-    return {name: given.get(name, value) for name, value in zip(COORDINATES, values, strict=True)}
+    return {name: given.get(name, value) for name, value in zip(AXES, values, strict=True)}
 
 
 def _home(hexapod: Hexapod, option: str) -> Any:

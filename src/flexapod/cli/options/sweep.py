@@ -11,7 +11,7 @@ import click
 from flexapod.cli.options import common
 
 if TYPE_CHECKING:
-    from flexapod.mechanics.inputs import JointModel
+    from flexapod.conventions import JointModel
 
 DEFAULT_POINTS = 100_000
 

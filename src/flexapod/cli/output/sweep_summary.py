@@ -6,8 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from flexapod.cli.options import common
-from flexapod.pose import Array
-from flexapod.workspace.pose_sets import COORDINATES
+from flexapod.conventions import AXES, Array
 
 if TYPE_CHECKING:
     from flexapod.workspace.summary import At, SweepSummary
@@ -87,12 +86,12 @@ def summary_json(summary: SweepSummary) -> dict[str, Any]:
 def _at_json(at: At | None) -> dict[str, Any] | None:
     if at is None:
         return None
-    return {**at._asdict(), "pose": dict(zip(COORDINATES, at.pose.tolist(), strict=True))}
+    return {**at._asdict(), "pose": dict(zip(AXES, at.pose.tolist(), strict=True))}
 
 
 def worst_json(worst: WorstPose) -> dict[str, Any]:
     """A refined worst pose in plain numbers, SI."""
     found: dict[str, Any] = worst._asdict()
-    found["pose"] = dict(zip(COORDINATES, worst.pose.tolist(), strict=True))
+    found["pose"] = dict(zip(AXES, worst.pose.tolist(), strict=True))
     found["minima"] = [{"omega_1": omega, "pose": pose.tolist()} for omega, pose in worst.minima]
     return found

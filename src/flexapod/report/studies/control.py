@@ -10,13 +10,12 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from flexapod.control.closed_loop_poles import ClosedLoop
+from flexapod.conventions import TWO_PI
 from flexapod.design.hexapod import Hexapod
 from flexapod.plots import control
 from flexapod.pose import Pose
 from flexapod.report import html
 from flexapod.report.numbers import DASH, pose_words, shown
-
-TURN = 2 * np.pi
 
 
 class ControlFindings(NamedTuple):
@@ -99,7 +98,7 @@ def _poles(f: ControlFindings) -> str:
                 f"{number}",
                 shown(pole.real, 5),
                 shown(pole.imag, 5),
-                shown(abs(pole) / TURN, 4),
+                shown(abs(pole) / TWO_PI, 4),
                 shown(f.sampled.damping_ratio[k], 3),
                 near if k in f.sampled.near else far,
             ]

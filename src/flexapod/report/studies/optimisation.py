@@ -6,6 +6,7 @@ from html import escape
 
 import numpy as np
 
+from flexapod.conventions import TWO_PI
 from flexapod.design.hexapod import Hexapod
 from flexapod.optimisation.design_search import Check, OptimalDesign
 from flexapod.optimisation.pareto import ParetoFront
@@ -14,13 +15,11 @@ from flexapod.plots import optimisation
 from flexapod.report.html import beware, drawing, short, table
 from flexapod.report.numbers import brief, percent, shown
 
-TURN = 2 * np.pi
-
 
 def optimal_page(found: OptimalDesign, objective: str) -> str:
     """What was found, from what, and how it was verified."""
     cards = [
-        ("Index, verified", shown(found.index, 5), f"rad/s = {shown(found.index / TURN, 4)} Hz"),
+        ("Index, verified", shown(found.index, 5), f"rad/s = {shown(found.index / TWO_PI, 4)} Hz"),
         ("Design begun with", shown(found.start_index, 5), "rad/s"),
         ("Gain", percent(found.gain), "of the index"),
         ("Trials", str(found.history.sizes["trial"]), f"in {brief(found.seconds, 3)} s"),

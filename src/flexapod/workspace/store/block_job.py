@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from flexapod import _core
+from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import OutputError
-from flexapod.mechanics.inputs import JointModel
 from flexapod.optional import needed
-from flexapod.pose import Array, Pose
-from flexapod.workspace.pose_sets import COORDINATES, PoseSet
+from flexapod.pose import Pose
+from flexapod.workspace.pose_sets import PoseSet
 from flexapod.workspace.quantities import QUANTITIES, evaluate
 from flexapod.workspace.store.blocks import Blocks
 
@@ -87,7 +87,7 @@ def write_block(job: Job, number: int, rows: Array | None = None) -> Finished:
 def _pose_columns(rows: Array) -> dict[str, Array]:
     if rows.shape[1] == 12:
         rows = np.concatenate([rows[:, :3], Pose(rows[:, :3], rows[:, 3:].reshape(-1, 3, 3)).rpy], axis=1)
-    return dict(zip(COORDINATES, rows.T, strict=True))
+    return dict(zip(AXES, rows.T, strict=True))
 
 
 def zarr_package() -> Any:
@@ -114,7 +114,7 @@ def flush_block(job: Job, number: int) -> None:
     """Have a block's chunks on the disk itself, so that what is marked as done outlives a power cut."""
     region = job.blocks[number].region
     indices = [str(part.start // step) for part, step in zip(region, job.blocks.chunk, strict=True)]
-    for name in (*job.quantities, "status", *(COORDINATES if job.keep_poses else ())):
+    for name in (*job.quantities, "status", *(AXES if job.keep_poses else ())):
         last = ["0"] if name in QUANTITIES and QUANTITIES[name].trailing else []
         chunk = Path(job.path, name, "c", *indices, *last)
         sync(chunk)

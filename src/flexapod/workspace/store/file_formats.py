@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flexapod.conventions import AXES
 from flexapod.errors import OutputError
 from flexapod.optional import needed
-from flexapod.workspace.pose_sets import COORDINATES
 from flexapod.workspace.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def rows(sweep: xr.Dataset) -> pandas.DataFrame:
 
     status = sweep["status"]
     found: dict[str, Any] = {}
-    for name in COORDINATES:
+    for name in AXES:
         found[name] = sweep[name].broadcast_like(status).transpose(*status.dims).values.ravel()
     for key, variable in sweep.data_vars.items():
         name = str(key)

@@ -23,11 +23,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.conventions import AXES, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import OutputError
-from flexapod.mechanics.inputs import JointModel, is_universal
+from flexapod.mechanics.inputs import is_universal
 from flexapod.pose import Pose
-from flexapod.workspace.pose_sets import COORDINATES, GivenPoses, GridPoses, PoseSet, pose_set
+from flexapod.workspace.pose_sets import GivenPoses, GridPoses, PoseSet, pose_set
 from flexapod.workspace.quantities import DEFAULT, PENDING, QUANTITIES, attributes, chosen, provenance
 from flexapod.workspace.store.block_job import Job, Workers, sync, zarr_package
 from flexapod.workspace.store.blocks import Blocks, blocks
@@ -192,7 +193,7 @@ def _attributes(job: Job) -> dict[str, Any]:
         "quantities": " ".join(job.quantities),
         "chunk": " ".join(map(str, job.blocks.chunk)),
         "keeps_poses": int(job.keep_poses),
-        "coordinates": " ".join(COORDINATES),
+        "coordinates": " ".join(AXES),
     }
 
 
@@ -218,7 +219,7 @@ def _write_metadata(path: Path, job: Job) -> None:
     points, cut = job.points, job.blocks
     path.mkdir()
     group = zarr_package().create_group(path, zarr_format=3, attributes={**_attributes(job), "done": ""})
-    coordinate = {name: "float64" for name in COORDINATES if job.keep_poses}
+    coordinate = {name: "float64" for name in AXES if job.keep_poses}
     columns = {name: QUANTITIES[name].dtype for name in job.quantities} | {"status": "uint8"} | coordinate
     for name, dtype in columns.items():
         trailing = QUANTITIES[name].trailing if name in QUANTITIES else ""
@@ -235,7 +236,7 @@ def _write_metadata(path: Path, job: Job) -> None:
         if trailing and trailing not in group:
             group.create_array(trailing, data=np.arange(1, 7), dimension_names=(trailing,))
     if isinstance(points, GridPoses):
-        for name in COORDINATES:
+        for name in AXES:
             axis = points.axes[name]
             along = name in points.dims
             group.create_array(
