@@ -13,6 +13,7 @@ ORDER = [
     "_core",
     "errors",
     "conventions",
+    "checks",
     "optional",
     "pose",
     "design",

@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import minimize, minimize_scalar
 
+from flexapod.checks import thread_count
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
@@ -15,7 +16,7 @@ from flexapod.mechanics.modes import natural_modes
 from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
 from flexapod.workspace.pose_sets import Box, low_discrepancy
-from flexapod.workspace.quantities import evaluate, thread_count
+from flexapod.workspace.quantities import evaluate
 
 _POINTS = 2**14
 _STARTS = 4

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.checks import thread_count
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, numbers
@@ -20,7 +21,7 @@ from flexapod.optimisation.objectives import Objective
 from flexapod.optimisation.variables import DesignMap, JointCircle, Variable
 from flexapod.workspace.box_minimum import descend
 from flexapod.workspace.pose_sets import Box
-from flexapod.workspace.quantities import evaluate, thread_count
+from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.region import Places
 
 FEASIBLE = 1e-6  # relative amount by which a bound may be passed, for rounding of the search that ends on it

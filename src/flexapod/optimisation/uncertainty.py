@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.checks import thread_count
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, PLACES, entries, numbers
@@ -21,7 +22,6 @@ from flexapod.mechanics.inputs import is_universal
 from flexapod.optional import needed
 from flexapod.pose import Pose
 from flexapod.workspace.pose_sets import Box
-from flexapod.workspace.quantities import thread_count
 from flexapod.workspace.region import Places, places
 
 if TYPE_CHECKING:

@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.checks import thread_count
 from flexapod.conventions import AXES, Array
 from flexapod.web import requests
 from flexapod.web.encode import float32
 from flexapod.workspace.pose_sets import Box, random_poses
-from flexapod.workspace.quantities import evaluate, thread_count
+from flexapod.workspace.quantities import evaluate
 
 CHUNK = 50_000  #: poses between two messages of progress: a hundredth of a second or so
 MOST_POINTS = 5_000_000  #: what a page's memory takes with ease: 8 numbers of 4 bytes each

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
@@ -105,15 +104,6 @@ def packed_limits(hexapod: Hexapod) -> Array:
     return np.concatenate(
         [neutral_directions(hexapod).ravel(), np.broadcast_to(lengths, (6, 2)).ravel(), angles, [distance]]
     )
-
-
-def thread_count(threads: int | None) -> int:
-    """Threads to use: those asked for, or all that this process may have."""
-    if threads is None:
-        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
-        raise PoseError(f"threads is {threads!r}; it must be a whole number, at least 1. Leave it out for all cores.")
-    return threads
 
 
 def attributes(name: str) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.checks import thread_count
 from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
@@ -23,7 +24,6 @@ from flexapod.workspace.quantities import (
     evaluate,
     provenance,
     statuses,
-    thread_count,
 )
 
 if TYPE_CHECKING:

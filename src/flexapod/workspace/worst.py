@@ -7,13 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import _core
+from flexapod.checks import thread_count
 from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
 from flexapod.mechanics.inputs import is_universal, states
 from flexapod.pose import Pose
 from flexapod.workspace.pose_sets import Box, low_discrepancy
-from flexapod.workspace.quantities import evaluate, thread_count
+from flexapod.workspace.quantities import evaluate
 
 SINGULAR = 1e-9  # omega_1 / omega_6 below which the index is zero to rounding
 AGREE = 1e-6  # relative difference of indices that count as the same minimum

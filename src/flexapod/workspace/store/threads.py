@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from typing import Any
 
-from flexapod.workspace.quantities import thread_count
+from flexapod.checks import thread_count
 from flexapod.workspace.store.block_job import Finished, Job, flush_block, write_block
 
 _POLL = 0.2  # s between looks at whether to stop

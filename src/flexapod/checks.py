@@ -1,0 +1,79 @@
+"""Checks of arguments. Each returns the value in its proper type, or raises ArgumentError with what is required."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection
+from difflib import get_close_matches
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod.conventions import Array
+from flexapod.errors import ArgumentError, shown
+
+
+def number(value: Any, name: str, unit: str = "", *, need: str = "finite") -> float:
+    """A number that is finite and, as `need` says, "finite", "> 0" or ">= 0"."""
+    try:
+        found = float(value)
+    except (TypeError, ValueError):
+        found = float("nan")
+    holds = {"finite": True, "> 0": found > 0, ">= 0": found >= 0}[need]
+    if isinstance(value, bool) or not (np.isfinite(found) and holds):
+        required = "a finite number" if need == "finite" else f"finite and {need}"
+        raise ArgumentError(f"{name} is {shown(value)}{' ' * bool(unit)}{unit}; it must be {required}.")
+    return found
+
+
+def positive(value: Any, name: str, unit: str = "") -> float:
+    """A finite number > 0."""
+    return number(value, name, unit, need="> 0")
+
+
+def not_negative(value: Any, name: str, unit: str = "") -> float:
+    """A finite number >= 0."""
+    return number(value, name, unit, need=">= 0")
+
+
+def whole(value: Any, name: str, least: int = 1) -> int:
+    """A whole number, at least `least`."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
+        raise ArgumentError(f"{name} is {shown(value)}; it must be a whole number, at least {least}.")
+    return int(value)
+
+
+def one_of(value: Any, name: str, choices: Collection[str]) -> str:
+    """One of some words; the message names the nearest of them."""
+    if isinstance(value, str) and value in choices:
+        return value
+    near = get_close_matches(str(value).lower(), choices, n=1)
+    hint = f" Did you mean {near[0]!r}?" if near else ""
+    raise ArgumentError(f"{name} is {shown(value)}; it must be one of {', '.join(map(repr, choices))}.{hint}")
+
+
+def numbers(value: ArrayLike, name: str, shape: tuple[int | None, ...] = (None,)) -> Array:
+    """Finite float64 numbers of a shape, in which None stands for any size; a copy."""
+    try:
+        array = np.array(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ArgumentError(f"{name} is {shown(value)}; it must hold numbers.") from None
+    fits = array.ndim == len(shape) and all(want in (None, size) for want, size in zip(shape, array.shape, strict=True))
+    if not fits:
+        wanted = ", ".join("n" if size is None else str(size) for size in shape)
+        raise ArgumentError(f"{name} has shape {array.shape}; it must have shape ({wanted}{',' * (len(shape) == 1)}).")
+    if not np.isfinite(array).all():
+        raise ArgumentError(f"{name} holds NaN or infinity; all its numbers must be finite.")
+    return array
+
+
+def thread_count(threads: int | None) -> int:
+    """Threads to use: those asked for, or all that this process may have."""
+    if threads is None:
+        return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
+        raise ArgumentError(
+            f"threads is {threads!r}; it must be a whole number, at least 1. Leave it out for all cores."
+        )
+    return threads
