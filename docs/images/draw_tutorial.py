@@ -13,7 +13,7 @@ from playwright.sync_api import sync_playwright
 from flexapod.cli import main
 
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parents[1] / "tests"))
+sys.path.insert(0, str(HERE.parents[1]))
 from tests.helpers.documents import run_document  # noqa: E402
 
 

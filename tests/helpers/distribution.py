@@ -34,7 +34,8 @@ def main(directory: Path) -> None:
     package = sources("src/flexapod/**/*")
     with tarfile.open(sdist) as file:
         names = {name.partition("/")[2] for name in file.getnames()}
-    build = sources("src/core/*", "tests/*.py", "tests/data/*", "web/src/*") | {"CMakeLists.txt", "pyproject.toml"}
+    build = sources("src/core/**/*", "tests/**/*.py", "tests/data/*", "web/src/**/*")
+    build |= {"CMakeLists.txt", "pyproject.toml"}
     check(sdist, names, package | build | {"LICENSE", "README.md", "CHANGELOG.md", "CITATION.cff"})
     with zipfile.ZipFile(wheel) as file:
         names = set(file.namelist())
