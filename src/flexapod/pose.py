@@ -129,6 +129,23 @@ def rpy_matrix(rpy: ArrayLike) -> Array:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
+def skew(vector: ArrayLike) -> Array:
+    """Matrices (..., 3, 3) with skew(a) b = a x b, of vectors (..., 3)."""
+    x, y, z = np.moveaxis(np.asarray(vector, dtype=np.float64), -1, 0)
+    zero = np.zeros_like(x)
+    rows = ([zero, -z, y], [z, zero, -x], [-y, x, zero])
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def rotation_from_vector(vector: ArrayLike) -> Array:
+    """Rotation matrices (..., 3, 3) of rotation vectors (..., 3) in rad (Rodrigues), without loading SciPy."""
+    v = np.asarray(vector, dtype=np.float64)
+    angle = np.linalg.norm(v, axis=-1, keepdims=True)
+    K = skew(v / np.where(angle > 0, angle, 1.0))
+    turned = angle[..., None]
+    return np.eye(3) + np.sin(turned) * K + (1 - np.cos(turned)) * K @ K
+
+
 def as_pose(value: Any, name: str = "pose") -> Pose:
     """A Pose from a Pose, or from x, y, z (m), roll, pitch, yaw (rad) as (..., 6) numbers; or PoseError."""
     if isinstance(value, Pose):

@@ -13,7 +13,8 @@ from scipy.spatial.transform import Rotation
 import flexapod as fx
 from flexapod import plots
 from flexapod.cli import main
-from flexapod.plots import machine_3d, style
+from flexapod.plots import style
+from flexapod.pose import rotation_from_vector
 from flexapod.report import gather, page
 from flexapod.report.numbers import brief, shown
 
@@ -301,7 +302,7 @@ def test_plots_refuse_what_they_cannot_draw():
 def test_rotation_is_rodrigues():
     for vector in ([0.3, -1.2, 0.7], [0, 0, 1e-9], [0, 0, 0]):
         exact = Rotation.from_rotvec(vector).as_matrix()
-        assert np.allclose(machine_3d.rotation(np.array(vector, dtype=float)), exact, rtol=0, atol=1e-15)
+        assert np.allclose(rotation_from_vector(vector), exact, rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize(

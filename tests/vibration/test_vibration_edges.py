@@ -14,6 +14,7 @@ from flexapod.paths.ompl_planner import search
 from flexapod.paths.planning import _Task
 from flexapod.paths.requirements import Margins
 from flexapod.plots import animation
+from flexapod.pose import rotation_from_vector
 from flexapod.simulation.integrator import Run, equations
 from flexapod.vibration import stepped
 from flexapod.vibration.harmonic import _solve
@@ -55,7 +56,7 @@ def test_equations_for_other_integrators_are_the_forward_dynamics(machine):
     found = equations(Run(machine, pose))
     np.testing.assert_array_equal(found.start(), np.zeros(12))
     y = np.array([1e-3, -2e-3, 5e-4, 0.01, -0.02, 0.015, 0.3, -0.1, 0.2, 0.5, 0.4, -0.6])
-    turn = fx.Pose(np.zeros(3), animation.Rotation.from_rotvec(y[3:6]).as_matrix()).matrix @ pose.matrix
+    turn = fx.Pose(np.zeros(3), rotation_from_vector(y[3:6])).matrix @ pose.matrix
     moved = fx.Motion(fx.Pose(pose.position + y[:3], turn), y[6:9], y[9:])
     lengths = fx.hold(machine, pose).unstretched_length
     force = machine.legs.stiffness * (lengths - fx.inverse_kinematics(machine, moved.pose))

@@ -15,7 +15,7 @@ from flexapod.errors import PoseError
 from flexapod.mechanics.inputs import ZERO, is_universal, states, wrench
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.optional import needed
-from flexapod.pose import Pose
+from flexapod.pose import Pose, skew
 
 if TYPE_CHECKING:
     import control
@@ -187,5 +187,5 @@ def linearise(
     )
     r = s.platform[0, :3] - s.base[0, :3]
     carry = np.eye(6)
-    carry[:3, 3:] = [[0, r[2], -r[1]], [-r[2], 0, r[0]], [r[1], -r[0], 0]]
+    carry[:3, 3:] = skew(r).T
     return Linearisation(M, C, K, M_b, C_b, K_b, H, hexapod.legs.stiffness, rest, carry, hexapod.gravity)

@@ -12,7 +12,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
 from flexapod.mechanics.inputs import is_universal, states
 from flexapod.mechanics.kinematics import force_transformation
-from flexapod.pose import Pose
+from flexapod.pose import Pose, skew
 
 
 class NaturalModes(NamedTuple):
@@ -145,7 +145,7 @@ def describe_modes(
     J = _core.equations_of_motion(hexapod.packed, is_universal(joint), s.platform, s.base)[0][0]
     r = pose.matrix @ hexapod.platform_mass_center
     shift = np.eye(6)  # twist of the reference point from that of the mass centre
-    shift[:3, 3:] = [[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]]
+    shift[:3, 3:] = skew(r)
     J_center = shift.T @ J @ shift
     center = pose.position + r
     return [_describe(np.linalg.solve(shift, v), J_center, center) for v in modes.shape.T]

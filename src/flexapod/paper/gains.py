@@ -29,6 +29,7 @@ from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.charts import ORANGE
 from flexapod.paper.frequencies import home
 from flexapod.plots.style import dress
+from flexapod.pose import skew
 
 DESIGN = "mukherjee-ii"
 FRICTION = 3000.0  # N s/m in each leg: damping ratios of 1 to 30 %
@@ -89,7 +90,7 @@ class _Bench:
         self.dt = advised_sampling_time(float(self.plant.omega[-1]))
         self.shaken = held(self.plant, self.dt)[2][:, 2]
         arms = self.hexapod.platform_joints @ self.pose.matrix.T
-        self.joints = np.vstack([np.hstack([np.eye(3), -np.cross(arm, np.eye(3)).T]) for arm in arms])
+        self.joints = np.vstack([np.hstack([np.eye(3), skew(arm).T]) for arm in arms])
         idle = replace(static(np.zeros((6, 6)), ("leg_rate",), "no control"), dt=self.dt)
         self.passive = self.rms(idle)
 

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.conventions import Array
 from flexapod.errors import PathError
-from flexapod.pose import Motion, Pose
+from flexapod.pose import Motion, Pose, skew
 
 Ends = Literal["rest", "free", "periodic"]
 _WIDEST = 0.9 * pi  # of a turn from the middle orientation: the rotation vector's chart ends at pi
@@ -71,24 +71,17 @@ class Chart:
 def turning(e: Array) -> Array:
     """(..., 3, 3), angular velocity (outer axes) from the rate of the rotation vector e: E + a e~ + b e~ e~."""
     x = (e * e).sum(axis=-1)[..., None, None]
-    cross = _cross(e)
+    cross = skew(e)
     return np.eye(3) + polynomial.polyval(x, _A) * cross + polynomial.polyval(x, _B) * cross @ cross
 
 
 def _turning_rate(e: Array, e_dot: Array) -> Array:
     x = (e * e).sum(axis=-1)[..., None, None]
     x_dot = 2 * (e * e_dot).sum(axis=-1)[..., None, None]
-    cross, cross_dot = _cross(e), _cross(e_dot)
+    cross, cross_dot = skew(e), skew(e_dot)
     a, b = polynomial.polyval(x, _A), polynomial.polyval(x, _B)
     a_dot, b_dot = (x_dot * polynomial.polyval(x, polynomial.polyder(series)) for series in (_A, _B))
     return a_dot * cross + a * cross_dot + b_dot * cross @ cross + b * (cross_dot @ cross + cross @ cross_dot)
-
-
-def _cross(v: Array) -> Array:
-    x, y, z = np.moveaxis(v, -1, 0)
-    o = np.zeros_like(x)
-    rows = [np.stack(row, axis=-1) for row in ([o, -z, y], [z, o, -x], [-y, x, o])]
-    return np.stack(rows, axis=-2)
 
 
 class Trajectory:

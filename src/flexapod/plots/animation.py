@@ -21,7 +21,7 @@ from flexapod.errors import ArgumentError, PoseError
 from flexapod.mechanics.modes import describe_modes, natural_modes
 from flexapod.optional import needed
 from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, VIEW
-from flexapod.pose import Pose
+from flexapod.pose import Pose, rotation_from_vector
 
 if TYPE_CHECKING:
     from matplotlib.animation import AbstractMovieWriter
@@ -162,7 +162,7 @@ class _Film(NamedTuple):
 
 
 def _moved(joints: Array, pose: Pose, x: Array) -> Array:
-    turn = Rotation.from_rotvec(x[3:]).as_matrix()
+    turn = rotation_from_vector(x[3:])
     return pose.position + x[:3] + (joints - pose.position) @ turn.T
 
 
@@ -236,7 +236,7 @@ def _simulated(dataset: xr.Dataset, hexapod: Hexapod, base: Pose) -> tuple[_Film
     moved = dataset.base_position.transpose("time", "axis").values - base.position
     feet = np.concatenate([moved, Rotation.from_matrix(turned).as_rotvec()], axis=1)
     start = dataset.isel(time=0)  # its displacement from rest gives rest
-    turn = Rotation.from_rotvec(platform[0, 3:]).as_matrix()
+    turn = rotation_from_vector(platform[0, 3:])
     pose = Pose(start.position.values - platform[0, :3], turn.T @ start.rotation.transpose("axis", "body_axis").values)
     return _Film(hexapod, pose, base, platform, feet), dataset.time.values
 

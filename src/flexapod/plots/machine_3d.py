@@ -12,7 +12,7 @@ from flexapod.errors import PoseError
 from flexapod.mechanics.kinematics import force_transformation, home_pose
 from flexapod.mechanics.modes import NaturalModes
 from flexapod.plots.style import AXES, BASE, FAINT, INK, LEG, PLATFORM, SHORTENED, STRETCHED, VIEW
-from flexapod.pose import Pose, rpy_matrix
+from flexapod.pose import Pose, rotation_from_vector
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
@@ -57,7 +57,7 @@ def mode(hexapod: Hexapod, pose: Pose | None, modes: NaturalModes, number: int, 
     size = _frame(ax, b, p, margin=0.12)
     x = _enlarged(modes.shape[:, number - 1], p - where.position, size / 6)
     strain = force_transformation(hexapod, where).T @ x
-    moved = _at(Pose(where.position + x[:3], rotation(x[3:]) @ where.matrix), hexapod.platform_joints)
+    moved = _at(Pose(where.position + x[:3], rotation_from_vector(x[3:]) @ where.matrix), hexapod.platform_joints)
     _plate(ax, b, BASE)
     _plate(ax, p, FAINT, alpha=0.0, ls="--")
     _plate(ax, moved, PLATFORM)
@@ -70,14 +70,6 @@ def mode(hexapod: Hexapod, pose: Pose | None, modes: NaturalModes, number: int, 
     _points(ax, moved, PLATFORM)
     ax.set_axis_off()
     return ax
-
-
-def rotation(vector: Array) -> Array:
-    """Rotation matrix of a rotation vector (3,), rad."""
-    angle = float(np.linalg.norm(vector))
-    x, y, z = vector / angle if angle > 0 else np.zeros(3)
-    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return rpy_matrix(np.zeros(3)) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
 
 
 def _enlarged(twist: Array, joints: Array, travel: float) -> Array:

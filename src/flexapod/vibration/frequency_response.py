@@ -15,7 +15,7 @@ from flexapod.errors import ArgumentError, PoseError
 from flexapod.excitation.spectra import Quantity, Spectrum
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import Linearisation, RestOptions, linearise
-from flexapod.pose import Pose, vectors
+from flexapod.pose import Pose, skew, vectors
 from flexapod.vibration.harmonic import SteadyResponse, complex_poles, frequencies, loss_factors, steady_response
 
 __all__ = ["random_response", "transmissibility"]
@@ -102,7 +102,7 @@ def shift(pose: Pose, point: ArrayLike) -> Array:
         raise PoseError(f"point has shape {place.shape}; give one point (3,) in m, in the platform's frame")
     r = pose.matrix @ place
     matrix = np.eye(6)
-    matrix[:3, 3:] = [[0, r[2], -r[1]], [-r[2], 0, r[0]], [r[1], -r[0], 0]]
+    matrix[:3, 3:] = skew(r).T
     return matrix
 
 
