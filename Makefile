@@ -7,6 +7,7 @@ OUT    ?= out
 SECONDS ?= 300
 
 CORE := CMakeLists.txt $(wildcard src/core/*/*)
+CPP  := $(wildcard src/core/*/*.?pp tests/core/*.cpp)
 
 .PHONY: report paper test coverage build lint types bench bench-readme docs validation sanitize portable fuzz dist \
         clean web web-check
@@ -37,6 +38,7 @@ build: $(VENV)/.built
 lint: build
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	$(BIN)/clang-format --dry-run -Werror $(CPP)
 
 types: build
 	$(BIN)/mypy

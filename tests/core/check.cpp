@@ -38,8 +38,7 @@ void sweep(const double* design, const double* limits, const double* poses, std:
   task.spherical_angle_ = spherical.data(), task.omega_1_gradient_ = gradient.data();
   task.within_limits_ = within.get(), task.status_ = status.data();
   sweep_kernel.sweep(task, 0, n);
-  for (const auto* result :
-       {&omega, &cond, &length, &distance, &force, &stiffness, &universal, &spherical, &gradient})
+  for (const auto* result : {&omega, &cond, &length, &distance, &force, &stiffness, &universal, &spherical, &gradient})
     write(*result);
   write({status.begin(), status.end()});
   write({within.get(), within.get() + n});

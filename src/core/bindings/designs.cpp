@@ -2,14 +2,15 @@
 #include "bindings/designs.hpp"
 
 #include "bindings/parallel_for.hpp"
-#include "model/design_gradient.hpp"
 #include "bindings/sweep.hpp"
+#include "model/design_gradient.hpp"
 
 namespace flexapod {
 namespace {
 
 /// (designs, poses, modes) or, paired, (designs, modes).
-nb::object sweep_designs(const Input& designs, bool universal, const Input& poses, bool paired, int modes, int threads) {
+nb::object sweep_designs(const Input& designs, bool universal, const Input& poses, bool paired, int modes,
+                         int threads) {
   if (threads < 1) throw std::invalid_argument("threads is " + std::to_string(threads) + "; it must be >= 1");
   if (modes != 1 && modes != 6) throw std::invalid_argument("modes must be 1 or 6");
   const size_t n = designs.size() / design_size, k = poses.size() / 12;

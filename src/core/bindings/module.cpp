@@ -3,12 +3,12 @@
 #include "bindings/arrays.hpp"
 #include "bindings/designs.hpp"
 #include "bindings/simulation.hpp"
+#include "bindings/sweep.hpp"
 #include "model/energy.hpp"
 #include "model/kinematics.hpp"
 #include "model/modes.hpp"
 #include "model/reactions.hpp"
 #include "model/statics.hpp"
-#include "bindings/sweep.hpp"
 
 namespace flexapod {
 namespace {
@@ -19,7 +19,9 @@ struct States {
   const Motion<double>*platform, *base;
 
   States(const Input& platforms, const Input& bases)
-      : n(platforms.size() / motion_size), platform(motions(platforms, n, "platform")), base(motions(bases, n, "base")) {}
+      : n(platforms.size() / motion_size),
+        platform(motions(platforms, n, "platform")),
+        base(motions(bases, n, "base")) {}
 };
 
 Geometry<double> geometry(const Machine<double>& machine, const States& s, size_t i) {
@@ -85,7 +87,7 @@ nb::tuple forward_kinematics_(const Input& design, const Input& lengths, const I
   Output poses({n, 12}), errors({n});
   double* out = poses.data();
   for (size_t i = 0; i < n; ++i) {
-    const auto& wanted = *reinterpret_cast<const double(*)[6]>(length + 6 * i);
+    const auto& wanted = *reinterpret_cast<const double (*)[6]>(length + 6 * i);
     const FoundPose found = forward_kinematics(machine.design, wanted, start[i].pose);
     write(out, found.pose);
     errors.data()[i] = found.error;
@@ -129,7 +131,7 @@ nb::object forward_dynamics_(const Input& design, bool universal, const Input& p
 
 /// Leg forces for the accelerations given; NaN where H is singular.
 nb::object inverse_dynamics_(const Input& design, bool universal, const Input& platforms, const Input& bases,
-                            const Input& wrenches) {
+                             const Input& wrenches) {
   const Machine<double> machine = machine_of(design, universal);
   const States s(platforms, bases);
   const double* load = rows(wrenches, s.n, 6, "wrench");
@@ -171,7 +173,7 @@ nb::object energy_(const Input& design, bool universal, const Input& platforms, 
   Output energies({s.n, 4});
   double* out = energies.data();
   for (size_t i = 0; i < s.n; ++i) {
-    const auto& lengths = *reinterpret_cast<const double(*)[6]>(L_0 + 6 * i);
+    const auto& lengths = *reinterpret_cast<const double (*)[6]>(L_0 + 6 * i);
     const Energy e = energy(machine, s.platform[i], s.base[i], lengths);
     for (const double x : {e.kinetic, e.gravitational, e.elastic, e.dissipation}) *out++ = x;
   }
@@ -217,7 +219,7 @@ nb::tuple frequency_derivatives(const Input& design, bool universal, const Input
   for (size_t i = 0; i < s.n; ++i) {
     const Pose<double>&platform = s.platform[i].pose, &base = s.base[i].pose;
     const Modes modes = natural_modes(machine, geometry(machine, s, i), platform.R);
-    auto* block = reinterpret_cast<double(*)[design_size]>(by_design.data() + i * 6 * design_size);
+    auto* block = reinterpret_cast<double (*)[design_size]>(by_design.data() + i * 6 * design_size);
     design_derivatives(machine.design, machine.joint, platform, base, modes, block);
     write(pose_out, pose_derivatives(machine, platform, base, modes));
   }

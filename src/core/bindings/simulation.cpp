@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "bindings/arrays.hpp"
-#include "simulation/excitation.hpp"
 #include "bindings/sweep.hpp"
+#include "simulation/excitation.hpp"
 
 #if defined(FLEXAPOD_X86)
 namespace flexapod_avx512 {
@@ -45,8 +45,8 @@ class Crew {
  public:
   std::atomic<bool> stop{false};
 
-  template <class Job> void run(size_t n, size_t threads, nb::object report, const std::vector<std::atomic<double>>& done,
-                                Job&& job) {
+  template <class Job>
+  void run(size_t n, size_t threads, nb::object report, const std::vector<std::atomic<double>>& done, Job&& job) {
     std::atomic<size_t> next{0}, running{std::min(n, threads)};
     std::vector<std::thread> workers;
     for (size_t w = std::min(n, threads); w > 0; --w)
@@ -66,7 +66,8 @@ class Crew {
   }
 
  private:
-  void wait(const std::atomic<size_t>& running, const nb::object& report, const std::vector<std::atomic<double>>& done) {
+  void wait(const std::atomic<size_t>& running, const nb::object& report,
+            const std::vector<std::atomic<double>>& done) {
     while (running > 0) {
       {
         const nb::gil_scoped_release free;
@@ -125,17 +126,19 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
   for (size_t i = 0; i < n; ++i)
     driven.push_back(machine(design + i * design_size, universal, setup + i * setup_size, works, excitations[3 * i],
                              excitations[3 * i + 1], excitations[3 * i + 2]));
-  Output displacement = nan_filled({n, m, 6}), relative = nan_filled({n, m, 6}), work = nan_filled({n, m, 4}), platform = nan_filled({n, kept, 24}),
-         base = nan_filled({n, kept, 24}), leg_force = nan_filled({n, kept, 6}), outcome({n}), time({n}), last({n, 24}), counts({n, 3});
-  double *x = displacement.data(), *u = relative.data(), *p = platform.data(), *b = base.data(), *W = work.data(), *F = leg_force.data(), *how = outcome.data();
+  Output displacement = nan_filled({n, m, 6}), relative = nan_filled({n, m, 6}), work = nan_filled({n, m, 4}),
+         platform = nan_filled({n, kept, 24}), base = nan_filled({n, kept, 24}), leg_force = nan_filled({n, kept, 6}),
+         outcome({n}), time({n}), last({n, 24}), counts({n, 3});
+  double *x = displacement.data(), *u = relative.data(), *p = platform.data(), *b = base.data(), *W = work.data(),
+         *F = leg_force.data(), *how = outcome.data();
   double *ended = time.data(), *c = counts.data();
   double* final_motion = last.data();
   std::vector<std::atomic<double>> done(n);
   Crew crew;
   crew.run(n, static_cast<size_t>(o[7]), progress, done, [&](size_t i) {
     const auto part = [&](double* rows, size_t width) { return kept ? rows + i * m * width : nullptr; };
-    const simulation_task::Samples samples{times.data() + i * m, m, x + i * m * 6, u + i * m * 6, W + i * m * 4,
-                                           part(p, 24),          part(b, 24),      part(F, 6)};
+    const simulation_task::Samples samples{times.data() + i * m, m,           x + i * m * 6, u + i * m * 6,
+                                           W + i * m * 4,        part(p, 24), part(b, 24),   part(F, 6)};
     const simulation_task::End end = chosen->simulate({driven[i], tolerances, samples, &crew.stop, &done[i]});
     done[i] = 1.0;
     how[i] = end.outcome, ended[i] = end.time;
@@ -143,24 +146,24 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
     c[3 * i] = end.accepted, c[3 * i + 1] = end.rejected, c[3 * i + 2] = end.evaluations;
   });
   return nb::make_tuple(displacement.array(), relative.array(), work.array(), platform.array(), base.array(),
-                        leg_force.array(), outcome.array(),
-                        time.array(), last.array(), counts.array());
+                        leg_force.array(), outcome.array(), time.array(), last.array(), counts.array());
 }
 
 /// One run of a sampled controller. `controller`: A, B, C, D, limit (see SampledController); `noise`: 36 for each sample;
 /// `timing`: dt, steps of a sample. Returns rows at every step's end, from t = 0, of measurements and displacement (NaN
 /// after an early end), forces and clipping at every sample, and the outcome.
 nb::tuple control_loop(const Input& design, bool universal, const Input& setup, const Input& base,
-                       const std::vector<Input>& controller, const Input& noise, const Input& timing, nb::object progress) {
+                       const std::vector<Input>& controller, const Input& noise, const Input& timing,
+                       nb::object progress) {
   constexpr size_t signals = simulation_task::signals;
   if (controller.size() != 5) throw std::invalid_argument("a controller is A, B, C, D and limit");
   const size_t order = controller[2].size() / 6, samples = noise.size() / signals;
   const simulation_task::Controller law{order,
-                              rows(controller[0], order, order, "A"),
-                              rows(controller[1], order, signals, "B"),
-                              rows(controller[2], 6, order, "C"),
-                              rows(controller[3], 6, signals, "D"),
-                              rows(controller[4], 1, 6, "limit")};
+                                        rows(controller[0], order, order, "A"),
+                                        rows(controller[1], order, signals, "B"),
+                                        rows(controller[2], 6, order, "C"),
+                                        rows(controller[3], 6, signals, "D"),
+                                        rows(controller[4], 1, 6, "limit")};
   const double* when = rows(timing, 1, 2, "timing");
   const simulation_task::Timing clock{when[0], samples, static_cast<size_t>(when[1])};
   const size_t m = samples * clock.steps + 1;
@@ -174,9 +177,8 @@ nb::tuple control_loop(const Input& design, bool universal, const Input& setup, 
   double* how = outcome.data();
   std::vector<std::atomic<double>> done(1);
   Crew crew;
-  crew.run(1, 1, progress, done, [&](size_t) {
-    *how = chosen->control_loop({shaken, law, clock, white, record, &crew.stop, &done[0]});
-  });
+  crew.run(1, 1, progress, done,
+           [&](size_t) { *how = chosen->control_loop({shaken, law, clock, white, record, &crew.stop, &done[0]}); });
   return nb::make_tuple(measured.array(), displacement.array(), force.array(), cut.array(), outcome.array());
 }
 /// The equations of one simulation for other integrators: y' = rates(t, y) from y = start().

@@ -49,7 +49,7 @@ const Kernel* chosen = nullptr;
 struct Array {
   const char* name;
   unsigned quantity;
-  double* Task::*place;
+  double* Task::* place;
   size_t columns;
 };
 constexpr Array arrays[] = {

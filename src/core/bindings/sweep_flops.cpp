@@ -1,6 +1,6 @@
 #include "bench/flop_counter.hpp"
-#include "sweep/frequencies.hpp"
 #include "bindings/sweep.hpp"
+#include "sweep/frequencies.hpp"
 
 namespace flexapod {
 

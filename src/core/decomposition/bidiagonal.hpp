@@ -21,7 +21,8 @@ template <int m, class A, class B> FLEXAPOD_INLINE auto inner(const A& a, const 
     return even;
   } else {
     auto odd = a(1) * b(1);
-    FLEXAPOD_UNROLL for (int i = 2; i < m; ++i)
+    FLEXAPOD_UNROLL
+    for (int i = 2; i < m; ++i)
       if (i % 2) odd += a(i) * b(i);
       else even += a(i) * b(i);
     return even + odd;
@@ -45,7 +46,8 @@ template <class T> struct Reflection {
   template <int m, class X, class Y> FLEXAPOD_INLINE void apply(const X& x, const Y& y) const {
     const T sum = beta * (inner<m>(x, y) + shift * y(0));  // the inner product does not wait for the length
     y(0) -= sum * (x(0) + shift);
-    FLEXAPOD_UNROLL for (int i = 1; i < m; ++i) y(i) -= sum * x(i);
+    FLEXAPOD_UNROLL
+    for (int i = 1; i < m; ++i) y(i) -= sum * x(i);
   }
 };
 
@@ -56,14 +58,16 @@ template <int k, class T> FLEXAPOD_INLINE void bidiagonal_step(T (&a)[6][6], Squ
     const auto column = [&](int j) { return [&a, j](int i) -> T& { return a[k + i][j]; }; };
     const auto left = Reflection<T>::template of<6 - k>(column(k));
     b.q[k] = left.square;
-    FLEXAPOD_UNROLL for (int j = k + 1; j < 6; ++j) left.template apply<6 - k>(column(k), column(j));
+    FLEXAPOD_UNROLL
+    for (int j = k + 1; j < 6; ++j) left.template apply<6 - k>(column(k), column(j));
     if constexpr (k == 4) {
       b.e[4] = a[4][5] * a[4][5];
     } else {
       const auto row = [&](int i) { return [&a, i](int j) -> T& { return a[i][k + 1 + j]; }; };
       const auto right = Reflection<T>::template of<5 - k>(row(k));
       b.e[k] = right.square;
-      FLEXAPOD_UNROLL for (int i = k + 1; i < 6; ++i) right.template apply<5 - k>(row(k), row(i));
+      FLEXAPOD_UNROLL
+      for (int i = k + 1; i < 6; ++i) right.template apply<5 - k>(row(k), row(i));
     }
     bidiagonal_step<k + 1>(a, b);
   }
@@ -94,7 +98,8 @@ template <int n, class T> struct Characteristic {
   FLEXAPOD_INLINE Characteristic(const SquaredBidiagonal<n, T>& b, const T& x) {
     p = b.q[0] - x, p1 = T(-1.0), p2 = T(0.0);
     T d(1.0), d1(0.0), d2(0.0);
-    FLEXAPOD_UNROLL for (int i = 1; i < n; ++i) {
+    FLEXAPOD_UNROLL
+    for (int i = 1; i < n; ++i) {
       d = p + b.e[i - 1] * d, d1 = p1 + b.e[i - 1] * d1, d2 = p2 + b.e[i - 1] * d2;
       p = b.q[i] * p - x * d;
       p1 = b.q[i] * p1 - x * d1 - d;
@@ -111,7 +116,8 @@ inline constexpr int laguerre_limit = 60;  // six-fold zeros and simple ones tak
 /// With G and S the sums of 1/(lambda_i - x) and of its square, Laguerre's step is at most the distance to the lowest
 /// zero, and G/S at least that. They differ by a factor 1 + rho for an error rho^2/2 of the step: a lane is done when
 /// that is below rounding.
-template <int n, class T, class M> FLEXAPOD_INLINE T lowest(const SquaredBidiagonal<n, T>& b, const T& offset, M& open) {
+template <int n, class T, class M>
+FLEXAPOD_INLINE T lowest(const SquaredBidiagonal<n, T>& b, const T& offset, M& open) {
   T x(0.0);
   auto active = T(0.0) < T(1.0);
   for (int step = 0; step < laguerre_limit && any(active); ++step) {
@@ -158,7 +164,8 @@ template <int n, class T, class M>
 FLEXAPOD_INLINE SquaredBidiagonal<n, T> shifted(const SquaredBidiagonal<n, T>& b, const T& x, M& failed) {
   SquaredBidiagonal<n, T> next;
   T d = b.q[0] - x;
-  FLEXAPOD_UNROLL for (int i = 0; i < n - 1; ++i) {
+  FLEXAPOD_UNROLL
+  for (int i = 0; i < n - 1; ++i) {
     next.q[i] = d + b.e[i];
     const T ratio = b.q[i + 1] / next.q[i];
     next.e[i] = b.e[i] * ratio;
@@ -175,7 +182,7 @@ template <int n, class T, class M>
 FLEXAPOD_INLINE SquaredBidiagonal<n - 1, T> deflated(const SquaredBidiagonal<n, T>& b, const T& x, const T& tolerance,
                                                      M& failed) {
   SquaredBidiagonal<n, T> rest = shifted(b, x, failed);
-  auto left = !(abs(rest.q[n - 1]) <= tolerance);  // rounding, large where the value hardly lives at the end
+  auto left = !(abs(rest.q[n - 1]) <= tolerance);      // rounding, large where the value hardly lives at the end
   for (int step = 0; step < 3 && any(left); ++step) {  // each step brings it there
     const SquaredBidiagonal<n, T> next = shifted(rest, T(0.0), failed);
     for (int i = 0; i < n; ++i) rest.q[i] = select(left, next.q[i], rest.q[i]);
@@ -186,7 +193,8 @@ FLEXAPOD_INLINE SquaredBidiagonal<n - 1, T> deflated(const SquaredBidiagonal<n, 
   // The last q is zero now; a step without it draws the last e in.
   SquaredBidiagonal<n - 1, T> result;
   T d = rest.q[0];
-  FLEXAPOD_UNROLL for (int i = 0; i < n - 2; ++i) {
+  FLEXAPOD_UNROLL
+  for (int i = 0; i < n - 2; ++i) {
     result.q[i] = d + rest.e[i];
     const T ratio = rest.q[i + 1] / result.q[i];
     result.e[i] = rest.e[i] * ratio;

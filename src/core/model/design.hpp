@@ -14,19 +14,19 @@ template <class T> struct LegPart {
 };
 
 template <class T> struct Leg {
-  T stiffness;    // K, N/m
+  T stiffness;      // K, N/m
   T C_p, C_u, C_s;  // viscous friction: prismatic N s/m, universal and spherical N m s/rad
   LegPart<T> lower, upper;
 };
 
 template <class T> struct Design {
-  Vec3<T> gravity;          // m/s2, inertial frame
-  Vec3<T> b[6];             // base joints, base frame, m
-  Vec3<T> k[6];             // universal joint axes fixed in the base, unit vectors, base frame
-  Vec3<T> p[6];             // platform joints, platform frame, m
-  T M;                      // platform with payload, kg
-  Vec3<T> R_0;              // its mass centre, platform frame, m
-  Sym3<T> I_p;              // its inertia about the mass centre, platform axes, kg m2
+  Vec3<T> gravity;  // m/s2, inertial frame
+  Vec3<T> b[6];     // base joints, base frame, m
+  Vec3<T> k[6];     // universal joint axes fixed in the base, unit vectors, base frame
+  Vec3<T> p[6];     // platform joints, platform frame, m
+  T M;              // platform with payload, kg
+  Vec3<T> R_0;      // its mass centre, platform frame, m
+  Sym3<T> I_p;      // its inertia about the mass centre, platform axes, kg m2
   Leg<T> leg[6];
 };
 

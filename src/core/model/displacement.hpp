@@ -1,8 +1,8 @@
 // Poses as functions of a small displacement, for exact derivatives.
 #pragma once
 
-#include "numbers/dual.hpp"
 #include "model/motion.hpp"
+#include "numbers/dual.hpp"
 
 namespace flexapod {
 

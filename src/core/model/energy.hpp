@@ -42,8 +42,8 @@ inline Energy energy(const Machine<double>& machine, const Motion<double>& platf
     const double m_d = d.leg[i].lower.mass;
     e.kinetic += kinetic_energy(m_d, in.c_d, in.J_d, v_d, motion.omega);
     e.kinetic += kinetic_energy(in.m_u, in.c_u, in.J_u, v_u, motion.omega);
-    const Vec3<double> weighted = m_d * (base.pose.t + g.q_b[i]) + in.m_u * (platform.pose.t + g.q_p[i]) +
-                                  transposed(leg.axes, in.c_d + in.c_u);
+    const Vec3<double> weighted =
+        m_d * (base.pose.t + g.q_b[i]) + in.m_u * (platform.pose.t + g.q_p[i]) + transposed(leg.axes, in.c_d + in.c_u);
     e.gravitational -= dot(d.gravity, weighted);
     e.elastic += 0.5 * d.leg[i].stiffness * (leg.L - L_0[i]) * (leg.L - L_0[i]);
     e.dissipation += leg_dissipation(d.leg[i], end, motion);

@@ -9,10 +9,10 @@ namespace flexapod {
 /// Where the legs are: vectors in the axes of the poses given.
 /// P is the type of the platform joints: in the platform's own axes they are constants of the design.
 template <class T, class P = T> struct Geometry {
-  Vec3<P> q_p[6];          // joints from the reference points of the platform
-  Vec3<T> q_b[6];          // and of the base
-  Vec3<T> S[6];            // legs, base joint to platform joint (Eq. 6)
-  Vec3<T> k[6];            // universal axes
+  Vec3<P> q_p[6];  // joints from the reference points of the platform
+  Vec3<T> q_b[6];  // and of the base
+  Vec3<T> S[6];    // legs, base joint to platform joint (Eq. 6)
+  Vec3<T> k[6];    // universal axes
 
   template <class D> Geometry(const Design<D>& d, const Pose<T>& platform, const Pose<T>& base) {
     const Vec3<T> t = platform.t - base.t;

@@ -63,7 +63,7 @@ struct JointAngles {
               const Vec3<double> (&neutral_base)[6], const Vec3<double> (&neutral_platform)[6]) {
     for (int i = 0; i < 6; ++i) {
       const Vec3<double> n_b = base.R * neutral_base[i], n_p = platform.R * neutral_platform[i];
-      const Vec3<double> &S = g.S[i], &k = g.k[i];
+      const Vec3<double>&S = g.S[i], &k = g.k[i];
       const Vec3<double> from = cross(k, n_b), to = cross(k, S);  // the joint's moving axis y, neutral and now
       first[i] = std::atan2(dot(k, cross(from, to)), dot(from, to));
       second[i] = std::atan2(dot(k, S), norm(to)) - std::atan2(dot(k, n_b), norm(from));

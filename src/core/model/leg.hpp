@@ -13,10 +13,10 @@ namespace flexapod {
 
 /// A leg's length, axes and obliquity.
 template <class T> struct LegAxes {
-  T L, u;       // length and its reciprocal
+  T L, u;        // length and its reciprocal
   Mat3<T> axes;  // rows s, y, z in the axes of the vectors given
-  T cosecant;   // of the angle between leg and universal axis
-  T tau;        // its cotangent; zero in the paper's model
+  T cosecant;    // of the angle between leg and universal axis
+  T tau;         // its cotangent; zero in the paper's model
 
   /// S: vector from base joint to platform joint (Eq. 6); k: the universal joint's axis in the base.
   template <class U> LegAxes(const Vec3<T>& S, const Vec3<U>& k, Joint joint) {

@@ -1,9 +1,9 @@
 // Free vibration about a pose (Eq. 5), and how the frequencies depend on the pose and on the design.
 #pragma once
 
+#include "decomposition/svd_jacobi.hpp"
 #include "model/displacement.hpp"
 #include "model/equations.hpp"
-#include "decomposition/svd_jacobi.hpp"
 
 namespace flexapod {
 
@@ -42,7 +42,8 @@ inline Modes natural_modes(const Machine<double>& machine, const Geometry<double
 /// v^T H K H^T v - lambda v^T J_p v for a mode's v and lambda = omega^2. Its derivative by anything, at fixed v and
 /// lambda, is that of lambda (for a mode that is not repeated), since v^T J_p v = 1.
 template <class T, class D, class U>
-T rayleigh_residual(const Machine<D>& machine, const Mat6<T>& J, const Mat6<T>& H, const Vec6<U>& shape, const U& lambda) {
+T rayleigh_residual(const Machine<D>& machine, const Mat6<T>& J, const Mat6<T>& H, const Vec6<U>& shape,
+                    const U& lambda) {
   Vec6<T> v;
   for (int i = 0; i < 6; ++i) v[i] = T(shape[i]);
   const Vec6<T> stretch = transposed(H, v);

@@ -6,8 +6,8 @@
 namespace flexapod {
 
 template <class T> struct Pose {
-  Vec3<T> t;                            // reference point, m
-  Mat3<T> R = Mat3<T>::identity();      // rotation from body to inertial axes
+  Vec3<T> t;                        // reference point, m
+  Mat3<T> R = Mat3<T>::identity();  // rotation from body to inertial axes
 };
 
 /// 24 scalars in this order; an array of 24 is a motion.
@@ -45,10 +45,12 @@ struct Turn {
   explicit Turn(double angle2) {
     if (angle2 < 0.25) {  // the first terms left out are below 1e-17
       const double s = angle2;
+      // clang-format off
       sine = 1.0 - s / 6.0 * (1.0 - s / 20.0 * (1.0 - s / 42.0 * (1.0 - s / 72.0 * (1.0 - s / 110.0 *
              (1.0 - s / 156.0 * (1.0 - s / 210.0))))));
       versine = 0.5 * (1.0 - s / 12.0 * (1.0 - s / 30.0 * (1.0 - s / 56.0 * (1.0 - s / 90.0 * (1.0 - s / 132.0 *
                 (1.0 - s / 182.0))))));
+      // clang-format on
       return;
     }
     const double half = 0.5 * std::sqrt(angle2), sinc = half > 0 ? std::sin(half) / half : 1.0;

@@ -25,7 +25,7 @@ LegReactions<T> leg_reactions(const Leg<T>& parts, const LegInertia<T>& in, cons
   const Vec3<T> f_u = in.m_u * end.a_p + cross(A, in.c_u) + cross(w, cross(w, in.c_u));
   const Vec3<T> N_d = cross(in.c_d, end.a_b) + in.J_d * A + cross(w, in.J_d * w);
   const Vec3<T> N_u = cross(in.c_u, end.a_p) + in.J_u * A + cross(w, in.J_u * w);
-  const Vec3<T> upper = f_u - load.force;     // on the upper part by the lower part
+  const Vec3<T> upper = f_u - load.force;      // on the upper part by the lower part
   const Vec3<T> at_joint = N_u + load.moment;  // and its moment about the platform joint
   const auto lever = [&](double fraction) { return cross(Vec3<T>(fraction * leg.L, T(0.0), T(0.0)), upper); };
   const auto out = [&](const Vec3<T>& v) { return transposed(leg.axes, v); };
@@ -54,8 +54,7 @@ inline Reactions reactions(const Machine<double>& machine, const Motion<double>&
     const LegAxes<double> leg(g.S[i], g.k[i], machine.joint);
     const LegEnds<double> end = leg_ends(machine, g, leg, i, platform, base);
     const LegMotion<double> motion(leg, end, machine.joint);
-    result.leg[i] =
-        leg_reactions(machine.design.leg[i], machine.inertia[i], leg, end, motion, leg_force[i], section);
+    result.leg[i] = leg_reactions(machine.design.leg[i], machine.inertia[i], leg, end, motion, leg_force[i], section);
     const LegReactions<double>& r = result.leg[i];
     result.base_force += r.universal_force;
     result.base_moment += cross(g.q_b[i], r.universal_force) + r.universal_moment;

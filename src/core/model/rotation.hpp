@@ -53,8 +53,10 @@ inline Vec3<double> rotation_vector_rate(const Vec3<double>& theta, const Vec3<d
   const double s = dot(theta, theta);
   double c;
   if (s < 0.25) {  // Bernoulli numbers B_2k / (2k)!: the first term left out is below 1e-17
+    // clang-format off
     c = 1.0 / 12.0 + s * (1.0 / 720.0 + s * (1.0 / 30240.0 + s * (1.0 / 1209600.0 + s * (1.0 / 47900160.0 +
         s * (691.0 / 1307674368000.0 + s * (1.0 / 74724249600.0))))));
+    // clang-format on
   } else {
     const double angle = std::sqrt(s);
     c = 1.0 / s - 0.5 / (angle * std::tan(0.5 * angle));
@@ -110,8 +112,8 @@ struct RollPitchYaw {
                          -std::sin(angle.y));
     const Vec3<double> w_z = rate.z * z, w_zy = w_z + rate.y * y;
     w = w_zy + rate.x * x;
-    alpha = acceleration.z * z + acceleration.y * y + acceleration.x * x + cross(w_z, rate.y * y) +
-            cross(w_zy, rate.x * x);
+    alpha =
+        acceleration.z * z + acceleration.y * y + acceleration.x * x + cross(w_z, rate.y * y) + cross(w_zy, rate.x * x);
   }
 };
 

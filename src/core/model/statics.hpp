@@ -67,8 +67,7 @@ enum class Rest { found, singular, not_found };
 
 /// Newton on the residual from a start pose, with exact derivatives and step halving. The pose is left where the
 /// search ended.
-inline Rest settle(const Machine<double>& machine, const Pose<double>& base, const RestLoad& load,
-                   Pose<double>& pose) {
+inline Rest settle(const Machine<double>& machine, const Pose<double>& base, const RestLoad& load, Pose<double>& pose) {
   double size = 0, force = 0;  // scales of length and force, to compare rows and to limit steps
   for (int i = 0; i < 6; ++i) {
     size += norm(machine.design.p[i]) / 6.0;

@@ -89,17 +89,22 @@ template <class T> struct Cholesky {
 /// for another, as those of a Cholesky factor do. NaN where m is not positive definite.
 inline Vec6<double> solve_positive(Mat6<double> m, Vec6<double> b) {
   double reciprocal[6], least = m[0][0];
-  FLEXAPOD_UNROLL for (int j = 0; j < 6; ++j) {
+  FLEXAPOD_UNROLL
+  for (int j = 0; j < 6; ++j) {
     least = std::min(least, m[j][j]);
     reciprocal[j] = 1.0 / m[j][j];
-    FLEXAPOD_UNROLL for (int i = j + 1; i < 6; ++i) {
+    FLEXAPOD_UNROLL
+    for (int i = j + 1; i < 6; ++i) {
       const double factor = m[i][j] * reciprocal[j];
-      FLEXAPOD_UNROLL for (int k = j + 1; k <= i; ++k) m[i][k] -= factor * m[k][j];
+      FLEXAPOD_UNROLL
+      for (int k = j + 1; k <= i; ++k) m[i][k] -= factor * m[k][j];
       b[i] -= factor * b[j];
     }
   }
-  FLEXAPOD_UNROLL for (int i = 5; i >= 0; --i) {
-    FLEXAPOD_UNROLL for (int k = i + 1; k < 6; ++k) b[i] -= m[k][i] * b[k];
+  FLEXAPOD_UNROLL
+  for (int i = 5; i >= 0; --i) {
+    FLEXAPOD_UNROLL
+    for (int k = i + 1; k < 6; ++k) b[i] -= m[k][i] * b[k];
     b[i] *= reciprocal[i];
   }
   if (!(least > 0)) b = Vec6<double>{{NAN, NAN, NAN, NAN, NAN, NAN}};

@@ -15,7 +15,8 @@
 namespace flexapod {
 
 template <class T> struct is_scalar : std::is_arithmetic<T> {};
-template <class T> concept Scalar = is_scalar<std::remove_cvref_t<T>>::value;
+template <class T>
+concept Scalar = is_scalar<std::remove_cvref_t<T>>::value;
 
 /// The type of a product of two scalars: double with Dual gives Dual.
 template <class A, class B> using product_t = decltype(std::declval<A>() * std::declval<B>());

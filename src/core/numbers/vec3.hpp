@@ -72,8 +72,12 @@ template <class T> Sym3<T> operator+(const Sym3<T>& a, const Sym3<T>& b) {
 }
 /// Parallel axes: what a mass m at r adds to the inertia about the origin, m (r^2 E - r r^T).
 template <class T> Sym3<T> point_inertia(const T& m, const Vec3<T>& r) {
-  return {m * (r.y * r.y + r.z * r.z), m * (r.x * r.x + r.z * r.z), m * (r.x * r.x + r.y * r.y),
-          -m * r.x * r.y,              -m * r.x * r.z,              -m * r.y * r.z};
+  return {m * (r.y * r.y + r.z * r.z),
+          m * (r.x * r.x + r.z * r.z),
+          m * (r.x * r.x + r.y * r.y),
+          -m * r.x * r.y,
+          -m * r.x * r.z,
+          -m * r.y * r.z};
 }
 /// R I R^T for a rotation with body axes as columns.
 template <class A, class B> Sym3<product_t<A, B>> rotate(const Mat3<A>& R, const Sym3<B>& I) {

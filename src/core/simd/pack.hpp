@@ -99,22 +99,22 @@ template <class V, int N> struct Pack {
   FLEXAPOD_INLINE Pack& operator-=(const Pack& b) { return *this = *this - b; }
   FLEXAPOD_INLINE Pack& operator*=(const Pack& b) { return *this = *this * b; }
 
-#define FLEXAPOD_OPERATOR(op)                                                 \
-  friend FLEXAPOD_INLINE Pack operator op(const Pack& a, const Pack& b) {     \
-    Pack r;                                                                   \
-    for (int i = 0; i < N; ++i) r.v[i] = a.v[i] op b.v[i];                    \
-    return r;                                                                 \
+#define FLEXAPOD_OPERATOR(op)                                             \
+  friend FLEXAPOD_INLINE Pack operator op(const Pack& a, const Pack& b) { \
+    Pack r;                                                               \
+    for (int i = 0; i < N; ++i) r.v[i] = a.v[i] op b.v[i];                \
+    return r;                                                             \
   }
   FLEXAPOD_OPERATOR(+)
   FLEXAPOD_OPERATOR(-)
   FLEXAPOD_OPERATOR(*)
   FLEXAPOD_OPERATOR(/)
 #undef FLEXAPOD_OPERATOR
-#define FLEXAPOD_COMPARISON(op)                                                  \
-  friend FLEXAPOD_INLINE Mask<V, N> operator op(const Pack& a, const Pack& b) {  \
-    Mask<V, N> r;                                                                \
-    for (int i = 0; i < N; ++i) r.m[i] = a.v[i] op b.v[i];                       \
-    return r;                                                                    \
+#define FLEXAPOD_COMPARISON(op)                                                 \
+  friend FLEXAPOD_INLINE Mask<V, N> operator op(const Pack& a, const Pack& b) { \
+    Mask<V, N> r;                                                               \
+    for (int i = 0; i < N; ++i) r.m[i] = a.v[i] op b.v[i];                      \
+    return r;                                                                   \
   }
   FLEXAPOD_COMPARISON(<)
   FLEXAPOD_COMPARISON(>)

@@ -8,6 +8,8 @@ namespace flexapod::dop853 {
 inline constexpr int stages = 12;    // of a step; stage 12 is the derivative at its end, first stage of the next step
 inline constexpr int extended = 16;  // with the three that only the interpolant needs
 
+// clang-format off
+
 /// Nodes.
 inline constexpr double c[extended] = {
     0, 0.05260015195876773, 0.0789002279381516, 0.1183503419072274, 0.2816496580927726, 0.3333333333333333,
@@ -66,5 +68,7 @@ inline constexpr double d[4][extended] = {
      93.40532418362432, -37.45832313645163, 104.0996495089623, 29.8402934266605, -43.53345659001114,
      96.32455395918828, -39.17726167561544, -149.72683625798564},
 };
+
+// clang-format on
 
 }  // namespace flexapod::dop853

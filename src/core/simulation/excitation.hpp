@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "simd/isa_vector.hpp"
 #include "model/rotation.hpp"
+#include "simd/isa_vector.hpp"
 
 namespace flexapod {
 
@@ -177,7 +177,8 @@ class Excitation {
   }
   bool empty() const { return terms_.empty(); }
   bool uses(int first, int last) const {
-    return std::any_of(terms_.begin(), terms_.end(), [&](const Term& t) { return t.channel >= first && t.channel < last; });
+    return std::any_of(terms_.begin(), terms_.end(),
+                       [&](const Term& t) { return t.channel >= first && t.channel < last; });
   }
 
   /// All channels at t, an instant of a step that has `inside` between its ends.
@@ -203,7 +204,8 @@ class Excitation {
   void notes(List<double>& corners, double& spacing) const {
     for (size_t i = 0; i < terms_.size(); ++i) {
       const Term& term = terms_[i];
-      for (const double t : {term.start, term.start + term.rise, term.stop, term.stop + term.fall}) corners.push_back(t);
+      for (const double t : {term.start, term.start + term.rise, term.stop, term.stop + term.fall})
+        corners.push_back(t);
       if (term.kind == TermKind::chirp) corners.push_back(term.start + term.data[3]);
       if (term.kind == TermKind::pieces) pieces_[i].notes(term.start, corners, spacing);
     }
@@ -217,9 +219,9 @@ class Excitation {
 
 /// How the base moves from its pose at rest.
 struct BaseMotion {
-  Motion<double> motion;       // inertial axes
-  Vec3<double> travel;         // of its reference point from rest, inertial axes
-  Quaternion turn;             // from rest, inertial axes: R = turn R_rest
+  Motion<double> motion;  // inertial axes
+  Vec3<double> travel;    // of its reference point from rest, inertial axes
+  Quaternion turn;        // from rest, inertial axes: R = turn R_rest
 
   BaseMotion(const Pose<double>& rest, const Jet (&channel)[6], bool rotates, bool roll_pitch_yaw) {
     const auto three = [&](int first, double Jet::* part) {

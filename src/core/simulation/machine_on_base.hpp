@@ -16,12 +16,12 @@ namespace flexapod {
 struct RigInput {
   Design<double> design;
   Joint joint;
-  Pose<double> platform, base;  // at rest
-  Vec6<double> leg_force;       // at that pose with no command, N
-  Vec6<double> wrench;          // constant part of the external wrench, platform axes
-  bool roll_pitch_yaw;          // the base's rotation channels: else a rotation vector
-  bool works;                   // integrate works beside the motion
-  bool carried;                 // starts moving rigidly with the base; else from the two below
+  Pose<double> platform, base;          // at rest
+  Vec6<double> leg_force;               // at that pose with no command, N
+  Vec6<double> wrench;                  // constant part of the external wrench, platform axes
+  bool roll_pitch_yaw;                  // the base's rotation channels: else a rotation vector
+  bool works;                           // integrate works beside the motion
+  bool carried;                         // starts moving rigidly with the base; else from the two below
   Vec6<double> displacement, velocity;  // of the platform from rest at t = 0 (translation, rotation)
 };
 
@@ -35,13 +35,17 @@ class Rig {
   double inside = 0;  // an instant between the corners of the excitations that the present time lies between
 
   Rig(const RigInput& input, const Excitation& base, const Excitation& wrench, const Excitation& command)
-      : in_(input), machine_(without_gravity(input.design), input.joint), legs_(machine_), base_(base), wrench_(wrench),
-        command_(command), rotates_(base.uses(3, 6)) {
+      : in_(input),
+        machine_(without_gravity(input.design), input.joint),
+        legs_(machine_),
+        base_(base),
+        wrench_(wrench),
+        command_(command),
+        rotates_(base.uses(3, 6)) {
     const Mat3<double> to_base = transpose(in_.base.R);
     rest_ = {to_base * (in_.platform.t - in_.base.t), to_base * in_.platform.R};
     for (const auto& leg : in_.design.leg) friction_ = friction_ || leg.C_p > 0 || leg.C_u > 0 || leg.C_s > 0;
-    for (int g = 0; g < leg_groups; ++g)
-      places_.group[g].q_b = legs_.group[g].b, places_.group[g].k = legs_.group[g].k;
+    for (int g = 0; g < leg_groups; ++g) places_.group[g].q_b = legs_.group[g].b, places_.group[g].k = legs_.group[g].k;
     set_chart(Quaternion());
     force_ = PerLeg(in_.leg_force);
   }
@@ -53,8 +57,7 @@ class Rig {
     const Mat3<double> R_b = b.motion.pose.R, to_rest = transpose(in_.base.R);
     const Vec3<double> back = b.turn.inverse().resolved(to_rest).log();  // the base's turn undone, base axes
     const Vec3<double> d = transposed(R_b, in_.displacement.top() - b.travel) + turned_change(back, rest_.t);
-    const Vec3<double> theta =
-        (b.turn.inverse() * Quaternion::exp(in_.displacement.bottom())).resolved(to_rest).log();
+    const Vec3<double> theta = (b.turn.inverse() * Quaternion::exp(in_.displacement.bottom())).resolved(to_rest).log();
     const Vec3<double> arm = in_.platform.t + in_.displacement.top() - b.motion.pose.t;
     const Vec3<double> v = transposed(R_b, in_.velocity.top() - b.motion.velocity_at(arm));
     const Vec3<double> w = transposed(R_b, in_.velocity.bottom() - b.motion.w);
@@ -126,8 +129,8 @@ class Rig {
     }
     const Vec6<double> x = relative(y);
     const Vec3<double> a = R_b * now.platform.a + in_.design.gravity, alpha = R_b * now.platform.alpha;
-    const Vec3<double> turned[6] = {in_.base.R * x.top(),  in_.base.R * x.bottom(), in_.base.R * now.v,
-                                    in_.base.R * now.w,    a,                       alpha};
+    const Vec3<double> turned[6] = {
+        in_.base.R * x.top(), in_.base.R * x.bottom(), in_.base.R * now.v, in_.base.R * now.w, a, alpha};
     double* to = out + 18;
     for (const Vec3<double>& v : turned)
       for (const double c : {v.x, v.y, v.z}) *to++ = c;
@@ -147,7 +150,7 @@ class Rig {
     Vec3<double> v, w;        // as seen from the base
     LegPlaces at;
     PerLeg leg_force;
-    Vec6<double> wrench;      // platform axes
+    Vec6<double> wrench;  // platform axes
     Jet command[6];
   };
 
@@ -180,8 +183,7 @@ class Rig {
       for (int i = 0; i < 6; ++i) now.wrench[i] += channel[i].x;
     }
     const Vec6<double> wrench = external_wrench(now.platform.pose.R, now.wrench);
-    const Vec6<double> acceleration =
-        forward_dynamics(legs_, now.at, now.platform, now.frame, now.leg_force, wrench);
+    const Vec6<double> acceleration = forward_dynamics(legs_, now.at, now.platform, now.frame, now.leg_force, wrench);
     now.platform.a = acceleration.top(), now.platform.alpha = acceleration.bottom();
     return now;
   }
@@ -243,7 +245,7 @@ class Rig {
   Excitation base_, wrench_, command_;
   bool rotates_, friction_ = false;
   Pose<double> rest_;  // of the platform, base axes
-  LegPlaces places_;    // what of them does not change
+  LegPlaces places_;   // what of them does not change
   Quaternion chart_;
   Mat3<double> R_chart_;
   Vec3<double> d_chart_;

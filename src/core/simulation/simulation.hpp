@@ -105,7 +105,8 @@ class Simulation {
   }
 
   /// From t to the next corner.
-  Outcome go(double t, double corner, const State& start, const std::atomic<bool>& stop, std::atomic<double>& progress) {
+  Outcome go(double t, double corner, const State& start, const std::atomic<bool>& stop,
+             std::atomic<double>& progress) {
     const auto f = rates();
     rk_.begin(t, start, f);
     peaks_ = peaks_with(start, 0.0);
@@ -214,10 +215,8 @@ class Simulation {
     double a = low + std::max(best - 1, 0) * width, b = low + std::min(best + 1, parts) * width;
     for (int i = 0; i < 80; ++i) {
       const double third = (b - a) / 3.0;
-      if (value(a + third) < value(b - third))
-        b -= third;
-      else
-        a += third;
+      if (value(a + third) < value(b - third)) b -= third;
+      else a += third;
     }
     return 0.5 * (a + b);
   }
@@ -274,8 +273,8 @@ class Simulation {
   double size_ = 0, slowest_, fastest_, max_step_, next_step_ = 0, time_ = 0;
   Peaks peaks_;
   double last_error_ = 1.0;
-  double side_ = 0;                      // sign of det H
-  Vec3<double> S_[6];                    // legs at the end of the last step
+  double side_ = 0;    // sign of det H
+  Vec3<double> S_[6];  // legs at the end of the last step
   size_t next_sample_ = 0;
 };
 

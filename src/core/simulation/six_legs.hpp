@@ -5,8 +5,8 @@
 
 #include "model/energy.hpp"
 #include "model/equations.hpp"
-#include "simd/pack.hpp"
 #include "model/reactions.hpp"
+#include "simd/pack.hpp"
 
 namespace flexapod {
 
@@ -69,8 +69,7 @@ struct SixLegs {
     for (int g = 0; g < leg_groups; ++g)
       group[g] = {packed<Leg<Lanes>>(g, m.design.leg, Leg<double>{}),
                   packed<LegInertia<Lanes>>(g, m.inertia, LegInertia<double>{}),
-                  packed<Vec3<Lanes>>(g, m.design.b, m.design.b[0]),
-                  packed<Vec3<Lanes>>(g, m.design.k, m.design.k[0]),
+                  packed<Vec3<Lanes>>(g, m.design.b, m.design.b[0]), packed<Vec3<Lanes>>(g, m.design.k, m.design.k[0]),
                   packed<Vec3<Lanes>>(g, m.design.p, m.design.p[0])};
   }
 };

@@ -47,8 +47,8 @@ struct Run {
 
 struct End {
   int outcome;
-  double time;                            // reached
-  double last[motion_size];               // the platform's motion then, inertial axes
+  double time;                             // reached
+  double last[motion_size];                // the platform's motion then, inertial axes
   double accepted, rejected, evaluations;  // steps, and calls of the equations of motion
 };
 

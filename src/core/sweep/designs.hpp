@@ -12,7 +12,8 @@ namespace flexapod {
 using sweep_task::DesignTask;
 
 /// B = L^-1 H K^1/2 in the platform's axes; `legs`: lanes where every leg has a length and lies across its axis.
-template <class T> Mat6<T> scaled_force_transformation(const Machine<T>& machine, const Pose<T>& pose, mask_t<T>& legs) {
+template <class T>
+Mat6<T> scaled_force_transformation(const Machine<T>& machine, const Pose<T>& pose, mask_t<T>& legs) {
   const Geometry<T> g(machine.design, Pose<T>(), Pose<T>{-transposed(pose.R, pose.t), transpose(pose.R)});
   SpatialInertia<T> J = platform_inertia(machine.design, Mat3<T>::identity());
   Mat6<T> B;

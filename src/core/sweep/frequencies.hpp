@@ -25,7 +25,8 @@ template <class T> struct SweepModes {
     if constexpr (all) all_six(b, value, failed);
     else value[0] = lowest(b, T(0.0), failed);
     failed = failed & (!bad);
-    if (any(failed)) [[unlikely]] repeat(failed, scale, value);
+    if (any(failed)) [[unlikely]]
+      repeat(failed, scale, value);
     for (int i = 0; i < count; ++i) {
       const T omega = unless(bad, sqrt(scale * value[i]));
       if (all) rows.put(task.omega_, omega, i, 6);
@@ -43,7 +44,8 @@ template <class T> struct SweepModes {
     T value[6];
     value[0] = lowest(b, T(0.0), open_low), value[5] = highest(b, open_high);
     const auto failed = (open_low | open_high) & (!bad);
-    if (any(failed)) [[unlikely]] repeat_H(failed, value);
+    if (any(failed)) [[unlikely]]
+      repeat_H(failed, value);
     rows.put(task.cond_H_, unless(bad, sqrt(value[5] / value[0])));
     return singular(value[0] < 1e-26 * value[5], dynamics.fault);
   }
@@ -149,7 +151,8 @@ template <class T> class Sweep {
     }
     if (task.width == 6)
       for (int c = 3; c < 6; ++c)
-        if (any(abs(Part::load(rows[c])) > 1e6)) [[unlikely]] wind_down(rows[c]);
+        if (any(abs(Part::load(rows[c])) > 1e6)) [[unlikely]]
+          wind_down(rows[c]);
   }
   /// Angles of very many turns to within one.
   static FLEXAPOD_COLD void wind_down(double (&angles)[Part::lanes]) {

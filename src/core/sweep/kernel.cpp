@@ -11,8 +11,8 @@ using Lanes = Pack<Vector, width>;
 
 bool runs_here() {
 #if defined(__AVX512F__)
-  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-         __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd");
+  return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+         __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd");
 #elif defined(__AVX2__)
   return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 #else
@@ -28,8 +28,10 @@ double peak(size_t rounds) {
   Vector x[chains];
   const Vector a = 0.999999 - Vector{}, b = 1e-6 - Vector{};
   for (int i = 0; i < chains; ++i) x[i] = i + Vector{};
-  for (size_t r = 0; r < rounds; ++r)
-    FLEXAPOD_UNROLL for (int i = 0; i < chains; ++i) x[i] = x[i] * a + b;
+  for (size_t r = 0; r < rounds; ++r) {
+    FLEXAPOD_UNROLL
+    for (int i = 0; i < chains; ++i) x[i] = x[i] * a + b;
+  }
   Vector sum = x[0];
   for (int i = 1; i < chains; ++i) sum += x[i];
   double lane[sizeof(Vector) / sizeof(double)];

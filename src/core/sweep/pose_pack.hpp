@@ -2,8 +2,8 @@
 // and inertia are constants. The base's frame is the inertial one.
 #pragma once
 
-#include "simd/elementary.hpp"
 #include "model/equations.hpp"
+#include "simd/elementary.hpp"
 #include "sweep/task.hpp"
 
 namespace flexapod {
@@ -11,7 +11,7 @@ namespace flexapod {
 /// What of a machine is the same at all poses.
 struct SweptMachine {
   Machine<double> machine;
-  Machine<double> weightless;  // gravity enters as an acceleration of platform and base
+  Machine<double> weightless;         // gravity enters as an acceleration of platform and base
   SpatialInertia<double> J_platform;  // platform axes
   double root_K[6];
   double size;  // of the platform: makes rows of forces and of moments comparable
@@ -67,8 +67,7 @@ template <class T> struct Stance {
   Pose<T> read(const double (*rows)[T::lanes], int width) {
     const auto row = [&](int i) { return T::load(rows[i]); };
     const Vec3<T> t(row(0), row(1), row(2));
-    if (width == 12)
-      return {t, {{{row(3), row(4), row(5)}, {row(6), row(7), row(8)}, {row(9), row(10), row(11)}}}};
+    if (width == 12) return {t, {{{row(3), row(4), row(5)}, {row(6), row(7), row(8)}, {row(9), row(10), row(11)}}}};
     const SinCos<T> r(row(3)), p(row(4)), y(row(5));
     const T sr = r.sin, cr = r.cos, sp = p.sin, cp = p.cos, sy = y.sin, cy = y.cos;
     roll_axis = {cy * cp, sy * cp, -sp};

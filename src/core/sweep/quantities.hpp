@@ -2,8 +2,8 @@
 #pragma once
 
 #include "decomposition/jacobi_lanes.hpp"
-#include "model/kinematics.hpp"
 #include "decomposition/least_squares.hpp"
+#include "model/kinematics.hpp"
 #include "model/modes.hpp"
 #include "sweep/pose_pack.hpp"
 

@@ -29,8 +29,8 @@ enum Status : std::uint8_t {
 };
 
 struct Limits {
-  double neutral[2][6][3];  // leg directions in the middle of their joints: base axes, platform axes
-  double length[6][2];      // m
+  double neutral[2][6][3];                  // leg directions in the middle of their joints: base axes, platform axes
+  double length[6][2];                      // m
   double universal_angle, spherical_angle;  // rad
   double leg_distance;                      // m
 };
