@@ -182,7 +182,7 @@ def _written_in_python(run: fx.simulation.Run) -> Callable[[float, Any], Any]:
     def rates(t: float, z: Any) -> Any:
         base = run.base_motion.motion(t)
         platform = fx.Motion(fx.Pose(z[:3], Rotation.from_quat(z[3:7])), z[7:10], z[10:])
-        stretch = fx.inverse_kinematics(hexapod, platform.pose, base.pose) - unstretched
+        stretch = fx.inverse_kinematics(hexapod, platform.pose, base=base.pose) - unstretched
         a, alpha = fx.forward_dynamics(hexapod, platform, base=base, leg_force=-hexapod.legs.stiffness * stretch)
         w, q = z[10:], z[3:7]
         return np.concatenate([z[7:10], 0.5 * (w * q[3] + np.cross(w, q[:3])), [-0.5 * w @ q[:3]], a, alpha])

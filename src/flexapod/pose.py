@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,6 +12,10 @@ from flexapod.errors import FlexapodError, PoseError
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
+
+#: What a pose may be given as: six numbers are x, y, z in m and roll, pitch, yaw in rad.
+PoseLike: TypeAlias = "Pose | ArrayLike"
+MotionLike: TypeAlias = "Pose | Motion | ArrayLike"
 
 
 def vectors(value: ArrayLike, name: str, width: int = 3, error_type: type[FlexapodError] = PoseError) -> Array:

@@ -101,7 +101,7 @@ def test_equations_of_motion_as_written(joint, case, measured):
     for i, leg in enumerate(legs):
         F_s, f = leg.load(case, i)
         eta += arm(leg.q_p) @ F_s - np.concatenate([np.zeros(3), f])
-    found = fx.equations_of_motion(h, case.platform, case.base, joint=joint)
+    found = fx.equations_of_motion(h, case.platform, base=case.base, joint=joint)
     # Sums of some hundred products; eta's parts cancel tenfold.
     measured("theory/J_p", relative(found.J_p, J_p), 1e-12)
     measured("theory/J_b", relative(found.J_b, J_b), 1e-12)

@@ -69,7 +69,15 @@ def test_a_matrix_that_is_nearly_a_rotation_is_refused(off, row, column):
 
 
 #: Of these, the errors are ArgumentErrors; of poses, PoseErrors.
-ARGUMENTS = ("joint is 'ball'", "leg_force", "force", "moment")
+ARGUMENTS = (
+    "joint is 'ball'",
+    "leg_force",
+    "force",
+    "moment",
+    "lengths",
+    "unstretched_length",
+    "characteristic_length",
+)
 
 
 @pytest.mark.parametrize(
@@ -83,22 +91,37 @@ ARGUMENTS = ("joint is 'ball'", "leg_force", "force", "moment")
         (lambda: fx.forward_dynamics(HEXAPOD, HOME, force=[INF, 0, 0]), ["force", "infinity", "finite"]),
         (lambda: fx.forward_dynamics(HEXAPOD, HOME, moment=[0, 0]), ["moment", "(2,)", "3 numbers"]),
         (
-            lambda: fx.equations_of_motion(HEXAPOD, fx.Pose(np.ones((2, 3))), fx.Pose(np.zeros((3, 3)))),
+            lambda: fx.equations_of_motion(HEXAPOD, fx.Pose(np.ones((2, 3))), base=fx.Pose(np.zeros((3, 3)))),
             ["pose", "(2,)", "base", "(3,)", "equal or 1"],
         ),
-        (lambda: fx.condition_number(HEXAPOD, HOME, -1.0), ["characteristic_length is -1.0", "> 0 m"]),
-        (lambda: fx.condition_number(HEXAPOD, HOME, NAN), ["characteristic_length is nan", "> 0 m"]),
-        (lambda: fx.describe_modes(HEXAPOD, fx.Pose(np.ones((2, 3)))), ["one pose", "(2,)", "Index it"]),
-        (lambda: fx.frequency_sensitivity(HEXAPOD, fx.Pose(np.ones((2, 3)))), ["one pose", "(2,)", "Index it"]),
-        (lambda: fx.linearise(HEXAPOD, fx.Pose(np.ones((2, 3)))), ["one pose", "(2,)", "Index it"]),
+        (
+            lambda: fx.condition_number(HEXAPOD, HOME, characteristic_length=-1.0),
+            ["characteristic_length", "is -1.0 m", "> 0"],
+        ),
+        (
+            lambda: fx.condition_number(HEXAPOD, HOME, characteristic_length=NAN),
+            ["characteristic_length", "is nan m", "> 0"],
+        ),
+        (
+            lambda: fx.describe_modes(HEXAPOD, fx.Pose(np.ones((2, 3)))),
+            ["pose has batch axes (2,)", "one pose is needed", "Index it"],
+        ),
+        (
+            lambda: fx.frequency_sensitivity(HEXAPOD, fx.Pose(np.ones((2, 3)))),
+            ["pose has batch axes (2,)", "one pose is needed", "Index it"],
+        ),
+        (
+            lambda: fx.linearise(HEXAPOD, fx.Pose(np.ones((2, 3)))),
+            ["pose has batch axes (2,)", "one pose is needed", "Index it"],
+        ),
         (lambda: fx.forward_kinematics(HEXAPOD, [3.0] * 5), ["lengths", "(5,)", "6 numbers"]),
         (lambda: fx.forward_kinematics(HEXAPOD, [3.0] * 5 + [NAN]), ["lengths", "NaN", "finite"]),
-        (lambda: fx.forward_kinematics(HEXAPOD, [3.0] * 6, start=[0, 0, 2]), ["start is list", "Pose"]),
+        (lambda: fx.forward_kinematics(HEXAPOD, [3.0] * 6, start=[0, 0, 2]), ["start has shape (3,)", "6 numbers"]),
         (
             lambda: fx.forward_kinematics(HEXAPOD, [3.0] * 6, start=fx.Pose(np.ones((2, 3)))),
             ["start has batch axes (2,)", "lengths, ()"],
         ),
-        (lambda: fx.static_equilibrium(HEXAPOD, [3.0] * 5), ["unstretched_length", "(5,)", "6 numbers"]),
+        (lambda: fx.static_equilibrium(HEXAPOD, [3.0] * 5), ["unstretched_length", "(5,)", "shape (6,)"]),
     ],
 )
 def test_arguments_that_do_not_fit(call, parts):

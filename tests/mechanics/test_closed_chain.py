@@ -87,7 +87,7 @@ def test_joint_reactions_agree_with_engine(name, measured):
             state.platform.pose, state.platform.velocity, state.platform.angular_velocity, linear, angular
         )
         # Section 1.0: the engine takes the prismatic pair's moment about the platform joint.
-        found = fx.joint_reactions(hexapod, motion, state.base, state.leg_force, section=1.0)
+        found = fx.joint_reactions(hexapod, motion, base=state.base, leg_force=state.leg_force, section=1.0)
         for field in expected._fields:
             # The engine names what acts on the legs; the library what the legs do to platform and base.
             sign = -1.0 if field.startswith(("spherical", "universal")) else 1.0
@@ -101,9 +101,12 @@ def test_moment_in_the_prismatic_pair_depends_on_the_section(name):
     rng = np.random.default_rng(13)
     hexapod = perturbed(fx.load(name), rng)
     state = draw_state(hexapod, rng)
-    near, far = (fx.joint_reactions(hexapod, state.platform, state.base, state.leg_force, f) for f in (0.25, 0.75))
+    near, far = (
+        fx.joint_reactions(hexapod, state.platform, base=state.base, leg_force=state.leg_force, section=f)
+        for f in (0.25, 0.75)
+    )
     s, _, _ = _leg_vectors(hexapod, state.platform, state.base)
-    lengths = fx.inverse_kinematics(hexapod, state.platform.pose, state.base.pose)
+    lengths = fx.inverse_kinematics(hexapod, state.platform.pose, base=state.base.pose)
     lever = 0.5 * lengths[:, None] * np.cross(s, near.prismatic_force)
     assert relative(near.prismatic_moment - far.prismatic_moment, lever) < 1e-12  # the same sums in another order
 
@@ -114,7 +117,7 @@ def test_energies_agree_with_engine(name, measured):
     for _ in range(10):
         hexapod = perturbed(fx.load(name), rng)
         state, chain = draw_state(hexapod, rng), ClosedChain(hexapod)
-        found = fx.energy(hexapod, state.platform, state.base)
+        found = fx.energy(hexapod, state.platform, base=state.base)
         # Sums of positive terms (or nearly so: the paper's leg inertias are not) of a few dozen products.
         expected = [chain.kinetic_energy(state.platform, state.base), chain.dissipation(state.platform, state.base)]
         measured("motion/energies", apart([found.kinetic, found.dissipation], expected), 1e-12)

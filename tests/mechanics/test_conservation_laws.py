@@ -49,14 +49,14 @@ def test_rate_of_energy_is_power(joint, case, measured):
     hexapod, base = case.hexapod, case.base
     platform = in_motion(case, joint)
     spring = 0.4 * case.leg_force
-    rates = fx.leg_rates(hexapod, platform, base)
+    rates = fx.leg_rates(hexapod, platform, base=base)
     unstretched = rates.length + spring / hexapod.legs.stiffness
 
     def energy(t):
-        e = fx.energy(hexapod, later(platform, t), later(base, t), unstretched, joint=joint)
+        e = fx.energy(hexapod, later(platform, t), base=later(base, t), unstretched_length=unstretched, joint=joint)
         return e.kinetic + e.gravitational + e.elastic
 
-    reaction = fx.joint_reactions(hexapod, platform, base, case.leg_force, joint=joint)
+    reaction = fx.joint_reactions(hexapod, platform, base=base, leg_force=case.leg_force, joint=joint)
     R = platform.pose.matrix
     powers = [
         (case.leg_force - spring) @ rates.rate,
@@ -64,7 +64,7 @@ def test_rate_of_energy_is_power(joint, case, measured):
         (R @ case.moment) @ platform.angular_velocity,
         -reaction.base_force @ base.velocity,
         -reaction.base_moment @ base.angular_velocity,
-        -fx.energy(hexapod, platform, base, joint=joint).dissipation,
+        -fx.energy(hexapod, platform, base=base, joint=joint).dissipation,
     ]
     if joint == "spin_free":
         powers.append(_power_without_work(case, reaction))
@@ -81,7 +81,7 @@ def _power_without_work(case: Situation, reaction: fx.mechanics.Reactions) -> fl
     W.s = 0 is no law of any joint on the base: the moment along s that it takes does no work on the leg, which does
     not turn about s, but would do some on the base, which does. Friction's own part of the moment is real.
     """
-    s = fx.force_transformation(case.hexapod, case.platform.pose, case.base.pose)[:3].T
+    s = fx.force_transformation(case.hexapod, case.platform.pose, base=case.base.pose)[:3].T
     base_spin = s @ case.base.angular_velocity
     friction = -case.hexapod.legs.damping.universal * base_spin
     return float((np.sum(reaction.universal_moment * s, axis=1) - friction) @ base_spin)
@@ -93,10 +93,10 @@ def _power_without_work(case: Situation, reaction: fx.mechanics.Reactions) -> fl
 @given(case=situations())
 def test_leg_rates_are_derivatives_of_lengths(case, measured):
     hexapod, platform, base = case.hexapod, case.platform, case.base
-    found = fx.leg_rates(hexapod, platform, base)
+    found = fx.leg_rates(hexapod, platform, base=base)
     step = 1e-3 * time_scale(hexapod, platform, base)
-    length = difference(lambda t: fx.leg_rates(hexapod, later(platform, t), later(base, t)).length, step)
-    rate = difference(lambda t: fx.leg_rates(hexapod, later(platform, t), later(base, t)).rate, step)
+    length = difference(lambda t: fx.leg_rates(hexapod, later(platform, t), base=later(base, t)).length, step)
+    rate = difference(lambda t: fx.leg_rates(hexapod, later(platform, t), base=later(base, t)).rate, step)
     # Fourth order with a step of 1e-3: 1e-12 times the fifth derivative's factor, some hundreds; rounding eps / 1e-3.
     measured("laws/leg-rates", [relative(found.rate, length), relative(found.acceleration, rate)], 1e-9)
 
@@ -105,9 +105,9 @@ def test_leg_rates_are_derivatives_of_lengths(case, measured):
 def test_H_transposed_is_the_leg_rates(case, measured):
     """Virtual work: the legs' forces and the platform's wrench do the same work."""
     hexapod = case.hexapod
-    H = fx.force_transformation(hexapod, case.platform.pose, case.base.pose)
+    H = fx.force_transformation(hexapod, case.platform.pose, base=case.base.pose)
     twist = np.concatenate([case.platform.velocity, case.platform.angular_velocity])
-    rate = fx.leg_rates(hexapod, case.platform, case.base.pose).rate  # base at rest
+    rate = fx.leg_rates(hexapod, case.platform, base=case.base.pose).rate  # base at rest
     # Sums of six products whose parts cancel a hundredfold at most.
     measured("laws/virtual-work", relative(H.T @ twist, rate), 1000 * EPS)
 
@@ -118,7 +118,7 @@ def test_inverse_dynamics_undoes_forward_dynamics(joint, case):
     platform = in_motion(case, joint)
     wrench = {"force": case.force, "moment": case.moment}
     found = fx.inverse_dynamics(case.hexapod, platform, base=case.base, joint=joint, **wrench)
-    H = fx.force_transformation(case.hexapod, platform.pose, case.base.pose)
+    H = fx.force_transformation(case.hexapod, platform.pose, base=case.base.pose)
     J = fx.equations_of_motion(case.hexapod, platform, base=case.base, joint=joint).J_p
     # Rounding of the wrench, grown by the conditions of J_p and H.
     assert relative(found, case.leg_force) < 100 * EPS * np.linalg.cond(H) * np.linalg.cond(J)
@@ -161,7 +161,7 @@ def test_kinetic_energy_is_half_of_twist_times_inertia(joint, case, measured):
     still = fx.Motion(case.base.pose)
     J = fx.equations_of_motion(case.hexapod, case.platform, base=still, joint=joint).J_p
     twist = np.concatenate([case.platform.velocity, case.platform.angular_velocity])
-    found = fx.energy(case.hexapod, case.platform, still, joint=joint).kinetic
+    found = fx.energy(case.hexapod, case.platform, base=still, joint=joint).kinetic
     # Sums of squares: no cancellation to speak of.
     measured("laws/kinetic-energy", apart(found, twist @ J @ twist / 2), 1e-12)
 
@@ -190,7 +190,10 @@ def test_moving_the_world_changes_nothing(joint, case, seed, measured):
     J = fx.equations_of_motion(case.hexapod, case.platform, base=case.base, joint=joint).J_p
     for a, b in zip(accelerations(case, joint), accelerations(other, joint), strict=True):
         measured("laws/frame", relative(b, Q @ a) / (EPS * np.linalg.cond(J)), 100)  # rounding of the load through J_p
-    one, two = (fx.joint_reactions(c.hexapod, c.platform, c.base, c.leg_force, joint=joint) for c in (case, other))
+    one, two = (
+        fx.joint_reactions(c.hexapod, c.platform, base=c.base, leg_force=c.leg_force, joint=joint)
+        for c in (case, other)
+    )
     for field in one._fields:
         # A moment is a small difference of large levers: ten thousand roundings.
         assert relative(getattr(two, field), getattr(one, field) @ Q.T) < 1e-11, field
@@ -228,12 +231,12 @@ def test_uniform_motion_changes_nothing(joint, case, seed, measured):
 def test_translation_of_base_and_platform_together_is_weight(joint, case, measured):
     """E2's sign: with a_p = a_b = a at rest, the wrench is that of gravity -a."""
     a = np.array([1.0, -2.0, 3.0])
-    poses = [fx.Motion(m.pose, acceleration=a) for m in (case.platform, case.base)]
+    platform, base = (fx.Motion(m.pose, acceleration=a) for m in (case.platform, case.base))
     weightless = case.hexapod.replace({"gravity": np.zeros(3)})
     heavy = case.hexapod.replace({"gravity": -a})
-    e = fx.equations_of_motion(weightless, *poses, joint=joint)
+    e = fx.equations_of_motion(weightless, platform, base=base, joint=joint)
     moved = (e.J_p - e.J_b)[:, :3] @ a + e.eta
-    held = fx.equations_of_motion(heavy, case.platform.pose, case.base.pose, joint=joint).eta
+    held = fx.equations_of_motion(heavy, case.platform.pose, base=case.base.pose, joint=joint).eta
     measured("laws/weight", relative(moved, held), 1e-13)  # sums of some hundred products
 
 
@@ -251,10 +254,13 @@ def test_renumbering_the_legs_permutes_the_results(joint, case, seed):
     tolerance = 100 * EPS * np.linalg.cond(J)  # only the order of sums differs
     for a, b in zip(accelerations(case, joint), accelerations(other, joint), strict=True):
         assert relative(b, a) < tolerance
-    one, two = (fx.joint_reactions(c.hexapod, c.platform, c.base, c.leg_force, joint=joint) for c in (case, other))
+    one, two = (
+        fx.joint_reactions(c.hexapod, c.platform, base=c.base, leg_force=c.leg_force, joint=joint)
+        for c in (case, other)
+    )
     for field in one._fields[:6]:
         np.testing.assert_array_equal(getattr(two, field), getattr(one, field)[order])  # each leg is its own sum
-    lengths = [fx.inverse_kinematics(c.hexapod, c.platform.pose, c.base.pose) for c in (case, other)]
+    lengths = [fx.inverse_kinematics(c.hexapod, c.platform.pose, base=c.base.pose) for c in (case, other)]
     np.testing.assert_array_equal(lengths[1], lengths[0][order])
 
 
@@ -302,7 +308,12 @@ def test_base_carries_the_weight(hexapod):
         centers += list(joints + np.einsum("nij,nj->ni", axes, part.mass_center))
     weights = np.array(masses)[:, None] * hexapod.gravity
     # Leg forces are good to eps times cond(H), with lengths counted in the machine's size.
-    tolerance = 1000 * EPS * fx.condition_number(hexapod, pose, size(hexapod)) * np.abs(rest.leg_force).max()
+    tolerance = (
+        1000
+        * EPS
+        * fx.condition_number(hexapod, pose, characteristic_length=size(hexapod))
+        * np.abs(rest.leg_force).max()
+    )
     np.testing.assert_allclose(found.base_force, weights.sum(0), atol=tolerance)
     np.testing.assert_allclose(found.base_moment, np.cross(centers, weights).sum(0), atol=tolerance * size(hexapod))
 

@@ -63,8 +63,8 @@ def test_accelerations(case, measured):
 def test_leg_lengths_and_condition_number(case, measured):
     hexapod, pose, base = hexapod_of(case), motion_of(case["platform"]).pose, motion_of(case["base"]).pose
     # A length is a root of a sum of three squares of differences of numbers of its own order: a few eps.
-    measured("geometry/stored", apart(fx.inverse_kinematics(hexapod, pose, base), case["leg_length"]), 1e-14)
-    H = fx.force_transformation(hexapod, pose, base)
+    measured("geometry/stored", apart(fx.inverse_kinematics(hexapod, pose, base=base), case["leg_length"]), 1e-14)
+    H = fx.force_transformation(hexapod, pose, base=base)
     # The smallest singular value errs by eps times the largest: relative eps times cond(H), which is below 1e3 here.
     assert np.linalg.cond(H) == pytest.approx(case["cond_H"], rel=1e-10)
     on_ground = fx.Pose(base.matrix.T @ (pose.position - base.position), base.matrix.T @ pose.matrix)

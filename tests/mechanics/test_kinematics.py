@@ -86,7 +86,7 @@ def test_lengths_are_distances_between_joints(case, measured):
     upper = Rotation.from_matrix(platform.matrix).apply(np.array(case.hexapod.platform_joints)) + platform.position
     lower = Rotation.from_matrix(base.matrix).apply(np.array(case.hexapod.base_joints)) + base.position
     expected = np.linalg.norm(upper - lower, axis=1)
-    measured("geometry/lengths", apart(fx.inverse_kinematics(case.hexapod, platform, base), expected), 1e-13)
+    measured("geometry/lengths", apart(fx.inverse_kinematics(case.hexapod, platform, base=base), expected), 1e-13)
 
 
 @pytest.mark.parametrize("name", MACHINES)
@@ -97,7 +97,9 @@ def test_condition_number_with_a_characteristic_length(name):
     assert fx.condition_number(hexapod, pose) == pytest.approx(np.linalg.cond(H), rel=1e-12)
     lever = 0.37 * size(hexapod)
     scaled = H / np.repeat([1.0, lever], 3)[:, None]
-    assert fx.condition_number(hexapod, pose, lever) == pytest.approx(np.linalg.cond(scaled), rel=1e-12)
+    assert fx.condition_number(hexapod, pose, characteristic_length=lever) == pytest.approx(
+        np.linalg.cond(scaled), rel=1e-12
+    )
 
 
 @given(hexapod=machines())
@@ -106,8 +108,8 @@ def test_condition_number_with_a_characteristic_length_has_no_unit(hexapod):
     values, pose = hexapod.values(), center(hexapod)
     larger = fx.Hexapod.from_values(values | {k: 1000 * values[k] for k in ("base.joints", "platform.joints")})
     poses = pose, fx.Pose(1000 * pose.position)
-    small = fx.condition_number(hexapod, poses[0], size(hexapod))
-    large = fx.condition_number(larger, poses[1], 1000 * size(hexapod))
+    small = fx.condition_number(hexapod, poses[0], characteristic_length=size(hexapod))
+    large = fx.condition_number(larger, poses[1], characteristic_length=1000 * size(hexapod))
     assert large == pytest.approx(small, rel=1e-9)  # eps times the condition number, below 1e6 here
 
 
@@ -198,7 +200,7 @@ def test_forward_kinematics_starts_each_from_its_own():
 def test_joint_angles_rebuild_the_leg(case):
     """Turning by the first angle about k, then by the second about the cross's own axis, takes neutral to the leg."""
     hexapod, platform, base = case.hexapod, case.platform.pose, case.base.pose
-    found = fx.joint_angles(hexapod, platform, base)
+    found = fx.joint_angles(hexapod, platform, base=base)
     neutral = center(hexapod).position + hexapod.platform_joints - hexapod.base_joints
     neutral /= np.linalg.norm(neutral, axis=1, keepdims=True)
     upper = platform.position + hexapod.platform_joints @ platform.matrix.T
@@ -247,7 +249,7 @@ def test_leg_distance_is_the_least_of_all_pairs(case):
     legs = hexapod.platform_joints @ platform.matrix.T + platform.position - lower
     pairs = [segments_apart(lower[i], legs[i], lower[j], legs[j]) for i in range(5) for j in range(i + 1, 6)]
     # SciPy finds the minimum of the square to about 1e-8 of the legs' square.
-    assert fx.mechanics.leg_distance(hexapod, platform, base) == pytest.approx(
+    assert fx.mechanics.leg_distance(hexapod, platform, base=base) == pytest.approx(
         min(pairs), abs=1e-4 * size(hexapod), rel=1e-6
     )
 
@@ -327,9 +329,9 @@ def test_pose_of_a_moved_base_counts_from_the_base():
     hexapod = fx.load("mukherjee-i")
     pose, base = away(hexapod), displaced(fx.Pose([1, 2, 3]), [0.1, 0, 0, 0.3, 0.4, -0.5])
     outer = fx.Pose(base.position + base.matrix @ pose.position, base.matrix @ pose.matrix)
-    assert relative(fx.inverse_kinematics(hexapod, outer, base), fx.inverse_kinematics(hexapod, pose)) < 1e-14
-    for moved, still in zip(fx.joint_angles(hexapod, outer, base), fx.joint_angles(hexapod, pose), strict=True):
+    assert relative(fx.inverse_kinematics(hexapod, outer, base=base), fx.inverse_kinematics(hexapod, pose)) < 1e-14
+    for moved, still in zip(fx.joint_angles(hexapod, outer, base=base), fx.joint_angles(hexapod, pose), strict=True):
         np.testing.assert_allclose(moved, still, atol=1e-14)
-    assert fx.mechanics.leg_distance(hexapod, outer, base) == pytest.approx(
+    assert fx.mechanics.leg_distance(hexapod, outer, base=base) == pytest.approx(
         fx.mechanics.leg_distance(hexapod, pose), rel=1e-13
     )

@@ -54,7 +54,7 @@ def test_matrices_are_derivatives_of_the_dynamics(name, joint, measured):
     def acceleration(platform=pose, base=BASE, **rates):
         p = fx.Motion(platform, **{k: v for k, v in rates.items() if not k.startswith("base_")})
         b = fx.Motion(base, **{k.removeprefix("base_"): v for k, v in rates.items() if k.startswith("base_")})
-        F = hexapod.legs.stiffness * (L_0 - fx.inverse_kinematics(hexapod, platform, base))
+        F = hexapod.legs.stiffness * (L_0 - fx.inverse_kinematics(hexapod, platform, base=base))
         return np.concatenate(fx.forward_dynamics(hexapod, p, base=b, leg_force=F, joint=joint, **load))
 
     def columns(response, steps):
@@ -77,7 +77,7 @@ def test_matrices_are_derivatives_of_the_dynamics(name, joint, measured):
             # Fourth-order differences: by displacement with a step of 2e-4, 1e-15 of truncation and eps / 2e-4 of
             # rounding, through J_p's condition of some thousands; exact in velocities (quadratic) and accelerations.
             measured("rest/tangent", np.abs(mine - theirs).max() / np.abs(theirs).max(), 1e-8)
-    equations = fx.equations_of_motion(hexapod, pose, BASE, joint=joint)
+    equations = fx.equations_of_motion(hexapod, pose, base=BASE, joint=joint)
     np.testing.assert_array_equal(tangent.M, equations.J_p)
     np.testing.assert_array_equal(tangent.H, equations.H)
 
@@ -127,7 +127,7 @@ def test_base_and_platform_moving_as_one(name, measured):
     tangent = fx.linearise(hexapod, pose, base=BASE, **load_of(hexapod))
     together = tangent.K_b + tangent.K @ tangent.carry
     g, one = hexapod.gravity, np.eye(3)
-    weight = [fx.equations_of_motion(hexapod.replace({"gravity": e}), pose, BASE).eta for e in one]
+    weight = [fx.equations_of_motion(hexapod.replace({"gravity": e}), pose, base=BASE).eta for e in one]
     tilt = np.column_stack(weight) @ np.column_stack([np.cross(g, e) for e in one])
     expected = np.hstack([np.zeros((6, 3)), tilt])
     scale = np.abs(tangent.K @ tangent.carry).max(axis=1, keepdims=True)

@@ -25,7 +25,7 @@ def turned(hexapod, degrees: float) -> fx.Pose:
 def test_modes_diagonalise_inertia_and_stiffness(joint, case):
     hexapod, pose, base = case.hexapod, case.platform.pose, case.base.pose
     omega, shape = fx.natural_modes(hexapod, pose, joint=joint, base=base)
-    e = fx.equations_of_motion(hexapod, pose, base, joint=joint)
+    e = fx.equations_of_motion(hexapod, pose, base=base, joint=joint)
     K = e.H @ np.diag(hexapod.legs.stiffness) @ e.H.T
     assert (np.diff(omega) >= 0).all()
     # J_p's condition, up to 1e5 in mixed units, grows the rounding of its factor.

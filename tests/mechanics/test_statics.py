@@ -31,7 +31,7 @@ def test_hold_then_settle_comes_back(name, base):
     pose = away(hexapod) if base is None else on(base, away(hexapod))
     held = fx.hold(hexapod, pose, base=base, **load_of(hexapod))
     start = displaced(pose, 0.03 * np.array([*size(hexapod) * np.array([1, -1, 0.5]), 1, 0.5, -1]))
-    found = fx.static_equilibrium(hexapod, held.unstretched_length, start, base=base, **load_of(hexapod))
+    found = fx.static_equilibrium(hexapod, held.unstretched_length, start=start, base=base, **load_of(hexapod))
     K = fx.linearise(hexapod, pose, base=base, **load_of(hexapod)).K
     # Lengths of the machine's size err by eps: what that moves the platform is grown by the condition of the tangent.
     tolerance = 1e3 * EPS * np.linalg.cond(_scaled(K, size(hexapod)))
@@ -108,7 +108,7 @@ def test_newton_converges_where_scipy_does(measured):
     hexapod = fx.load("cubic-isolator")
     lengths = np.full(6, 0.132)
     load = {"force": [15.0, 5.0, -20.0], "moment": [0.5, -0.3, 0.4]}
-    found = fx.static_equilibrium(hexapod, lengths, center(hexapod), **load)
+    found = fx.static_equilibrium(hexapod, lengths, start=center(hexapod), **load)
     assert np.abs(found.leg_length - lengths).max() > 0.005  # not a small displacement
 
     def acceleration(x):
@@ -124,7 +124,7 @@ def test_newton_converges_where_scipy_does(measured):
 def test_a_load_that_no_leg_can_carry_is_refused_with_the_pose_and_a_remedy():
     hexapod = fx.load("cubic-isolator")
     with pytest.raises((fx.KinematicsError, fx.SingularPoseError), match=r"Pose\(x=.*(reduce the load|stiffen)"):
-        fx.static_equilibrium(hexapod, np.full(6, 0.13), center(hexapod), force=[0, 0, -5000.0])
+        fx.static_equilibrium(hexapod, np.full(6, 0.13), start=center(hexapod), force=[0, 0, -5000.0])
 
 
 def test_equilibrium_in_the_papers_joint_model_is_its_own():
@@ -133,8 +133,8 @@ def test_equilibrium_in_the_papers_joint_model_is_its_own():
     pose = fx.home_pose(hexapod)
     for joint in ("universal", "spin_free"):
         held = fx.hold(hexapod, pose, joint=joint)
-        settled = fx.static_equilibrium(hexapod, held.unstretched_length, pose, joint=joint)
+        settled = fx.static_equilibrium(hexapod, held.unstretched_length, start=pose, joint=joint)
         # Newton ends within a relative step of 1e-10 and converges quadratically
         np.testing.assert_allclose(settled.pose.position, pose.position, atol=1e-10)
-    other = fx.static_equilibrium(hexapod, held.unstretched_length, pose, joint="universal")
+    other = fx.static_equilibrium(hexapod, held.unstretched_length, start=pose, joint="universal")
     assert np.linalg.norm(other.pose.position - pose.position) > 1e-6

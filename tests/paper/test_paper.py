@@ -170,7 +170,7 @@ def test_every_reading_has_its_effect(made, numbers):
         0,
     )
     printed_r_u0 = fx.load("mukherjee-i").replace({"legs.upper.mass_center": [-6.0, -0.08, 0.08]})
-    omega = fx.natural_modes(printed_r_u0, fx.home_pose(printed_r_u0), "spin_free").omega
+    omega = fx.natural_modes(printed_r_u0, fx.home_pose(printed_r_u0), joint="spin_free").omega
     np.testing.assert_allclose(table.filter(like="omega_").iloc[0, :6], omega, rtol=1e-8)
 
 
@@ -224,7 +224,7 @@ def test_conclusion_2_poles_near_natural_frequencies_can_vibrate_more(made, numb
 
 def test_conclusion_3_the_rule_keeps_a_margin(numbers):
     found = numbers["conclusion-3"]
-    omega = fx.natural_modes(fx.load("mukherjee-ii"), II, "spin_free").omega
+    omega = fx.natural_modes(fx.load("mukherjee-ii"), II, joint="spin_free").omega
     assert found["rule_s"] == pytest.approx(2 * np.pi / (20 * omega[-1]), rel=1e-6)
     # The force comes 1.5 samples late: a late force damps a mode no more when that is a quarter of its period.
     assert found["samples_per_period_at_the_edge"] == pytest.approx(6, rel=0.15)

@@ -106,7 +106,8 @@ PROVOKED = {
     ),
     ("flat_spectrum", "ArgumentError"): lambda: fx.excitation.flat_spectrum(-1.0, 1.0, 2.0),
     ("forward_kinematics", "KinematicsError"): lambda: fx.forward_kinematics(MACHINE, LEGS * [10, 1, 1, 1, 1, 1]),
-    ("forward_kinematics", "PoseError"): lambda: fx.forward_kinematics(MACHINE, [0.2, 0.2]),
+    ("forward_kinematics", "ArgumentError"): lambda: fx.forward_kinematics(MACHINE, [0.2, 0.2]),
+    ("forward_kinematics", "PoseError"): lambda: fx.forward_kinematics(MACHINE, LEGS, start=BATCH),
     ("gain_map", "ArgumentError"): lambda: fx.control.gain_map(MACHINE, HOME, [[1.0]], [1.0]),
     ("gain_schedule", "ArgumentError"): lambda: fx.control.gain_schedule(MACHINE, HOME, gains=[2.0, 1.0, 3.0]),
     ("gain_schedule", "PoseError"): lambda: fx.control.gain_schedule(MACHINE, np.zeros((0, 6))),
@@ -178,7 +179,7 @@ PROVOKED = {
     ("smooth_step", "ArgumentError"): lambda: fx.excitation.smooth_step("z", 1.0, 0.0),
     ("static_equilibrium", "KinematicsError"): lambda: fx.static_equilibrium(MACHINE, -LEGS),
     ("static_equilibrium", "SingularPoseError"): lambda: fx.static_equilibrium(
-        MACHINE.replace({"gravity": [0, 0, 0]}), fx.inverse_kinematics(MACHINE, SINGULAR), SINGULAR
+        MACHINE.replace({"gravity": [0, 0, 0]}), fx.inverse_kinematics(MACHINE, SINGULAR), start=SINGULAR
     ),
     ("stepped_sine", "ArgumentError"): lambda: fx.stepped_sine(MACHINE, HOME, [100.0], 1e-6, "up"),
     ("summarise", "PoseError"): lambda: fx.summarise(fx.sweep(MACHINE, HOME, ("cond_H",))),

@@ -107,13 +107,15 @@ def test_findings_are_the_librarys():
     h = fx.load("motion-base")
     pose = fx.Pose.from_rpy(0.2, -0.1, 2.5, 0.05, 0.1, -0.2)
     f = gather(h, pose, "spin_free")
-    omega = fx.natural_modes(h, pose, "spin_free").omega
+    omega = fx.natural_modes(h, pose, joint="spin_free").omega
     damped = fx.linearise(h, pose, joint="spin_free").modes()
     assert np.array_equal(f.omega, omega)
     assert np.array_equal(f.damped.pole, damped.pole)
     assert np.array_equal(f.rest.leg_force, fx.hold(h, pose).leg_force)
     assert f.conditioning.metres == fx.condition_number(h, pose)
-    assert f.conditioning.scaled == fx.condition_number(h, pose, 1.6)  # the radius of its platform joints
+    assert f.conditioning.scaled == fx.condition_number(
+        h, pose, characteristic_length=1.6
+    )  # the radius of its platform joints
     assert f.sampling_time == pytest.approx(2 * np.pi / (20 * omega[-1]), rel=1e-15)
 
 

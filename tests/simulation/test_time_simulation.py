@@ -240,7 +240,7 @@ def test_gravity_rings_only_when_asked():
     assert still.attrs["status"] == "complete"
     lengths = fx.inverse_kinematics(hexapod, pose)
     ringing = fx.simulate(hexapod, pose, unstretched_length=lengths, duration=0.1, samples=2000)
-    settled = fx.static_equilibrium(hexapod, lengths, pose).pose.position - pose.position
+    settled = fx.static_equilibrium(hexapod, lengths, start=pose).pose.position - pose.position
     # Released from unloaded legs without much friction it swings between there and twice as far.
     middle = ringing.displacement.sel(output="z").values
     assert middle.mean() == pytest.approx(settled[2], rel=0.05)  # a finite number of periods
@@ -262,7 +262,7 @@ def test_slow_loads_and_commands_lead_to_static_equilibrium(measured):
         samples=100,
     )
     lengths = fx.hold(hexapod, pose).unstretched_length + change * (np.arange(6) == 2)
-    end = fx.static_equilibrium(hexapod, lengths, pose, force=force, moment=(0, 3.0, 0))
+    end = fx.static_equilibrium(hexapod, lengths, start=pose, force=force, moment=(0, 3.0, 0))
     travel = np.abs(end.pose.position - pose.position).max()
     measured("time/statics", (dataset.position.values[-1] - end.pose.position) / travel, 1e-6)
     np.testing.assert_allclose(dataset.leg_force.values[-1], end.leg_force, atol=1e-4)
@@ -345,7 +345,7 @@ def test_trajectory_agrees_with_scipy_in_the_inertial_frame(measured):
         base = SHAKEN.motion(t)
         platform = fx.Motion(fx.Pose(z[:3], turn), z[7:10], z[10:])
         force = hexapod.legs.stiffness * (
-            rest.unstretched_length - fx.inverse_kinematics(hexapod, platform.pose, base.pose)
+            rest.unstretched_length - fx.inverse_kinematics(hexapod, platform.pose, base=base.pose)
         )
         a, alpha = fx.forward_dynamics(hexapod, platform, base=base, leg_force=force)
         w = z[10:]
@@ -505,7 +505,7 @@ def test_reactions_are_those_of_the_motion():
     dataset = fx.simulate(hexapod, pose, base_motion=SHAKEN, duration=0.01, samples=20, reactions=True)
     i = 13
     base_now = SHAKEN.motion(dataset.time.values[i])
-    found = fx.joint_reactions(hexapod, motion_at(dataset, i), base_now, dataset.leg_force.values[i])
+    found = fx.joint_reactions(hexapod, motion_at(dataset, i), base=base_now, leg_force=dataset.leg_force.values[i])
     for name, value in found._asdict().items():
         np.testing.assert_allclose(dataset[name].values[i], value, rtol=1e-9, atol=1e-9)
     assert "spherical_force" not in fx.simulate(hexapod, pose, duration=0.01, samples=3)

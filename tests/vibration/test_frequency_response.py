@@ -94,7 +94,7 @@ def test_base_moved_slowly_carries_the_platform_and_its_weight_tilts(damped):
     tilt = 1e-6
     turned = fx.Pose.from_rpy(0, 0, 0, tilt, 0, 0)
     start = fx.Pose(turned.matrix @ II.position, turned.matrix)
-    settled = fx.static_equilibrium(damped, linear.rest.unstretched_length, start, base=turned)
+    settled = fx.static_equilibrium(damped, linear.rest.unstretched_length, start=start, base=turned)
     moved = np.concatenate([settled.pose.position - II.position, settled.pose.rpy]) / tilt
     assert np.abs(moved - linear.carry[:, 3]).max() > 1e-6  # there is something to see
     np.testing.assert_allclose(absolute[:, 3], moved, atol=1e-6)  # tilt itself is the relative curvature

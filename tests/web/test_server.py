@@ -57,7 +57,7 @@ def test_changes_and_the_joint_model_reach_the_library(client: TestClient) -> No
     asked = ASKED | {"changes": {"platform.mass": 40, "legs.stiffness[2]": 5e7}, "joint": "spin_free"}
     state = client.post("/api/state", json=asked).json()
     changed = MACHINE.replace({"platform.mass": 40, "legs.stiffness[2]": 5e7})
-    np.testing.assert_array_equal(state["omega"], fx.natural_modes(changed, POSE, "spin_free").omega)
+    np.testing.assert_array_equal(state["omega"], fx.natural_modes(changed, POSE, joint="spin_free").omega)
 
 
 def test_a_singular_pose_is_told_not_failed(client: TestClient) -> None:

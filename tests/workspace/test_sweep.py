@@ -28,7 +28,7 @@ def test_every_quantity_is_that_of_the_single_pose_function(name, joint):
     box = fx.Box.about(fx.home_pose(design), 0.05 * reach, 0.1)
     found = fx.sweep(design, fx.random_poses(box, 37), quantities=QUANTITIES, joint=joint)
     pose = fx.Pose.from_rpy(*(found[name].values for name in AXES))
-    omega = fx.natural_modes(design, pose, joint).omega
+    omega = fx.natural_modes(design, pose, joint=joint).omega
     angles = fx.joint_angles(design, pose)
     stiffness = design.legs.stiffness
     H = fx.force_transformation(design, pose)

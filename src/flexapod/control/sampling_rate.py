@@ -41,11 +41,11 @@ def sampling_time(
             raise ArgumentError(f"omega_max is {source} rad/s; it must be finite and > 0")
         return rule(source)
     if isinstance(where, Trajectory):
-        highest = _on_path(lambda poses: natural_modes(source, poses, joint).omega[..., 5], where)
+        highest = _on_path(lambda poses: natural_modes(source, poses, joint=joint).omega[..., 5], where)
     elif isinstance(where, Box):
         highest = _in_box(source, where, joint)
     elif isinstance(where, Pose):
-        values = natural_modes(source, where, joint).omega[..., 5]
+        values = natural_modes(source, where, joint=joint).omega[..., 5]
         highest = float(np.nanmax(values)) if np.isfinite(values).any() else np.nan
     else:
         raise ArgumentError(f"where is {type(where).__name__}; give a Pose, a Trajectory or a Box")

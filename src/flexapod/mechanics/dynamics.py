@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.checks import number
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
 from flexapod.mechanics.inputs import NO_LEGS, ZERO, is_universal, per_leg, states, wrench
-from flexapod.pose import Motion, Pose
+from flexapod.pose import MotionLike
 
 
 class EquationsOfMotion(NamedTuple):
@@ -63,8 +64,9 @@ class Energy(NamedTuple):
 
 def equations_of_motion(
     hexapod: Hexapod,
-    platform: Pose | Motion,
-    base: Pose | Motion | None = None,
+    pose: MotionLike | None = None,
+    *,
+    base: MotionLike | None = None,
     joint: JointModel = "universal",
 ) -> EquationsOfMotion:
     """The terms of Eq. 34 for motions of platform and base (default: base fixed at the origin), in SI units.
@@ -75,7 +77,7 @@ def equations_of_motion(
     Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for an unknown joint model.
     Source: Eq. 34; E1 to E5, part B.
     """
-    s = states(hexapod, platform, base)
+    s = states(hexapod, pose, base)
     J_p, J_b, eta, H = _core.equations_of_motion(hexapod.packed, is_universal(joint), s.platform, s.base)
     square = (*s.shape, 6, 6)
     return EquationsOfMotion(J_p.reshape(square), J_b.reshape(square), eta.reshape(*s.shape, 6), H.reshape(square))
@@ -83,8 +85,9 @@ def equations_of_motion(
 
 def forward_dynamics(
     hexapod: Hexapod,
-    platform: Pose | Motion,
-    base: Pose | Motion | None = None,
+    pose: MotionLike | None = None,
+    *,
+    base: MotionLike | None = None,
     leg_force: ArrayLike = NO_LEGS,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
@@ -93,14 +96,14 @@ def forward_dynamics(
     """Acceleration of the platform's reference point (m/s2) and its angular acceleration (rad/s2).
 
     leg_force: (..., 6) N, positive pushes the platform from the base. force (N), moment (N m): on the platform, in its
-    own frame, at its reference point. The accelerations in `platform` play no part; those of `base` do. Returns
+    own frame, at its reference point. The accelerations in `pose` play no part; those of `base` do. Returns
     vectors (..., 3) in inertial axes.
 
     Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), for forces of a shape that does not fit,
     or an unknown joint model.
     Source: Eq. 35; E1 to E5, part B.
     """
-    s = states(hexapod, platform, base)
+    s = states(hexapod, pose, base)
     result = _core.forward_dynamics(
         hexapod.packed,
         is_universal(joint),
@@ -114,13 +117,14 @@ def forward_dynamics(
 
 def inverse_dynamics(
     hexapod: Hexapod,
-    platform: Pose | Motion,
-    base: Pose | Motion | None = None,
+    pose: MotionLike | None = None,
+    *,
+    base: MotionLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> Array:
-    """Leg forces (..., 6) in N that give the platform the accelerations in `platform`.
+    """Leg forces (..., 6) in N that give the platform the accelerations in `pose`.
 
     force (N), moment (N m): on the platform, in its own frame, at its reference point.
 
@@ -128,7 +132,7 @@ def inverse_dynamics(
     give NaN. PoseError for loads of a shape that does not fit.
     Source: Eq. 34, solved for F.
     """
-    s = states(hexapod, platform, base)
+    s = states(hexapod, pose, base)
     loads = wrench(force, moment, s.shape)
     result = _core.inverse_dynamics(hexapod.packed, is_universal(joint), s.platform, s.base, loads)
     if not s.shape and np.isnan(result).any():
@@ -140,8 +144,9 @@ def inverse_dynamics(
 
 def joint_reactions(
     hexapod: Hexapod,
-    platform: Pose | Motion,
-    base: Pose | Motion | None = None,
+    pose: MotionLike | None = None,
+    *,
+    base: MotionLike | None = None,
     leg_force: ArrayLike = NO_LEGS,
     section: float = 0.5,
     joint: JointModel = "universal",
@@ -158,9 +163,11 @@ def joint_reactions(
     not fit.
     Source: Section 4.1, forces and moments on a leg; E1 to E5, part B.
     """
-    s = states(hexapod, platform, base)
+    s = states(hexapod, pose, base)
     forces = per_leg(leg_force, "leg_force", s.shape)
-    legs, total = _core.joint_reactions(hexapod.packed, is_universal(joint), s.platform, s.base, forces, float(section))
+    legs, total = _core.joint_reactions(
+        hexapod.packed, is_universal(joint), s.platform, s.base, forces, number(section, "section")
+    )
     legs = legs.reshape(*s.shape, 6, 6, 3)
     total = total.reshape(*s.shape, 2, 3)
     return Reactions(*np.moveaxis(legs, -2, 0), *np.moveaxis(total, -2, 0))
@@ -168,8 +175,9 @@ def joint_reactions(
 
 def energy(
     hexapod: Hexapod,
-    platform: Pose | Motion,
-    base: Pose | Motion | None = None,
+    pose: MotionLike | None = None,
+    *,
+    base: MotionLike | None = None,
     unstretched_length: ArrayLike | None = None,
     joint: JointModel = "universal",
 ) -> Energy:
@@ -181,7 +189,7 @@ def energy(
     fit.
     Source: own.
     """
-    s = states(hexapod, platform, base)
+    s = states(hexapod, pose, base)
     L_0 = per_leg(NO_LEGS if unstretched_length is None else unstretched_length, "unstretched_length", s.shape)
     rows = _core.energy(hexapod.packed, is_universal(joint), s.platform, s.base, L_0)
     if unstretched_length is None:

@@ -11,7 +11,7 @@ from flexapod import _core
 from flexapod.conventions import JOINT_MODELS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, DesignError, PoseError, shown
-from flexapod.pose import Motion, Pose, as_pose, rpy_matrix, vectors
+from flexapod.pose import Motion, MotionLike, Pose, PoseLike, as_pose, rpy_matrix, vectors
 
 LEAST_SINE = 1e-7  # of the angle between a leg and its universal joint's axis
 ZERO = (0.0, 0.0, 0.0)
@@ -38,7 +38,7 @@ def as_hexapod(value: object) -> Hexapod:
     return value
 
 
-def pose_or_home(hexapod: Hexapod, pose: Pose | ArrayLike | None, name: str = "pose") -> Pose:
+def pose_or_home(hexapod: Hexapod, pose: PoseLike | None, name: str = "pose") -> Pose:
     """A pose as `as_pose` takes it, or the design's home where it is None."""
     if pose is not None:
         return as_pose(pose, name)
@@ -51,7 +51,7 @@ def pose_or_home(hexapod: Hexapod, pose: Pose | ArrayLike | None, name: str = "p
     return Pose(position, rpy_matrix(rpy))
 
 
-def single_pose(hexapod: Hexapod, pose: Pose | ArrayLike | None, name: str = "pose") -> Pose:
+def single_pose(hexapod: Hexapod, pose: PoseLike | None, name: str = "pose") -> Pose:
     """The same where only one pose makes sense; raises PoseError for a batch."""
     found = pose_or_home(hexapod, pose, name)
     if found.shape:
@@ -59,9 +59,7 @@ def single_pose(hexapod: Hexapod, pose: Pose | ArrayLike | None, name: str = "po
     return found
 
 
-def states(
-    hexapod: Hexapod, platform: Pose | Motion | ArrayLike | None, base: Pose | Motion | ArrayLike | None = None
-) -> States:
+def states(hexapod: Hexapod, platform: MotionLike | None, base: MotionLike | None = None) -> States:
     """Rows for the core. A single pose that no leg can take raises PoseError; in a batch its row is NaN."""
     as_hexapod(hexapod)
     motions = [

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.checks import positive
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import KinematicsError, PoseError
-from flexapod.mechanics.inputs import states
-from flexapod.pose import Motion, Pose, orthonormal, rpy_matrix, vectors
+from flexapod.errors import ArgumentError, KinematicsError, PoseError
+from flexapod.mechanics.inputs import as_hexapod, pose_or_home, states
+from flexapod.pose import Motion, MotionLike, Pose, PoseLike, as_pose, orthonormal, rpy_matrix, vectors
 
 
 class LegRates(NamedTuple):
@@ -48,26 +49,26 @@ class LimitsCheck(NamedTuple):
     exceeded: tuple[str, ...]
 
 
-def inverse_kinematics(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> Array:
+def inverse_kinematics(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None) -> Array:
     """Leg lengths (..., 6) in m at a pose.
 
     Raises: PoseError at a pose that no leg can take; in a batch such a pose gives NaN.
     Source: Eq. 6.
     """
-    return leg_rates(hexapod, pose, base).length
+    return leg_rates(hexapod, pose, base=base).length
 
 
-def leg_rates(hexapod: Hexapod, platform: Pose | Motion, base: Pose | Motion | None = None) -> LegRates:
+def leg_rates(hexapod: Hexapod, pose: MotionLike | None = None, *, base: MotionLike | None = None) -> LegRates:
     """Leg lengths, rates and accelerations, (..., 6) m, m/s, m/s2, for motions of platform and base.
 
     Raises: PoseError at a pose that no leg can take; in a batch such a pose gives NaN.
     Source: Eqs 6 to 8.
     """
-    s = states(hexapod, platform, base)
+    s = states(hexapod, pose, base)
     return LegRates(*(x.reshape(*s.shape, 6) for x in _core.leg_rates(hexapod.packed, s.platform, s.base)))
 
 
-def force_transformation(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> Array:
+def force_transformation(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None) -> Array:
     """The force transformation H, (..., 6, 6): leg forces (N) to the wrench on the platform at its reference point.
 
     Inertial axes. Column i is [s_i; q_i x s_i]; rows 1-3 have no unit, rows 4-6 are in m. Its transpose maps the
@@ -80,7 +81,13 @@ def force_transformation(hexapod: Hexapod, pose: Pose, base: Pose | None = None)
     return _core.force_transformation(hexapod.packed, s.platform, s.base).reshape(*s.shape, 6, 6)
 
 
-def condition_number(hexapod: Hexapod, pose: Pose, characteristic_length: float | None = None) -> Array | float:
+def condition_number(
+    hexapod: Hexapod,
+    pose: PoseLike | None = None,
+    *,
+    base: PoseLike | None = None,
+    characteristic_length: float | None = None,
+) -> Array | float:
     """Ratio of the largest to the least singular value of H, (...); at a singular pose infinite, or about 1e16.
 
     H mixes units (rows of forces, rows of moments in m), so the number depends on the unit of length: in metres it is
@@ -90,11 +97,9 @@ def condition_number(hexapod: Hexapod, pose: Pose, characteristic_length: float 
     not > 0.
     Source: Section 3; the characteristic length is our own.
     """
-    H = force_transformation(hexapod, pose)
+    H = force_transformation(hexapod, pose, base=base)
     if characteristic_length is not None:
-        if not characteristic_length > 0:
-            raise PoseError(f"characteristic_length is {characteristic_length}; it must be > 0 m")
-        H = H * np.repeat([1.0, 1.0 / characteristic_length], 3)[:, None]
+        H = H * np.repeat([1.0, 1.0 / positive(characteristic_length, "characteristic_length", "m")], 3)[:, None]
     sigma = _singular_values(H)
     with np.errstate(divide="ignore"):
         return (sigma[..., 0] / sigma[..., -1])[()]
@@ -112,24 +117,26 @@ def home_pose(hexapod: Hexapod) -> Pose | None:
     Raises: nothing of its own.
     Source: own.
     """
-    if hexapod.home is None:
+    home = as_hexapod(hexapod).home
+    if home is None:
         return None
-    position, rpy = hexapod.home
+    position, rpy = home
     return Pose(position, rpy_matrix(rpy))
 
 
-def forward_kinematics(hexapod: Hexapod, lengths: ArrayLike, start: Pose | None = None) -> Pose:
+def forward_kinematics(hexapod: Hexapod, lengths: ArrayLike, *, start: PoseLike | None = None) -> Pose:
     """The pose, in the base frame, at which the legs have the given lengths, (..., 6) m.
 
     From `start`, one pose for all or one for each, the nearest assembly is found by Newton's method (damped far from
     it). Without a start the search begins at the design's home pose, or above the base, and then from poses turned and
     tilted about it; among several assemblies the first found in this order is returned.
 
-    Raises: KinematicsError, with the misfit, where no pose is found, and for a length that is not > 0; PoseError for
-    lengths that are not six numbers each, or a start that does not fit them.
+    Raises: KinematicsError, with the misfit, where no pose is found, and for a length that is not > 0;
+    ArgumentError for lengths that are not six numbers each; PoseError for a start that does not fit them.
     Source: own: Newton's method on Eq. 6.
     """
-    wanted = vectors(lengths, "lengths", 6)
+    as_hexapod(hexapod)
+    wanted = vectors(lengths, "lengths", 6, ArgumentError)
     if (wanted <= 0).any():
         raise KinematicsError(f"lengths has {wanted.min():.6g} m; every leg length must be > 0 m")
     starts = [None] * (wanted.size // 6) if start is None else _one_for_each(start, wanted.shape[:-1])
@@ -138,9 +145,8 @@ def forward_kinematics(hexapod: Hexapod, lengths: ArrayLike, start: Pose | None 
     return Pose(position, np.array([R for _, R in found]).reshape(*wanted.shape[:-1], 3, 3))
 
 
-def _one_for_each(start: Pose, shape: tuple[int, ...]) -> list[Pose]:
-    if not isinstance(start, Pose):
-        raise PoseError(f"start is {type(start).__name__}; it must be a flexapod Pose")
+def _one_for_each(start: PoseLike, shape: tuple[int, ...]) -> list[Pose]:
+    start = as_pose(start, "start")
     try:
         position, matrix = np.broadcast_to(start.position, (*shape, 3)), np.broadcast_to(start.matrix, (*shape, 3, 3))
     except ValueError:
@@ -184,7 +190,7 @@ def _starts(hexapod: Hexapod, lengths: Array) -> Pose:
     return Pose(np.repeat(positions, len(rotations), axis=0), np.tile(rotations, (4, 1, 1)))
 
 
-def joint_angles(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> JointAngles:
+def joint_angles(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None) -> JointAngles:
     """Angles of every universal and spherical joint from neutral, rad, (..., 6) each.
 
     `universal_first`: turn of the universal joint about its axis in the base; `universal_second`: tilt of the leg out
@@ -211,7 +217,7 @@ def neutral_directions(hexapod: Hexapod) -> Array:
     return np.stack([s, s @ home.matrix])
 
 
-def leg_distance(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> Array | float:
+def leg_distance(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None) -> Array | float:
     """Least distance between any two leg axes, as segments between their joints, (...) m.
 
     Raises: PoseError at a pose that no leg can take; in a batch such a pose gives NaN.
@@ -221,7 +227,7 @@ def leg_distance(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> Arra
     return _core.leg_distance(hexapod.packed, s.platform, s.base).reshape(s.shape)[()]
 
 
-def check_limits(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> LimitsCheck:
+def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None) -> LimitsCheck:
     """Whether leg lengths (m), joint angles (rad) and leg distance (m) are within the design's limits.
 
     A limit that the design does not give always holds.
@@ -229,9 +235,8 @@ def check_limits(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> Limi
     Raises: PoseError at a single pose that no leg can take, where something is limited.
     Source: own.
     """
-    if not isinstance(pose, Pose):
-        raise PoseError(f"pose is {type(pose).__name__}; it must be a flexapod Pose")
-    excess = limit_excess(hexapod, pose, base)
+    pose = pose_or_home(hexapod, pose)
+    excess = limit_excess(hexapod, pose, base=base)
     ok = np.ones(pose.shape, dtype=bool)
     words: list[str] = []
     for quantity in excess:
@@ -251,22 +256,22 @@ class Quantity(NamedTuple):
     most: Array | float
 
 
-def limit_excess(hexapod: Hexapod, pose: Pose, base: Pose | None = None) -> list[Quantity]:
+def limit_excess(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None) -> list[Quantity]:
     """Every quantity that the design limits, with its bounds."""
     limits = hexapod.limits
     result = []
     if limits.leg_length is not None:
         bounds = np.asarray(limits.leg_length)
-        lengths = inverse_kinematics(hexapod, pose, base)
+        lengths = inverse_kinematics(hexapod, pose, base=base)
         result.append(Quantity("length m", lengths, bounds[..., 0], bounds[..., 1]))
     if limits.universal_angle is not None or limits.spherical_angle is not None:
-        angles = joint_angles(hexapod, pose, base)
+        angles = joint_angles(hexapod, pose, base=base)
         for name, most in (("universal", limits.universal_angle), ("spherical", limits.spherical_angle)):
             if most is not None:
                 value = np.degrees(getattr(angles, name))
                 result.append(Quantity(f"{name} joint angle deg", value, -np.inf, float(np.degrees(most))))
     if limits.leg_distance is not None:
-        distance = np.asarray(leg_distance(hexapod, pose, base))
+        distance = np.asarray(leg_distance(hexapod, pose, base=base))
         result.append(Quantity("least distance between legs m", distance, limits.leg_distance, np.inf))
     return result
 

@@ -11,11 +11,10 @@ from numpy.typing import ArrayLike
 from flexapod import _core
 from flexapod.conventions import AXES, LEGS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import ZERO, is_universal, states, wrench
+from flexapod.mechanics.inputs import ZERO, is_universal, single_pose, states, wrench
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.optional import needed
-from flexapod.pose import Pose, skew
+from flexapod.pose import Pose, PoseLike, skew
 
 if TYPE_CHECKING:
     import control
@@ -162,9 +161,9 @@ def _one_of_each_pair(poles: Array) -> list[int]:
 
 def linearise(
     hexapod: Hexapod,
-    pose: Pose,
+    pose: PoseLike | None = None,
     *,
-    base: Pose | None = None,
+    base: PoseLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
@@ -178,8 +177,7 @@ def linearise(
     leg can take.
     Source: Eq. 34; part C.
     """
-    if pose.shape:
-        raise PoseError(f"linearise takes one pose; this one has batch axes {pose.shape}. Index it first.")
+    pose = single_pose(hexapod, pose)
     rest = hold(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
     s = states(hexapod, pose, base)
     M, C, K, M_b, C_b, K_b, H = _core.tangent(

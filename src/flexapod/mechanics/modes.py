@@ -9,10 +9,9 @@ import numpy as np
 from flexapod import _core
 from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import is_universal, states
+from flexapod.mechanics.inputs import is_universal, single_pose, states
 from flexapod.mechanics.kinematics import force_transformation
-from flexapod.pose import Pose, skew
+from flexapod.pose import PoseLike, skew
 
 
 class NaturalModes(NamedTuple):
@@ -82,7 +81,11 @@ class Sensitivity(NamedTuple):
 
 
 def natural_modes(
-    hexapod: Hexapod, pose: Pose, joint: JointModel = "universal", base: Pose | None = None
+    hexapod: Hexapod,
+    pose: PoseLike | None = None,
+    *,
+    base: PoseLike | None = None,
+    joint: JointModel = "universal",
 ) -> NaturalModes:
     """Six natural frequencies (rad/s) and mode shapes at a pose, undamped, without preload or gravity.
 
@@ -98,18 +101,26 @@ def natural_modes(
 
 
 def stability_index(
-    hexapod: Hexapod, pose: Pose, joint: JointModel = "universal", base: Pose | None = None
+    hexapod: Hexapod,
+    pose: PoseLike | None = None,
+    *,
+    base: PoseLike | None = None,
+    joint: JointModel = "universal",
 ) -> Array | float:
     """The dynamic stability index (...): the lowest natural frequency, rad/s; zero at a singular pose.
 
     Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for an unknown joint model.
     Source: Section 2.
     """
-    return natural_modes(hexapod, pose, joint, base).omega[..., 0][()]
+    return natural_modes(hexapod, pose, base=base, joint=joint).omega[..., 0][()]
 
 
 def energy_shares(
-    hexapod: Hexapod, pose: Pose, joint: JointModel = "universal", base: Pose | None = None
+    hexapod: Hexapod,
+    pose: PoseLike | None = None,
+    *,
+    base: PoseLike | None = None,
+    joint: JointModel = "universal",
 ) -> EnergyShares:
     """Which legs store each mode's strain energy, (..., 6, 6), and which bodies carry its kinetic energy, (..., 7, 6).
 
@@ -119,8 +130,8 @@ def energy_shares(
     Source: own.
     """
     s = states(hexapod, pose, base)
-    shape = natural_modes(hexapod, pose, joint, base).shape
-    stretch = np.swapaxes(force_transformation(hexapod, pose, base), -1, -2) @ shape
+    shape = natural_modes(hexapod, pose, base=base, joint=joint).shape
+    stretch = np.swapaxes(force_transformation(hexapod, pose, base=base), -1, -2) @ shape
     strain = hexapod.legs.stiffness[:, None] * stretch**2
     with np.errstate(invalid="ignore"):
         strain = strain / strain.sum(axis=-2, keepdims=True)
@@ -131,17 +142,20 @@ def energy_shares(
 
 
 def describe_modes(
-    hexapod: Hexapod, pose: Pose, joint: JointModel = "universal", base: Pose | None = None
+    hexapod: Hexapod,
+    pose: PoseLike | None = None,
+    *,
+    base: PoseLike | None = None,
+    joint: JointModel = "universal",
 ) -> list[ModeDescription]:
     """Each mode of one pose in words: what dominates (x, y, z, roll, pitch, yaw) and about which point (m) it turns.
 
     Raises: PoseError for a batch of poses, or at a pose that no leg can take.
     Source: own.
     """
-    if pose.shape:
-        raise PoseError(f"describe_modes takes one pose; this one has batch axes {pose.shape}. Index it first.")
+    pose = single_pose(hexapod, pose)
     s = states(hexapod, pose, base)
-    modes = natural_modes(hexapod, pose, joint, base)
+    modes = natural_modes(hexapod, pose, base=base, joint=joint)
     J = _core.equations_of_motion(hexapod.packed, is_universal(joint), s.platform, s.base)[0][0]
     r = pose.matrix @ hexapod.platform_mass_center
     shift = np.eye(6)  # twist of the reference point from that of the mass centre
@@ -187,7 +201,11 @@ def near_repeated(omega: Array, gap: float = 0.01) -> list[tuple[int, int]]:
 
 
 def frequency_sensitivity(
-    hexapod: Hexapod, pose: Pose, joint: JointModel = "universal", base: Pose | None = None
+    hexapod: Hexapod,
+    pose: PoseLike | None = None,
+    *,
+    base: PoseLike | None = None,
+    joint: JointModel = "universal",
 ) -> Sensitivity:
     """Exact derivatives of the six frequencies (rad/s) by the design and by the pose, for one pose.
 
@@ -197,11 +215,10 @@ def frequency_sensitivity(
     Raises: PoseError for a batch of poses, or at a pose that no leg can take.
     Source: R. L. Fox and M. P. Kapoor, AIAA Journal 6 (1968), with exact derivatives of J_p and H K H^T.
     """
-    if pose.shape:
-        raise PoseError(f"frequency_sensitivity takes one pose; this one has batch axes {pose.shape}. Index it first.")
+    pose = single_pose(hexapod, pose)
     s = states(hexapod, pose, base)
     universal = is_universal(joint)
-    omega = natural_modes(hexapod, pose, joint, base).omega
+    omega = natural_modes(hexapod, pose, base=base, joint=joint).omega
     by_design, by_pose = _core.frequency_derivatives(hexapod.packed, universal, s.platform, s.base)
     half = np.where(omega > 0, 0.5 / np.where(omega > 0, omega, 1.0), np.nan)[:, None]
     d = half * by_design[0]

@@ -7,13 +7,14 @@ from typing import NamedTuple
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.checks import numbers
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import KinematicsError, SingularPoseError
 from flexapod.mechanics.dynamics import inverse_dynamics
-from flexapod.mechanics.inputs import ZERO, is_universal, states, wrench
+from flexapod.mechanics.inputs import ZERO, as_hexapod, is_universal, pose_or_home, single_pose, states, wrench
 from flexapod.mechanics.kinematics import forward_kinematics, inverse_kinematics
-from flexapod.pose import Pose, orthonormal, vectors
+from flexapod.pose import Pose, PoseLike, as_pose, orthonormal
 
 
 class Equilibrium(NamedTuple):
@@ -32,9 +33,9 @@ class Equilibrium(NamedTuple):
 
 def hold(
     hexapod: Hexapod,
-    pose: Pose,
+    pose: PoseLike | None = None,
     *,
-    base: Pose | None = None,
+    base: PoseLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
@@ -48,17 +49,18 @@ def hold(
     batch such poses give NaN.
     Source: Eqs 2 to 4; E6.
     """
-    leg_force = inverse_dynamics(hexapod, pose, base, force, moment, joint)
-    length = inverse_kinematics(hexapod, pose, base)
+    pose = pose_or_home(hexapod, pose)
+    leg_force = inverse_dynamics(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
+    length = inverse_kinematics(hexapod, pose, base=base)
     return Equilibrium(pose, leg_force, length, length + leg_force / hexapod.legs.stiffness)
 
 
 def static_equilibrium(
     hexapod: Hexapod,
     unstretched_length: ArrayLike,
-    start: Pose | None = None,
     *,
-    base: Pose | None = None,
+    start: PoseLike | None = None,
+    base: PoseLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
@@ -73,12 +75,14 @@ def static_equilibrium(
     SingularPoseError where the tangent becomes singular.
     Source: own; E6, part C.
     """
-    L_0 = vectors(unstretched_length, "unstretched_length", 6)
-    if L_0.shape != (6,):
-        raise KinematicsError(f"unstretched_length has shape {L_0.shape}; static_equilibrium takes one set of six")
+    as_hexapod(hexapod)
+    L_0 = numbers(unstretched_length, "unstretched_length", (6,))
     if (L_0 <= 0).any():
         raise KinematicsError(f"unstretched_length has {L_0.min():.6g} m; every leg length must be > 0 m")
-    if start is None:
+    base = None if base is None else as_pose(base, "base")
+    if start is not None:
+        start = single_pose(hexapod, start, "start")
+    else:
         start = forward_kinematics(hexapod, L_0)
         if base is not None:
             start = Pose(base.position + base.matrix @ start.position, base.matrix @ start.matrix)
@@ -97,5 +101,5 @@ def static_equilibrium(
             f"no equilibrium was found; the search ended at {pose!r}. The load may be more than the legs can carry "
             "before they collapse: start nearer, reduce the load, or stiffen the legs."
         )
-    length = inverse_kinematics(hexapod, pose, base)
+    length = inverse_kinematics(hexapod, pose, base=base)
     return Equilibrium(pose, hexapod.legs.stiffness * (L_0 - length), length, L_0)

@@ -270,7 +270,7 @@ def _coincident(problem: Problem, hexapod: Hexapod, pose: Array | None) -> int:
         return 1
     from flexapod.mechanics.modes import natural_modes
 
-    omega = natural_modes(hexapod, Pose.from_rpy(*pose), problem.joint).omega
+    omega = natural_modes(hexapod, Pose.from_rpy(*pose), joint=problem.joint).omega
     return int((omega <= omega[0] * 1.001).sum())
 
 

@@ -143,7 +143,7 @@ def _braking() -> str:
 
 def _growth() -> str:
     hexapod = load("mukherjee-ii")
-    first = natural_modes(hexapod, home(hexapod), "universal").omega[0]
+    first = natural_modes(hexapod, home(hexapod), joint="universal").omega[0]
     return (
         f"With it, manipulator II does not vibrate but leaves its equilibrium, e-fold in {1e3 / first:.1f} ms. Eq. 3 "
         "has the right sign."
@@ -175,7 +175,7 @@ def _angle(vector: Array) -> float:
 
 def _e8() -> Row:
     hexapod = load("mukherjee-ii")
-    omega = natural_modes(hexapod, home(hexapod), "spin_free").omega
+    omega = natural_modes(hexapod, home(hexapod), joint="spin_free").omega
     as_hertz, as_printed = (float(np.abs(value / omega - 1).min()) for value in (2 * np.pi * PRINTED, PRINTED))
     more = (
         f"As Hz, {2 * np.pi * PRINTED:.0f} rad/s, it lies {as_hertz:.0%} from the nearest mode of manipulator II; as "
@@ -192,7 +192,7 @@ def _spin() -> Row:
     more = []
     for name in ("mukherjee-i", "mukherjee-ii"):
         hexapod = load(name)
-        exact, free = (natural_modes(hexapod, home(hexapod), joint).omega for joint in ("universal", "spin_free"))
+        exact, free = (natural_modes(hexapod, home(hexapod), joint=joint).omega for joint in ("universal", "spin_free"))
         more.append(f"{np.abs(free / exact - 1).max():.2%} of manipulator {'I' if name.endswith('-i') else 'II'}")
     return Row(
         "B",
@@ -221,11 +221,11 @@ def _gravity() -> Row:
     hexapod = cases[0].state.hexapod
     pose = home(hexapod)
     engine = _by_differences(cases, pose)[:_LOW_MODES]
-    eq_5 = natural_modes(hexapod, pose, "universal").omega[:_LOW_MODES]
+    eq_5 = natural_modes(hexapod, pose, joint="universal").omega[:_LOW_MODES]
     tangent = linearise(hexapod, pose, joint="universal").modes().omega[:_LOW_MODES]
     stiff = load("mukherjee-ii")
     kept = linearise(stiff, pose, joint="universal").modes().omega
-    share = np.abs(kept / natural_modes(stiff, pose, "universal").omega - 1).max()
+    share = np.abs(kept / natural_modes(stiff, pose, joint="universal").omega - 1).max()
     more = (
         f"The lowest is {engine[0]:.3f} rad/s, by Eq. 5 {eq_5[0]:.3f} rad/s; with the printed legs of "
         f"{1e-6 * stiff.legs.stiffness[0]:g} N/µm the two differ by {percent(float(share))}."

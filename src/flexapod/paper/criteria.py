@@ -116,7 +116,7 @@ def _limits() -> list[Footprint]:
 
 def _measured(hexapod: Hexapod, joint: JointModel, evaluations: int = 0, seconds: float = 0.0) -> _Machine:
     poses = path(_FINE)
-    index = natural_modes(hexapod, poses, joint).omega[:, 0]
+    index = natural_modes(hexapod, poses, joint=joint).omega[:, 0]
     cond = float(np.max(condition_number(hexapod, poses)))
     return _Machine(index, float(index[_FINE // 2]), cond, evaluations, seconds)
 

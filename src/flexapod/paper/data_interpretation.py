@@ -179,7 +179,7 @@ def _under(reading: Reading, joint: JointModel) -> Array:
 
 
 def _omega(hexapod: Hexapod, joint: JointModel) -> Array:
-    return natural_modes(hexapod, home(hexapod), joint).omega
+    return natural_modes(hexapod, home(hexapod), joint=joint).omega
 
 
 def _with_gravity(hexapod: Hexapod, joint: JointModel) -> Array:

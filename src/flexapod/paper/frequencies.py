@@ -40,7 +40,7 @@ class Case(NamedTuple):
     def omega(self) -> Array:
         """(6,) rad/s, Eq. 5."""
         hexapod = load(self.design).replace(self.changes)
-        return natural_modes(hexapod, home(hexapod), self.joint).omega
+        return natural_modes(hexapod, home(hexapod), joint=self.joint).omega
 
 
 CASES = (

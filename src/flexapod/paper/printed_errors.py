@@ -66,7 +66,7 @@ def acceleration(state: State, errors: tuple[str, ...] = (), joint: JointModel =
 
 def printed(state: State, errors: tuple[str, ...], joint: JointModel = "universal") -> EquationsOfMotion:
     """The terms of Eq. 34 with errors as printed. E5, which is made of J_b, comes after those that change J_b."""
-    e = equations_of_motion(state.hexapod, state.platform, state.base, joint)
+    e = equations_of_motion(state.hexapod, state.platform, base=state.base, joint=joint)
     legs = legs_at(state, joint)
     for name in sorted(errors):
         added = MISPRINTS[name](state, legs, e)

@@ -39,7 +39,7 @@ def draw(name: str, settings: Settings) -> Part:
 
 
 def _at_resonance(settings: Settings) -> Part:
-    omega = float(natural_modes(load(DESIGN), Pose(POSE), settings.joint).omega[2])
+    omega = float(natural_modes(load(DESIGN), Pose(POSE), joint=settings.joint).omega[2])
     shaken = _shake(omega, settings.joint)
     early, late = _largest(shaken, 0.0, 0.1), _largest(shaken, 0.9, 1.0)
     growth = late[YAW] / early[YAW]

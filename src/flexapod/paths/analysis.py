@@ -75,7 +75,7 @@ def path_index(
     times = path.grid(samples)
 
     def index(t: ArrayLike) -> Array:
-        return natural_modes(hexapod, path(np.atleast_1d(t)).pose, joint).omega[:, 0]
+        return natural_modes(hexapod, path(np.atleast_1d(t)).pose, joint=joint).omega[:, 0]
 
     values = index(times)
     _all_possible(path, times, values)
@@ -120,14 +120,14 @@ def path_loads(
     times = path.grid(samples)
     motion = path(times)
     crossings = _crossings(hexapod, path, times)
-    leg_force = inverse_dynamics(hexapod, motion, None, force, moment, joint)
+    leg_force = inverse_dynamics(hexapod, motion, base=None, force=force, moment=moment, joint=joint)
     lost = [*crossings, *times[~np.isfinite(leg_force).all(axis=-1)]]
     if lost:
         raise SingularPoseError(
             f"no leg forces drive the path at t = {lost[0]:.6g} s, {path(lost[0]).pose!r}: H is singular there. "
             "Lead the path round it (see plan_path)."
         )
-    static = inverse_dynamics(hexapod, motion.pose, None, force, moment, joint)
+    static = inverse_dynamics(hexapod, motion.pose, base=None, force=force, moment=moment, joint=joint)
     legs = leg_rates(hexapod, motion)
     grid = ("time", "leg")
     dataset = xr.Dataset(

@@ -255,7 +255,9 @@ class _Task:
 
     def plan(self, path: Trajectory, straight: Trajectory, rough: Pose | None, batches: int) -> Plan:
         def least(path: Trajectory) -> float:
-            return float(natural_modes(self.hexapod, path(path.grid(800)).pose, self.required.joint).omega[:, 0].min())
+            return float(
+                natural_modes(self.hexapod, path(path.grid(800)).pose, joint=self.required.joint).omega[:, 0].min()
+            )
 
         values: dict[str, Any] = {
             "requirements": self.required,

@@ -59,13 +59,13 @@ def animate_mode(
         raise ArgumentError(f"mode {number!r} does not exist; number them from 1 to 6")
     if not (np.isfinite(amplitude) and amplitude > 0):
         raise ArgumentError(f"amplitude is {amplitude!r} m; it must be finite and > 0")
-    modes = natural_modes(hexapod, pose, joint)
+    modes = natural_modes(hexapod, pose, joint=joint)
     twist = modes.shape[:, number - 1]
     arms = hexapod.platform_joints @ pose.matrix.T
     twist = twist * (amplitude / _travel(arms + pose.position, pose, twist[None]))
     phase = 2 * np.pi * np.arange(2 * _PER_PERIOD) / (2 * _PER_PERIOD)
     omega = modes.omega[number - 1]
-    words = describe_modes(hexapod, pose, joint)[number - 1].text
+    words = describe_modes(hexapod, pose, joint=joint)[number - 1].text
     title = f"{hexapod.name}, mode {number}: {omega:.5g} rad/s ({omega / (2 * np.pi):.5g} Hz)\n{words}"
     film = _Film(hexapod, pose, Pose(np.zeros(3)), np.cos(phase)[:, None] * twist, np.zeros((phase.size, 6)))
     note = f"largest joint motion {_length(amplitude)}"

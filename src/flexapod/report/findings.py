@@ -81,11 +81,13 @@ def gather(
     Raises PoseError at a pose that no leg can take. At a singular pose the index is zero and what needs leg forces is
     None.
     """
-    omega, shape = natural_modes(hexapod, pose, joint)
-    shares = energy_shares(hexapod, pose, joint)
+    omega, shape = natural_modes(hexapod, pose, joint=joint)
+    shares = energy_shares(hexapod, pose, joint=joint)
     length = platform_radius(hexapod) if characteristic_length is None else characteristic_length
     conditioning = Conditioning(
-        float(condition_number(hexapod, pose)), float(condition_number(hexapod, pose, length)), length
+        float(condition_number(hexapod, pose)),
+        float(condition_number(hexapod, pose, characteristic_length=length)),
+        length,
     )
     singular = not conditioning.scaled < SINGULAR
     if singular:  # what is left of the lowest mode is rounding: say so with plain zeros and infinities
@@ -100,7 +102,7 @@ def gather(
         joint=joint,
         omega=omega,
         shape=shape,
-        descriptions=describe_modes(hexapod, pose, joint),
+        descriptions=describe_modes(hexapod, pose, joint=joint),
         shares=shares,
         conditioning=conditioning,
         leg_length=inverse_kinematics(hexapod, pose),

@@ -35,8 +35,8 @@ def influences(hexapod: Hexapod, pose: Pose, joint: JointModel, modes: list[int]
     modes: those that make up the index, more than one where the lowest is (nearly) repeated: then the effect is that on
     their mean, which is well defined where the single modes' are not.
     """
-    omega = natural_modes(hexapod, pose, joint).omega[modes].mean()
-    d = frequency_sensitivity(hexapod, pose, joint)
+    omega = natural_modes(hexapod, pose, joint=joint).omega[modes].mean()
+    d = frequency_sensitivity(hexapod, pose, joint=joint)
     relative = Sensitivity(*(by[modes].mean(axis=0) / omega for by in d))
     move = MOVE * float(np.linalg.norm(hexapod.platform_joints, axis=1).max())
     step = f"{move * 1e3:.2g} mm"

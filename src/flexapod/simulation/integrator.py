@@ -204,7 +204,7 @@ def prepare(run: Run, until: float, joint: JointModel) -> Prepared:
         leg_force, lengths = rest.leg_force, rest.unstretched_length
     else:
         lengths = vectors(run.unstretched_length, "unstretched_length", 6)
-        leg_force = run.hexapod.legs.stiffness * (lengths - inverse_kinematics(run.hexapod, run.pose, run.base))
+        leg_force = run.hexapod.legs.stiffness * (lengths - inverse_kinematics(run.hexapod, run.pose, base=run.base))
     base_motion, command = run.base_motion or Excitation(), run.leg_command or Excitation()
     for use, history in run.histories().items():
         _check_recordings(use, history, until)

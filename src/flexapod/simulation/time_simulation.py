@@ -131,7 +131,7 @@ def simulate_many(runs: Sequence[Run], duration: float | None = None, **settings
     options = _options(settings, RUN_SETTINGS)
     method = Method(**{name: options[name] for name in METHOD_SETTINGS if name in options})
     joint = options.get("joint", "universal")
-    highest = [natural_modes(run.hexapod, run.pose, joint, run.base).omega[-1] for run in runs]
+    highest = [natural_modes(run.hexapod, run.pose, joint=joint, base=run.base).omega[-1] for run in runs]
     times = _sample_times(options, duration, max(highest, default=0.0))
     notes = [note for run, omega in zip(runs, highest, strict=True) for note in _coarse(run, omega)]
     for note in dict.fromkeys(notes):
@@ -211,7 +211,7 @@ def _dataset(run: Run, found: Trajectories, i: int, times: Array, wanted: _Wante
     platform, base = _motion(found.platform[i, :reached]), _motion(found.base[i, :reached])
     command = Excitation() if run.leg_command is None else run.leg_command
     unstretched = found.unstretched_length[i] + command.evaluate(times)[0]
-    length = leg_rates(run.hexapod, platform, base).length
+    length = leg_rates(run.hexapod, platform, base=base).length
     force = found.leg_force[i, :reached]
     three, turned = ("time", "axis"), ("time", "axis", "body_axis")
     variables: dict[str, tuple[tuple[str, ...], Any, dict[str, str]]] = {
@@ -265,7 +265,7 @@ def _motion(rows: Array) -> Motion:
 
 
 def _energies(state: _State, work: Array, joint: JointModel) -> dict[str, Any]:
-    e = energy(state.hexapod, state.platform, state.base, state.unstretched, joint)
+    e = energy(state.hexapod, state.platform, base=state.base, unstretched_length=state.unstretched, joint=joint)
     kinetic, gravitational, elastic = (np.asarray(part) for part in (e.kinetic, e.gravitational, e.elastic))
     total = kinetic + gravitational + elastic
     error = total - total[0] - work.sum(axis=1)
@@ -282,7 +282,7 @@ def _energies(state: _State, work: Array, joint: JointModel) -> dict[str, Any]:
 
 
 def _reactions(state: _State, joint: JointModel) -> dict[str, Any]:
-    found = joint_reactions(state.hexapod, state.platform, state.base, state.leg_force, joint=joint)
+    found = joint_reactions(state.hexapod, state.platform, base=state.base, leg_force=state.leg_force, joint=joint)
     return {
         name: (
             ("time", "axis") if name.startswith("base") else ("time", "leg", "axis"),

@@ -35,7 +35,7 @@ def simulation(spec: dict[str, Any]) -> Iterator[Message]:
     """
     question = requests.question(spec)
     duration = requests.number(spec, "duration", 1.0, 1e-6, 1e4)
-    highest = float(natural_modes(question.hexapod, question.pose, question.joint).omega[-1])
+    highest = float(natural_modes(question.hexapod, question.pose, joint=question.joint).omega[-1])
     if duration * highest > 2 * np.pi * MOST_PERIODS:
         most = 2 * np.pi * MOST_PERIODS / highest
         raise requests.AskingError(

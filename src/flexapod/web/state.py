@@ -28,7 +28,7 @@ NEAR_SINGULAR = 1e6  #: cond(H) above which the page warns: a leg force then err
 def snapshot(question: Question) -> dict[str, Any]:
     """Geometry, frequencies, modes, forces and limits at a pose. Raises PoseError where no leg can take it."""
     hexapod, pose, joint = question.hexapod, question.pose, question.joint
-    modes = natural_modes(hexapod, pose, joint)
+    modes = natural_modes(hexapod, pose, joint=joint)
     condition = float(condition_number(hexapod, pose))
     angles = joint_angles(hexapod, pose)
     limits = _limits(hexapod, pose)
@@ -70,12 +70,12 @@ def _geometry(hexapod: Hexapod, pose: Pose) -> dict[str, Any]:
 
 
 def _described(question: Question) -> list[ModeDescription]:
-    return describe_modes(question.hexapod, question.pose, question.joint)
+    return describe_modes(question.hexapod, question.pose, joint=question.joint)
 
 
 def _strain(question: Question) -> np.ndarray:
     """Share of each leg in each mode's strain energy, modes first."""
-    return energy_shares(question.hexapod, question.pose, question.joint).strain.T
+    return energy_shares(question.hexapod, question.pose, joint=question.joint).strain.T
 
 
 def _at_rest(question: Question) -> tuple[dict[str, Any], dict[str, Any] | None]:

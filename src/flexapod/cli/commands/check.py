@@ -41,7 +41,7 @@ def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
     from flexapod.mechanics import kinematics
     from flexapod.mechanics.conditioning import SINGULAR, platform_radius, singularity
 
-    condition = float(kinematics.condition_number(hexapod, pose, platform_radius(hexapod)))
+    condition = float(kinematics.condition_number(hexapod, pose, characteristic_length=platform_radius(hexapod)))
     values = (
         common.pose_numbers(pose),
         kinematics.inverse_kinematics(hexapod, pose),

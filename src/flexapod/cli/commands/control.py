@@ -152,7 +152,7 @@ def _run(hexapod: Hexapod, pose: Pose, controller: Controller, options: Options,
     from flexapod.excitation.spectra import flat_spectrum, random_motion
     from flexapod.mechanics.modes import natural_modes
 
-    omega = natural_modes(hexapod, pose, options.joint).omega
+    omega = natural_modes(hexapod, pose, joint=options.joint).omega
     turn = 6.283185307179586
     low, high = (0.2 * omega[0], 2.0 * omega[-1]) if options.band is None else (turn * hz for hz in options.band)
     spectrum = flat_spectrum(options.shake, float(low), float(high))  # type: ignore[arg-type]

@@ -68,7 +68,7 @@ def command(
     where = common.chosen_pose(given, pose)
     hexapod = nearest(given) if nearest_physical else given
     files = _write(kind, out or Path(f"{common.file_name(hexapod.name)}{SUFFIXES[kind]}"), hexapod, where, joint)
-    omega, before = (natural_modes(machine, where, joint).omega for machine in (hexapod, given))
+    omega, before = (natural_modes(machine, where, joint=joint).omega for machine in (hexapod, given))
     written = [str(file) for file in files]
     found = {
         "design": hexapod.name,

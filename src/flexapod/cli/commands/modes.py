@@ -32,10 +32,10 @@ def command(
     from flexapod.mechanics import kinematics, modes
 
     hexapod, where = common.machine(design, changes, pose)
-    omega, shape = modes.natural_modes(hexapod, where, joint)
-    condition = float(kinematics.condition_number(hexapod, where, characteristic_length))
+    omega, shape = modes.natural_modes(hexapod, where, joint=joint)
+    condition = float(kinematics.condition_number(hexapod, where, characteristic_length=characteristic_length))
     lengths = kinematics.inverse_kinematics(hexapod, where)
-    descriptions = [mode.text for mode in modes.describe_modes(hexapod, where, joint)]
+    descriptions = [mode.text for mode in modes.describe_modes(hexapod, where, joint=joint)]
     if as_json:
         common.print_json(
             {
