@@ -211,8 +211,24 @@ def test_what_cannot_be_written_is_said(tmp_path, write):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize(
+    "write", [fx.interchange.write_mjcf, fx.interchange.write_urdf, fx.interchange.write_sdf, fx.interchange.write_mat]
+)
+def test_swapped_and_wrong_arguments_are_told(tmp_path, write):
+    hexapod = machine(6)
+    with pytest.raises(fx.ArgumentError, match=r"path is <Hexapod.*comes before the hexapod"):
+        write(hexapod, tmp_path / "a")
+    with pytest.raises(fx.DesignError, match="hexapod is 'motion-base'"):
+        write(tmp_path / "a", "motion-base")
+    with pytest.raises(TypeError):
+        write(tmp_path / "a", hexapod, None, 1e-3)
+    six = [*hexapod.home.position, *hexapod.home.rpy]
+    assert write(tmp_path / "a.xml", hexapod, six) == write(tmp_path / "a.xml", hexapod)
+    assert len(list(tmp_path.iterdir())) <= 2
+
+
 def test_a_wrong_timestep_is_refused(tmp_path):
-    with pytest.raises(fx.ArgumentError, match=r"timestep is 0 s; it must be > 0"):
+    with pytest.raises(fx.ArgumentError, match="timestep is 0 s; it must be finite and > 0"):
         fx.interchange.write_mjcf(tmp_path / "m.xml", machine(6), timestep=0)
 
 

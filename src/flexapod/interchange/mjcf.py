@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 import xml.etree.ElementTree as ET
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexapod import __version__
-from flexapod.conventions import Array
+from flexapod.checks import positive
+from flexapod.conventions import TWO_PI, Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import ArgumentError
-from flexapod.interchange.multibody import Body, Leg, Machine, standing
-from flexapod.interchange.xml_files import add, document, write
+from flexapod.interchange.multibody import Body, Leg, Machine, at_rest
+from flexapod.interchange.output_files import output_path, write
+from flexapod.interchange.xml_files import add, document
 from flexapod.mechanics.modes import natural_modes
 from flexapod.pose import Pose
 
@@ -23,31 +26,69 @@ LEFT = 0.9  # of the platform's mass and moments must stay with it
 THICK = 0.02  # radius of a drawn leg, of its length
 
 
-def write_mjcf(path: str | Path, hexapod: Hexapod, pose: Pose | None = None, *, timestep: float | None = None) -> Path:
-    """Write a machine at rest at a pose (default: home) as a MuJoCo model to `path`, SI units; returns the file.
+def write_mjcf(
+    path: str | PathLike[str],
+    hexapod: Hexapod,
+    pose: Pose | ArrayLike | None = None,
+    *,
+    timestep: float | None = None,
+) -> Path:
+    """Write the hexapod at rest as a MuJoCo model (MJCF).
 
-    At joint positions zero the machine stands at the pose with springs that hold it there. Motors `leg1` to `leg6` push
-    beside the springs, N. timestep: s, by default a fiftieth of the shortest natural period, and less for legs with
-    little mass, which could swing on their springs before MuJoCo closes the loops. The loops are closed by
-    `connect`, or, where a spherical joint has friction, by a ball joint with this friction on a small piece cut out of
-    the platform and a `weld` of this piece to the rest: together they are the platform. Base joints are those of the
-    exact model ("universal").
+    At joint positions zero the platform stands at the pose, held by the springs of the legs. Motors ``leg1`` to
+    ``leg6`` push beside the springs, in N. All numbers are in SI units.
 
-    Raises: DesignError for bodies that MuJoCo refuses (see `nearest_physical`); ArgumentError for a timestep not > 0;
-    PoseError without a pose or at one that no leg can take; SingularPoseError where no leg forces hold the pose;
-    OutputError where the file cannot be written.
-    Source: own.
+    Parameters
+    ----------
+    path : str or path-like
+        The file to write.
+    hexapod : Hexapod
+        The design.
+    pose : Pose or array_like, shape (6,), optional
+        Where the platform stands: x, y, z in m, roll, pitch, yaw in rad. The home pose by default.
+    timestep : float, optional
+        Time step of the model, s. By default a fiftieth of the shortest natural period, or less where legs have so
+        little mass that they could swing on their springs before MuJoCo closes the loops.
+
+    Returns
+    -------
+    pathlib.Path
+        The file written.
+
+    Raises
+    ------
+    ArgumentError
+        If the path or the time step is invalid.
+    DesignError
+        If a body has no mass, or an inertia that no solid body has (see `nearest_physical`).
+    PoseError
+        If the pose is missing, a batch, or out of the legs' reach.
+    SingularPoseError
+        If no leg forces hold the platform at the pose.
+    OutputError
+        If the file cannot be written.
+
+    Notes
+    -----
+    The loops are closed by ``connect`` constraints. Where a spherical joint has friction, a ball joint with this
+    friction carries a small piece cut out of the platform, and a ``weld`` joins the piece to the rest: together they
+    have the platform's mass and inertia. The joints between base and legs are universal joints, as in the exact model.
+
+    Examples
+    --------
+    >>> fx.interchange.write_mjcf("motion-base.xml", fx.load("motion-base")).name
+    'motion-base.xml'
     """
-    return write(path, mjcf(hexapod, pose, timestep))
+    return write(output_path(path), mjcf(hexapod, pose, timestep))
 
 
-def mjcf(hexapod: Hexapod, pose: Pose | None = None, timestep: float | None = None) -> str:
+def mjcf(hexapod: Hexapod, pose: Pose | ArrayLike | None = None, timestep: float | None = None) -> str:
     """The text of `write_mjcf`'s file."""
-    machine = standing(hexapod, pose)
+    if timestep is not None:
+        positive(timestep, "timestep", "s")
+    machine = at_rest(hexapod, pose)
     if timestep is None:
         timestep = _timestep(hexapod, machine)
-    if not 0 < timestep < math.inf:
-        raise ArgumentError(f"timestep is {timestep!r} s; it must be > 0. Leave it out for one that suits the machine.")
     root = ET.Element("mujoco", model=machine.name)
     root.append(ET.Comment(f" Written by Flexapod {__version__} for {machine.pose!r}; SI units, base frame. "))
     add(root, "compiler", angle="radian", autolimits="true")
@@ -77,7 +118,7 @@ def mjcf(hexapod: Hexapod, pose: Pose | None = None, timestep: float | None = No
 def _timestep(hexapod: Hexapod, machine: Machine) -> float:
     fastest = float(natural_modes(hexapod, machine.pose).omega[-1])
     lightest = min(math.sqrt(leg.upper.mass / leg.stiffness) for leg in machine.legs)
-    return min(2 * math.pi / fastest / STEPS, lightest / 2)
+    return min(TWO_PI / fastest / STEPS, lightest / 2)
 
 
 def _divided(machine: Machine) -> tuple[Body, list[Body | None]]:

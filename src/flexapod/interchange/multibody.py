@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod, LegPart
@@ -51,12 +52,8 @@ class Machine(NamedTuple):
     legs: tuple[Leg, ...]
 
 
-def standing(hexapod: Hexapod, pose: Pose | None = None) -> Machine:
-    """The machine at a pose, by default at home, at rest under gravity.
-
-    Raises PoseError without one pose, SingularPoseError where no leg forces hold it, DesignError for bodies that
-    rigid-body programs refuse.
-    """
+def at_rest(hexapod: Hexapod, pose: Pose | ArrayLike | None = None) -> Machine:
+    """The machine at a pose, by default at home, at rest under gravity, with bodies that rigid-body programs accept."""
     where = single_pose(hexapod, pose)
     check_physical(hexapod)
     rest = hold(hexapod, where)

@@ -9,6 +9,7 @@ import numpy as np
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import DesignError
+from flexapod.mechanics.inputs import as_hexapod
 
 LEAST_MASS = 1e-4  # of the platform's mass, in place of none
 LEAST_SPREAD = 1e-6  # of the largest second moment, or of mass times the machine's height squared
@@ -16,16 +17,42 @@ FLAT = 1e-9  # of the largest second moment: less is rounding
 
 
 def nearest_physical(hexapod: Hexapod) -> Hexapod:
-    """The same machine with bodies that exist; the machine itself if all do. Its frequencies differ: compare them.
+    """Replace bodies that cannot exist by the nearest solid ones.
 
-    A body's second moments of mass are the matrix trace(I)/2 E - I, kg m2, which is positive definite for real bodies.
-    Where it is not, its eigenvalues are raised to a millionth of the largest (a sheet gets a thickness of a thousandth
-    of its width, a thin rod a radius), the smallest change in the sum of squares that gives such moments. Leg parts
-    without mass get a ten-thousandth of the platform's.
+    Rigid-body programs refuse bodies without mass and inertias that no solid body has. The natural frequencies of the
+    changed design differ somewhat: compare them.
 
-    Raises: nothing of its own.
-    Source: own.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The design.
+
+    Returns
+    -------
+    Hexapod
+        The changed design, or `hexapod` itself if all its bodies can exist.
+
+    Raises
+    ------
+    DesignError
+        If `hexapod` is not a Hexapod.
+
+    Notes
+    -----
+    The second moments of mass of a body are the matrix trace(I)/2 E - I, in kg m2, which is positive definite for solid
+    bodies. Where it is not, its eigenvalues are raised to a millionth of the largest (a sheet gets a thickness of a
+    thousandth of its width, a thin rod a radius): the smallest change, in the sum of squares, that gives such moments.
+    Parts of legs without mass get a ten-thousandth of the platform's mass.
+
+    Examples
+    --------
+    >>> hexapod = fx.load("mukherjee-ii")
+    >>> solid = fx.interchange.nearest_physical(hexapod)
+    >>> round(float(fx.natural_modes(solid, fx.home_pose(solid)).omega[0] / fx.natural_modes(
+    ...     hexapod, fx.home_pose(hexapod)).omega[0]), 3)
+    1.0
     """
+    as_hexapod(hexapod)
     changes: dict[str, Any] = {}
     reach = float(np.ptp(np.concatenate([hexapod.base_joints, hexapod.platform_joints]), axis=0).max())
     if _flaw(hexapod.platform_mass, hexapod.platform_inertia):

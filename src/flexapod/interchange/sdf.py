@@ -3,33 +3,68 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexapod import __version__
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.interchange.multibody import Body, Leg, Machine, standing
-from flexapod.interchange.xml_files import add, document, say, write
+from flexapod.interchange.multibody import Body, Leg, Machine, at_rest
+from flexapod.interchange.output_files import output_path, write
+from flexapod.interchange.xml_files import add, document, say
 from flexapod.pose import Pose
 
 VERSION = "1.9"
 UNLIMITED = 1e16  # SDF's own value for no limit
 
 
-def write_sdf(path: str | Path, hexapod: Hexapod, pose: Pose | None = None) -> Path:
-    """Write a machine at rest at a pose (default: home) as an SDF world at `path`, SI units; returns the file.
+def write_sdf(path: str | PathLike[str], hexapod: Hexapod, pose: Pose | ArrayLike | None = None) -> Path:
+    """Write the hexapod at rest as an SDF world.
 
-    Links stand where they are at the pose, in the base frame; legs are universal, prismatic (with spring, rest position
-    and damping) and ball joints, the loops closed. The ball joints are without friction, for which SDF has no word.
-    Base joints are those of the exact model ("universal").
+    Links stand where they are at the pose, in the base frame and SI units. Legs are universal, prismatic (with spring,
+    rest position and damping) and ball joints; the loops are closed.
 
-    Raises: DesignError for bodies that are none (see `nearest_physical`); PoseError without a pose or at one that no
-    leg can take; SingularPoseError where no leg forces hold the pose; OutputError where the file cannot be written.
-    Source: own.
+    Parameters
+    ----------
+    path : str or path-like
+        The file to write.
+    hexapod : Hexapod
+        The design.
+    pose : Pose or array_like, shape (6,), optional
+        Where the platform stands: x, y, z in m, roll, pitch, yaw in rad. The home pose by default.
+
+    Returns
+    -------
+    pathlib.Path
+        The file written.
+
+    Raises
+    ------
+    ArgumentError
+        If the path is invalid.
+    DesignError
+        If a body has no mass, or an inertia that no solid body has (see `nearest_physical`).
+    PoseError
+        If the pose is missing, a batch, or out of the legs' reach.
+    SingularPoseError
+        If no leg forces hold the platform at the pose.
+    OutputError
+        If the file cannot be written.
+
+    Notes
+    -----
+    The format is SDF 1.9. It has no friction of ball joints, which is left out. The joints between base and legs are
+    universal joints, as in the exact model.
+
+    Examples
+    --------
+    >>> fx.interchange.write_sdf("motion-base.sdf", fx.load("motion-base")).name
+    'motion-base.sdf'
     """
-    return write(path, sdf(standing(hexapod, pose)))
+    return write(output_path(path), sdf(at_rest(hexapod, pose)))
 
 
 def sdf(machine: Machine) -> str:

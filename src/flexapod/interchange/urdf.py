@@ -4,36 +4,72 @@ from __future__ import annotations
 
 import json
 import xml.etree.ElementTree as ET
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexapod import __version__
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.interchange.multibody import Body, Leg, Machine, standing
-from flexapod.interchange.xml_files import add, document, write
+from flexapod.interchange.multibody import Body, Leg, Machine, at_rest
+from flexapod.interchange.output_files import output_path, write
+from flexapod.interchange.xml_files import add, document
 from flexapod.pose import Pose
 
 UNLIMITED = 1e9  # URDF wants a number for every limit of a sliding joint
-AXES = {"x": [1.0, 0.0, 0.0], "y": [0.0, 1.0, 0.0], "z": [0.0, 0.0, 1.0]}
+_ALONG = {"x": [1.0, 0.0, 0.0], "y": [0.0, 1.0, 0.0], "z": [0.0, 0.0, 1.0]}
 
 
-def write_urdf(path: str | Path, hexapod: Hexapod, pose: Pose | None = None) -> tuple[Path, Path]:
-    """Write a machine at rest at a pose (default: home) as URDF to `path`, and NAME.loops.json; returns both files.
+def write_urdf(path: str | PathLike[str], hexapod: Hexapod, pose: Pose | ArrayLike | None = None) -> tuple[Path, Path]:
+    """Write the hexapod at rest as URDF, with a JSON file for what URDF cannot hold.
 
-    In SI units. The platform hangs on leg 1 by three hinges through its spherical joint; the JSON file names the five
-    point constraints that close the other legs, the six springs with their rest positions, the friction of the
-    spherical joints and gravity. At joint positions zero the machine stands at the pose, at rest. Base joints are those
-    of the exact model ("universal").
+    URDF describes a tree: the platform hangs on leg 1 by three hinges through its spherical joint. The file
+    ``NAME.loops.json`` names the five point constraints that close the other legs, the six springs with their rest
+    positions, the friction of the spherical joints, and gravity. At joint positions zero the platform stands at the
+    pose, at rest. All numbers are in SI units.
 
-    Raises: DesignError for bodies that are none (see `nearest_physical`); PoseError without a pose or at one that no
-    leg can take; SingularPoseError where no leg forces hold the pose; OutputError where a file cannot be written.
-    Source: own.
+    Parameters
+    ----------
+    path : str or path-like
+        The file to write.
+    hexapod : Hexapod
+        The design.
+    pose : Pose or array_like, shape (6,), optional
+        Where the platform stands: x, y, z in m, roll, pitch, yaw in rad. The home pose by default.
+
+    Returns
+    -------
+    tuple of pathlib.Path
+        The URDF file and the JSON file.
+
+    Raises
+    ------
+    ArgumentError
+        If the path is invalid.
+    DesignError
+        If a body has no mass, or an inertia that no solid body has (see `nearest_physical`).
+    PoseError
+        If the pose is missing, a batch, or out of the legs' reach.
+    SingularPoseError
+        If no leg forces hold the platform at the pose.
+    OutputError
+        If a file cannot be written.
+
+    Notes
+    -----
+    The joints between base and legs are universal joints, as in the exact model.
+
+    Examples
+    --------
+    >>> [file.name for file in fx.interchange.write_urdf("motion-base.urdf", fx.load("motion-base"))]
+    ['motion-base.urdf', 'motion-base.loops.json']
     """
-    machine = standing(hexapod, pose)
-    file = write(path, urdf(machine))
+    file = output_path(path)
+    machine = at_rest(hexapod, pose)
+    write(file, urdf(machine))
     beside = json.dumps(loops(machine, file.name), indent=2)
     return file, write(file.with_suffix(".loops.json"), beside + "\n")
 
@@ -81,7 +117,7 @@ def loops(machine: Machine, name: str) -> dict[str, Any]:
             }
             for leg in machine.legs
         ],
-        "platform_joints": [f"{first.name}_spherical_{axis}" for axis in AXES],
+        "platform_joints": [f"{first.name}_spherical_{axis}" for axis in _ALONG],
     }
 
 
@@ -93,9 +129,9 @@ def _leg(robot: ET.Element, leg: Leg) -> None:
     names = [f"{leg.name}_{joint}" for joint in ("universal_k", "universal_y", "slide")]
     links = ["base", f"{leg.name}_cross", f"{leg.name}_lower", f"{leg.name}_upper"]
     _joint(robot, "continuous", names[0], links[0:2], leg.base_joint, leg.axes, leg.axis, leg.universal)
-    _joint(robot, "continuous", names[1], links[1:3], np.zeros(3), np.eye(3), AXES["y"], leg.universal)
+    _joint(robot, "continuous", names[1], links[1:3], np.zeros(3), np.eye(3), _ALONG["y"], leg.universal)
     end = np.array([leg.length, 0.0, 0.0])
-    slide = _joint(robot, "prismatic", names[2], links[2:4], end, np.eye(3), AXES["x"], leg.prismatic)
+    slide = _joint(robot, "prismatic", names[2], links[2:4], end, np.eye(3), _ALONG["x"], leg.prismatic)
     low, high = leg.travel or (-leg.length, leg.length)
     add(slide, "limit", lower=low, upper=high, effort=UNLIMITED, velocity=UNLIMITED)
 
@@ -105,7 +141,7 @@ def _platform(robot: ET.Element, machine: Machine) -> None:
     first = machine.legs[0]
     turn = first.axes.T @ machine.pose.matrix
     parent = f"{first.name}_upper"
-    for axis, along in AXES.items():
+    for axis, along in _ALONG.items():
         child = f"socket_{axis}"
         add(robot, "link", name=child)
         name = f"{first.name}_spherical_{axis}"

@@ -1,14 +1,11 @@
-"""XML and text files: numbers that read back bit for bit, and errors that say what to do."""
+"""XML: elements whose numbers read back bit for bit."""
 
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-
-from flexapod.errors import OutputError
 
 
 def add(parent: ET.Element, tag: str, **attributes: Any) -> ET.Element:
@@ -35,13 +32,3 @@ def document(root: ET.Element) -> str:
     """The whole XML file."""
     ET.indent(root)
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
-
-
-def write(path: str | Path, content: str) -> Path:
-    """Write a text file. Raises OutputError where that cannot be."""
-    file = Path(path)
-    try:
-        file.write_text(content, encoding="utf-8", newline="\n")
-    except OSError as error:
-        raise OutputError(f"{file} cannot be written: {error.strerror}. Choose another place.") from error
-    return file
