@@ -88,7 +88,7 @@ def difference(problem: Problem, output: bytes) -> float:
 
 def check(build: Build, problems: dict[str, Problem], folder: Path) -> bool:
     program = folder / "check"
-    sources = [ROOT / "tests" / "core" / "check.cpp", ROOT / "src" / "core" / "sweep_kernel.cpp"]
+    sources = [ROOT / "tests" / "core" / "check.cpp", ROOT / "src" / "core" / "sweep" / "kernel.cpp"]
     options = [*OPTIONS, *build.options, f"-I{ROOT / 'src' / 'core'}", '-DFLEXAPOD_ISA="check"']
     subprocess.run([build.compiler, *options, *map(str, sources), "-o", str(program)], check=True)
     worst, lanes = 0.0, ""

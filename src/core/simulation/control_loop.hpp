@@ -5,7 +5,7 @@
 
 namespace flexapod {
 
-/// x[k+1] = A x + B (y + noise), f = C x + D (y + noise), clipped to +-limit; y is Rig::measure at the sample.
+/// x[k+1] = A x + B (y + noise), f = C x + D (y + noise), clipped to +-limit; y is MachineOnBase::measure at the sample.
 struct SampledController : simulation_task::Controller {
   static constexpr int signals = simulation_task::signals;
 
@@ -40,8 +40,9 @@ class ControlLoop {
   using Timing = simulation_task::Timing;
   using Record = simulation_task::Record;
 
-  ControlLoop(const RigInput& input, const Excitation& base, const SampledController& controller, const Timing& timing)
-      : rig_(input, base, none_, none_), controller_(controller), timing_(timing), x_(controller.order) {
+  ControlLoop(const MachineOnBaseInput& input, const Excitation& base, const SampledController& controller,
+              const Timing& timing)
+      : machine_(input, base, none_, none_), controller_(controller), timing_(timing), x_(controller.order) {
     double spacing = 0;
     base.notes(corners_, spacing);
     std::erase_if(corners_, [](double t) { return !(t > 0 && std::isfinite(t)); });
@@ -50,12 +51,12 @@ class ControlLoop {
 
   /// noise: rows of 36 for every sample. Ends early where a number is no longer finite or H becomes singular.
   Outcome run(const double* noise, const Record& record, const std::atomic<bool>& stop, std::atomic<double>& progress) {
-    State y = rig_.start();
+    State y = machine_.start();
     double side = determinant(y);
     for (size_t k = 0; k < timing_.count; ++k) {
       if (stop.load(std::memory_order_relaxed)) return Outcome::stopped;
       const double t = timing_.dt * static_cast<double>(k);
-      rig_.inside = t + 1e-6 * timing_.dt;
+      machine_.inside = t + 1e-6 * timing_.dt;
       if (k == 0) write_row(record, 0, t, y);
       sample(noise + k * SampledController::signals, t, y, record.force + 6 * k, record.cut[k]);
       for (size_t step = 0; step < timing_.steps; ++step) {
@@ -74,45 +75,47 @@ class ControlLoop {
   }
 
  private:
-  using State = Rig::State;
+  using State = MachineOnBase::State;
 
   void sample(const double* noise, double t, const State& y, double* force, double& cut) {
     double signal[SampledController::signals];
-    rig_.measure(t, y, signal);
+    machine_.measure(t, y, signal);
     for (int i = 0; i < SampledController::signals; ++i) signal[i] += noise[i];
     Vec6<double> f;
     cut = controller_.update(signal, x_, f) ? 1.0 : 0.0;
-    rig_.held = PerLeg(f);
+    machine_.held = PerLeg(f);
     std::copy_n(f.a, 6, force);
   }
 
   /// From one instant to another, split at the excitation's corners.
   void advance(State& y, double from, double to) {
-    const auto f = [this](int, double t, const State& state, State& rate) { rig_.rates(t, state, rate, false); };
+    const auto f = [this](int, double t, const State& state, State& rate) { machine_.rates(t, state, rate, false); };
     for (double t = from; t < to;) {
       while (next_corner_ < corners_.size() && corners_[next_corner_] <= t) ++next_corner_;
       double end = to;
       if (next_corner_ < corners_.size() && corners_[next_corner_] < to) end = corners_[next_corner_];
-      rig_.inside = 0.5 * (t + end);
+      machine_.inside = 0.5 * (t + end);
       method_.begin(t, y, f);
       method_.attempt(end - t, f);
       y = method_.y1;
-      rig_.recentre(y);
+      machine_.recentre(y);
       t = end;
     }
   }
 
   void write_row(const Record& record, size_t row, double t, const State& y) {
     double signal[SampledController::signals];
-    rig_.measure(t, y, signal);
+    machine_.measure(t, y, signal);
     std::copy_n(signal, SampledController::signals, record.measured + row * SampledController::signals);
-    const Vec6<double> x = rig_.displacement(t, y);
+    const Vec6<double> x = machine_.displacement(t, y);
     std::copy_n(x.a, 6, record.displacement + 6 * row);
   }
-  double determinant(const State& y) const { return scaled_determinant(force_transformation(rig_.geometry(y)), 1.0); }
+  double determinant(const State& y) const {
+    return scaled_determinant(force_transformation(machine_.geometry(y)), 1.0);
+  }
 
   const Excitation none_{nullptr, 0};
-  Rig rig_;
+  MachineOnBase machine_;
   SampledController controller_;
   Timing timing_;
   RungeKutta8<16> method_;

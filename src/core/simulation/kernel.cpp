@@ -18,7 +18,7 @@ static_assert(sizeof(Setup) == setup_size * sizeof(double) && sizeof(Motion<doub
 
 Joint joint(bool universal) { return universal ? Joint::universal : Joint::spin_free; }
 
-RigInput rig_input(const simulation_task::Machine& m) {
+MachineOnBaseInput input_of(const simulation_task::Machine& m) {
   const auto& s = *reinterpret_cast<const Setup*>(m.setup);
   return {*reinterpret_cast<const Design<double>*>(m.design),
           joint(m.universal),
@@ -36,7 +36,7 @@ Excitation excitation(const Series& s) { return {s.numbers, s.size}; }
 
 End simulate(const Run& run) {
   const auto& m = run.machine;
-  Simulation simulation(rig_input(m), excitation(m.base), excitation(m.wrench), excitation(m.command), run.tolerances);
+  Simulation simulation(input_of(m), excitation(m.base), excitation(m.wrench), excitation(m.command), run.tolerances);
   End end{static_cast<int>(simulation.run(run.samples, *run.stop, *run.progress)), simulation.time(), {}, 0, 0, 0};
   const Motion<double> last = simulation.last();
   std::memcpy(end.last, &last, sizeof(end.last));
@@ -46,7 +46,7 @@ End simulate(const Run& run) {
 }
 
 int control_loop(const Loop& given) {
-  ControlLoop loop(rig_input(given.machine), excitation(given.machine.base), SampledController{given.controller},
+  ControlLoop loop(input_of(given.machine), excitation(given.machine.base), SampledController{given.controller},
                    given.timing);
   return static_cast<int>(loop.run(given.noise, given.record, *given.stop, *given.progress));
 }
@@ -64,17 +64,19 @@ void forward_dynamics_of(const States& s) {
 }
 
 void* new_equations(const simulation_task::Machine& m) {
-  return new Rig(rig_input(m), excitation(m.base), excitation(m.wrench), excitation(m.command));
+  return new MachineOnBase(input_of(m), excitation(m.base), excitation(m.wrench), excitation(m.command));
 }
-void delete_equations(void* rig) { delete static_cast<Rig*>(rig); }
-void start(void* rig, double* y) { std::copy_n(static_cast<Rig*>(rig)->start().data(), Rig::mechanical, y); }
+void delete_equations(void* machine) { delete static_cast<MachineOnBase*>(machine); }
+void start(void* machine, double* y) {
+  std::copy_n(static_cast<MachineOnBase*>(machine)->start().data(), MachineOnBase::mechanical, y);
+}
 void rates(void* equations, double t, const double* numbers, double* rate) {
-  auto* rig = static_cast<Rig*>(equations);
-  Rig::State y{}, all;
-  std::copy_n(numbers, Rig::mechanical, y.data());
-  rig->inside = t;
-  rig->rates(t, y, all, false);
-  std::copy_n(all.data(), Rig::mechanical, rate);
+  auto* machine = static_cast<MachineOnBase*>(equations);
+  MachineOnBase::State y{}, all;
+  std::copy_n(numbers, MachineOnBase::mechanical, y.data());
+  machine->inside = t;
+  machine->rates(t, y, all, false);
+  std::copy_n(all.data(), MachineOnBase::mechanical, rate);
 }
 
 }  // namespace

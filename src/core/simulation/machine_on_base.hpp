@@ -13,7 +13,7 @@
 namespace flexapod {
 
 /// What one simulation starts from. Inertial axes, save `wrench`.
-struct RigInput {
+struct MachineOnBaseInput {
   Design<double> design;
   Joint joint;
   Pose<double> platform, base;          // at rest
@@ -25,7 +25,7 @@ struct RigInput {
   Vec6<double> displacement, velocity;  // of the platform from rest at t = 0 (translation, rotation)
 };
 
-class Rig {
+class MachineOnBase {
  public:
   using State = RungeKutta8<16>::State;
   static constexpr int mechanical = 12;  // numbers of the state before the works
@@ -34,7 +34,8 @@ class Rig {
   PerLeg held{};      // leg forces beside the springs, N: what a controller holds between its samples
   double inside = 0;  // an instant between the corners of the excitations that the present time lies between
 
-  Rig(const RigInput& input, const Excitation& base, const Excitation& wrench, const Excitation& command)
+  MachineOnBase(const MachineOnBaseInput& input, const Excitation& base, const Excitation& wrench,
+                const Excitation& command)
       : in_(input),
         machine_(without_gravity(input.design), input.joint),
         legs_(machine_),
@@ -67,7 +68,7 @@ class Rig {
   }
 
   FLEXAPOD_FLAT void rates(double t, const State& y, State& rate, bool powers) {
-    const Moment now = moment(t, y);
+    const Instant now = instant(t, y);
     const Motion<double>&frame = now.frame, &p = now.platform;
     const Vec3<double>&v = now.v, &w = now.w, &r = p.pose.t;
     const Vec3<double> frame_a = frame.a + cross(frame.alpha, r) + cross(frame.w, cross(frame.w, r) + 2.0 * v);
@@ -91,7 +92,7 @@ class Rig {
 
   /// The platform's motion in the inertial frame, with accelerations; that of the base; leg forces.
   void motions(double t, const State& y, Motion<double>& platform, Motion<double>& base, Vec6<double>& leg_force) {
-    const Moment now = moment(t, y);
+    const Instant now = instant(t, y);
     leg_force = now.leg_force.six();
     const Mat3<double>& R_b = now.base.motion.pose.R;
     base = now.base.motion;
@@ -117,7 +118,7 @@ class Rig {
   /// What sensors show, each as a change from rest: leg lengths, their rates, leg forces, the platform's displacement
   /// seen from the base and its rate (axes of the base at rest, turned to the inertial frame), absolute acceleration.
   void measure(double t, const State& y, double (&out)[36]) {
-    const Moment now = moment(t, y);
+    const Instant now = instant(t, y);
     const Mat3<double>& R_b = now.base.motion.pose.R;
     const Vec6<double> force = now.leg_force.six();
     const Geometry<double> g = geometry(y), rest(machine_.design, rest_, Pose<double>());
@@ -143,7 +144,7 @@ class Rig {
 
  private:
   /// All that is known at one instant; base axes but for `base`.
-  struct Moment {
+  struct Instant {
     BaseMotion base;
     Motion<double> frame;     // the base's rotation and its acceleration less gravity
     Motion<double> platform;  // velocity less that of the base's reference point; accelerations less gravity
@@ -168,8 +169,8 @@ class Rig {
   }
   Pose<double> pose(const State& y) const { return {rest_.t + get(y, 0), rotation(get(y, 3)) * R_chart_}; }
 
-  Moment moment(double t, const State& y) {
-    Moment now{base_at(t), {}, {}, get(y, 6), get(y, 9), places_, {}, in_.wrench, {}};
+  Instant instant(double t, const State& y) {
+    Instant now{base_at(t), {}, {}, get(y, 6), get(y, 9), places_, {}, in_.wrench, {}};
     const Motion<double>& b = now.base.motion;
     now.frame.a = transposed(b.pose.R, b.a - in_.design.gravity);
     now.frame.w = transposed(b.pose.R, b.w), now.frame.alpha = transposed(b.pose.R, b.alpha);
@@ -190,7 +191,7 @@ class Rig {
 
   /// Where the legs are, from their change since the chart was set, and F = -K (L - L_0(t)) (corrections E6) from the
   /// change of length, without cancellation.
-  void set_legs(double t, const State& y, Moment& now) {
+  void set_legs(double t, const State& y, Instant& now) {
     PerLeg command{};
     if (!command_.empty()) {
       command_.at(t, inside, now.command);
@@ -225,7 +226,7 @@ class Rig {
     }
   }
 
-  void add_powers(const Moment& now, State& rate) const {
+  void add_powers(const Instant& now, State& rate) const {
     const Motion<double>& p = now.platform;
     const Vec3<double> v_b = transposed(now.base.motion.pose.R, now.base.motion.v), w_b = now.frame.w;
     if (friction_ || !base_.empty()) {
@@ -239,7 +240,7 @@ class Rig {
     for (int i = 0; i < 6; ++i) rate[of_command] += force[i] * now.command[i].v;
   }
 
-  RigInput in_;
+  MachineOnBaseInput in_;
   Machine<double> machine_;  // without gravity, which goes with the base's acceleration
   SixLegs legs_;
   Excitation base_, wrench_, command_;

@@ -40,13 +40,13 @@ inline double scaled_determinant(Mat6<double> m, double length) {
 
 class Simulation {
  public:
-  using State = Rig::State;
+  using State = MachineOnBase::State;
 
-  Simulation(const RigInput& input, const Excitation& base, const Excitation& wrench, const Excitation& command,
-             const Tolerances& tolerances)
-      : rig_(input, base, wrench, command), tol_(tolerances) {
+  Simulation(const MachineOnBaseInput& input, const Excitation& base, const Excitation& wrench,
+             const Excitation& command, const Tolerances& tolerances)
+      : machine_(input, base, wrench, command), tol_(tolerances) {
     for (const auto& p : input.design.p) size_ = std::max(size_, norm(p));
-    const Modes modes = natural_modes(rig_.machine(), rig_.geometry(State{}), rig_.rest().R);
+    const Modes modes = natural_modes(machine_.machine(), machine_.geometry(State{}), machine_.rest().R);
     slowest_ = modes.omega[0], fastest_ = modes.omega[5];
     double spacing = std::numeric_limits<double>::infinity();
     for (const Excitation* e : {&base, &wrench, &command}) e->notes(corners_, spacing);
@@ -61,15 +61,15 @@ class Simulation {
     std::erase_if(corners_, [&](double t) { return !(t > 0.0 && t < end); });
     corners_.push_back(end);
     std::sort(corners_.begin(), corners_.end());
-    State y = rig_.start();
-    rig_.inside = 0.5 * corners_.front();
+    State y = machine_.start();
+    machine_.inside = 0.5 * corners_.front();
     watch_from(y);
     double t = 0.0;
     next_step_ = first_step(end);
     sample_until(0.0, [&](double) { return y; });
     for (const double corner : corners_) {
       if (!(corner > t)) continue;
-      rig_.inside = 0.5 * (t + corner);
+      machine_.inside = 0.5 * (t + corner);
       const Outcome outcome = go(t, corner, y, stop, progress);
       if (outcome != Outcome::complete) return outcome;
       t = corner, y = rk_.y0;
@@ -84,7 +84,7 @@ class Simulation {
   Motion<double> last() {
     Motion<double> platform, base;
     Vec6<double> leg_force;
-    rig_.motions(time_, last_, platform, base, leg_force);
+    machine_.motions(time_, last_, platform, base, leg_force);
     return platform;
   }
 
@@ -95,7 +95,7 @@ class Simulation {
   auto rates() {
     return [this](int stage, double t, const State& y, State& rate) {
       counts_.evaluations += 1;
-      rig_.rates(t, y, rate, stage == 0 || stage > 4);  // works take no part in stages 1 to 4
+      machine_.rates(t, y, rate, stage == 0 || stage > 4);  // works take no part in stages 1 to 4
     };
   }
 
@@ -120,7 +120,7 @@ class Simulation {
       const double h = last ? left : next_step_ > 0.5 * left ? 0.5 * left : next_step_;
       if (h < 1e-14 * std::max(rk_.t, 1e-3 * end)) return ended(collapse());
       rk_.attempt(h, f);
-      const double error = rk_.error(scales(peaks_with(rk_.y1, h)), Rig::mechanical);
+      const double error = rk_.error(scales(peaks_with(rk_.y1, h)), MachineOnBase::mechanical);
       if (!(error <= 1.0)) {
         counts_.rejected += 1, rejected = true;
         next_step_ = h * (error > 1.0 ? std::max(0.2, 0.9 * std::pow(error, -0.125)) : 0.2);  // 0.2 too for NaN
@@ -149,7 +149,7 @@ class Simulation {
     rk_.t = t;  // exactly at a corner
     time_ = t, last_ = rk_.y0;
     peaks_ = peaks_with(rk_.y0, h);
-    if (rig_.recentre(rk_.y0)) rk_.begin(t, State(rk_.y0), f);
+    if (machine_.recentre(rk_.y0)) rk_.begin(t, State(rk_.y0), f);
   }
 
   /// Largest displacement and speed of the last few periods of the slowest mode, rotations counted at the platform's
@@ -175,13 +175,13 @@ class Simulation {
   template <class F> Outcome look(F&& f) {
     const double end = rk_.t + rk_.h;
     const auto inside = [&](double t) { return t == end ? rk_.y1 : rk_.inside(t, f); };
-    const Geometry<double> g = rig_.geometry(rk_.y1);
+    const Geometry<double> g = machine_.geometry(rk_.y1);
     const double side = determinant(g);
     Outcome outcome = Outcome::complete;
     double until = end;
     for (int i = 0; i < 6; ++i) {
       if (dot(g.S[i], S_[i]) > 0) continue;
-      const auto length = [&](double t) { return norm(rig_.geometry(inside(t)).S[i]); };
+      const auto length = [&](double t) { return norm(machine_.geometry(inside(t)).S[i]); };
       const double nearest = where_least(length, rk_.t, end);
       if (length(nearest) < collapsed * size_) outcome = Outcome::leg_collapsed, until = std::min(until, nearest);
     }
@@ -201,7 +201,7 @@ class Simulation {
     double low = rk_.t, high = rk_.t + rk_.h;
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (low + high);
-      (determinant(rig_.geometry(inside(middle))) * side_ > 0 ? low : high) = middle;
+      (determinant(machine_.geometry(inside(middle))) * side_ > 0 ? low : high) = middle;
     }
     return low;
   }
@@ -224,7 +224,7 @@ class Simulation {
   double determinant(const Geometry<double>& g) const { return scaled_determinant(force_transformation(g), size_); }
 
   void watch_from(const State& y) {
-    const Geometry<double> g = rig_.geometry(y);
+    const Geometry<double> g = machine_.geometry(y);
     side_ = determinant(g), last_ = y, time_ = 0.0;
     std::copy(g.S, g.S + 6, S_);
   }
@@ -236,8 +236,8 @@ class Simulation {
   /// Why steps have become too small.
   Outcome collapse() {
     State rate;
-    rig_.rates(rk_.t, rk_.y0, rate, false);
-    const Geometry<double> g = rig_.geometry(rk_.y0);
+    machine_.rates(rk_.t, rk_.y0, rate, false);
+    const Geometry<double> g = machine_.geometry(rk_.y0);
     for (int i = 0; i < 6; ++i) {
       const double L = norm(g.S[i]);
       if (L < 10.0 * collapsed * size_) return Outcome::leg_collapsed;
@@ -251,19 +251,19 @@ class Simulation {
     for (; next_sample_ < samples_.count && samples_.times[next_sample_] <= t; ++next_sample_) {
       const double at = samples_.times[next_sample_];
       const State y = state(at);
-      const Vec6<double> x = rig_.displacement(at, y);
+      const Vec6<double> x = machine_.displacement(at, y);
       std::copy_n(x.a, 6, samples_.displacement + 6 * next_sample_);
-      std::copy_n(rig_.relative(y).a, 6, samples_.relative + 6 * next_sample_);
-      std::copy_n(y.data() + Rig::mechanical, 4, samples_.work + 4 * next_sample_);
+      std::copy_n(machine_.relative(y).a, 6, samples_.relative + 6 * next_sample_);
+      std::copy_n(y.data() + MachineOnBase::mechanical, 4, samples_.work + 4 * next_sample_);
       if (!samples_.platform) continue;
       auto* platform = reinterpret_cast<Motion<double>*>(samples_.platform) + next_sample_;
       auto* base = reinterpret_cast<Motion<double>*>(samples_.base) + next_sample_;
       auto* leg_force = reinterpret_cast<Vec6<double>*>(samples_.leg_force) + next_sample_;
-      rig_.motions(at, y, *platform, *base, *leg_force);
+      machine_.motions(at, y, *platform, *base, *leg_force);
     }
   }
 
-  Rig rig_;
+  MachineOnBase machine_;
   Tolerances tol_;
   Method rk_;
   Samples samples_{};

@@ -11,7 +11,7 @@ template <class T> struct SweepModes {
   const SweptMachine& machine;
   const Task& task;
   const Rows rows;
-  const Dynamics<T>& dynamics;
+  const MassAndForceMap<T>& dynamics;
 
   template <bool all> FLEXAPOD_FLAT T frequencies() const {
     constexpr int count = all ? 6 : 1;
@@ -84,8 +84,8 @@ template <class T> class Sweep {
   static constexpr int batch = 8;
   const Task& task;
   const SweptMachine machine;
-  Dynamics<Part> part;
-  Dynamics<T> joined[batch];
+  MassAndForceMap<Part> part;
+  MassAndForceMap<T> joined[batch];
   double rows[12][Part::lanes];
 
  public:
@@ -113,7 +113,7 @@ template <class T> class Sweep {
     const unsigned asked = task.quantities;
     const auto each = [&](auto&& piece) {
       for (size_t done = 0; done < count; done += T::lanes) {
-        Dynamics<T>& dynamics = joined[done / T::lanes];
+        MassAndForceMap<T>& dynamics = joined[done / T::lanes];
         const size_t left = count - done;
         const Rows rows{first + done, static_cast<int>(left < T::lanes ? left : T::lanes)};
         dynamics.fault = piece(SweepModes<T>{machine, task, rows, dynamics});
@@ -128,20 +128,20 @@ template <class T> class Sweep {
 
   void one_part(size_t first, size_t count) {
     load(first, count);
-    const Stance<Part> at = stance();
+    const PosePack<Part> at = pose_pack();
     const unsigned asked = task.quantities;
     if (asked & modal) assemble(at);
     else if (asked & Quantity::cond_H) part.set_legs(at);
     else part.fault = at.fault;
-    const SweepPart<Part> quantities{machine, task, {first, static_cast<int>(count)}, at};
+    const SweepQuantities<Part> quantities{machine, task, {first, static_cast<int>(count)}, at};
     const auto note = [&](const Part& fault) { part.fault = select(part.fault > 0.0, part.fault, fault); };
     if (asked & geometric) quantities.geometry();
     if (asked & Quantity::leg_force) note(quantities.static_force());
     if (asked & Quantity::lowest_stiffness) note(quantities.stiffness());
     if (asked & Quantity::omega_1_gradient) note(quantities.gradient());
   }
-  FLEXAPOD_FLAT Stance<Part> stance() const { return Stance<Part>(machine, rows, task.width); }
-  FLEXAPOD_FLAT void assemble(const Stance<Part>& at) { part.set(machine, at); }
+  FLEXAPOD_FLAT PosePack<Part> pose_pack() const { return PosePack<Part>(machine, rows, task.width); }
+  FLEXAPOD_FLAT void assemble(const PosePack<Part>& at) { part.set(machine, at); }
 
   /// A short last part is filled up with its last pose.
   void load(size_t first, size_t count) {
@@ -159,7 +159,7 @@ template <class T> class Sweep {
     for (double& a : angles)
       if (std::abs(a) > 1e6) a = std::atan2(std::sin(a), std::cos(a));
   }
-  void join(Dynamics<T>& joined, int i) const {
+  void join(MassAndForceMap<T>& joined, int i) const {
     joined.fault.set_part(i, part.fault);
     if (!(task.quantities & (modal | Quantity::cond_H))) return;
     for (int r = 0; r < 6; ++r)

@@ -45,13 +45,13 @@ template <class T> FLEXAPOD_INLINE T unless(const mask_t<T>& bad, const T& value
 }
 
 /// A pack of poses and how the machine stands there, in the platform's axes.
-template <class T> struct Stance {
+template <class T> struct PosePack {
   Vec3<T> roll_axis, pitch_axis;  // where poses are given by angles
   Pose<T> pose;                   // of the platform in the base
   Geometry<T, double> g;
   T fault;
 
-  Stance(const SweptMachine& m, const double (*rows)[T::lanes], int width)
+  PosePack(const SweptMachine& m, const double (*rows)[T::lanes], int width)
       : pose(read(rows, width)), g(m.machine.design, base()) {
     T zero(0.0);
     for (int i = 0; i < width; ++i) zero += T::load(rows[i]) * 0.0;
@@ -80,20 +80,20 @@ template <class T> struct Stance {
 };
 
 /// What vibrates: J_p and H, in the platform's axes.
-template <class T> struct Dynamics {
+template <class T> struct MassAndForceMap {
   SpatialInertia<T> J;
   Mat6<T> H;
   T fault;
 
   /// With lengths and directions only: J is left.
-  void set_legs(const Stance<T>& at) {
+  void set_legs(const PosePack<T>& at) {
     fault = at.fault;
     for (int i = 0; i < 6; ++i) {
       const Vec3<T>& S = at.g.S[i];
       set_column(i, leg_wrench(at.g.q_p[i], rsqrt(dot(S, S)) * S));
     }
   }
-  void set(const SweptMachine& m, const Stance<T>& at) {
+  void set(const SweptMachine& m, const PosePack<T>& at) {
     const auto axes = [&](int i) { return LegAxes<T>(at.g.S[i], at.g.k[i], m.machine.joint); };
     const LegAxes<T> legs[6] = {axes(0), axes(1), axes(2), axes(3), axes(4), axes(5)};  // together: six long chains
     J = pack(m.J_platform);

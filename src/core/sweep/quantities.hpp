@@ -13,11 +13,11 @@ using sweep_task::Quantity;
 using sweep_task::Task;
 
 /// Quantities that need no modes.
-template <class T> struct SweepPart {
+template <class T> struct SweepQuantities {
   const SweptMachine& machine;
   const Task& task;
   const Rows rows;
-  const Stance<T>& at;
+  const PosePack<T>& at;
 
   void geometry() const {
     const unsigned asked = task.quantities;
@@ -87,7 +87,7 @@ template <class T> struct SweepPart {
   /// Derivatives of the lowest frequency by the pose: those of omega^2 are v^T (dK - omega^2 dJ) v for its mode v.
   T gradient() const {
     using D = Dual<6, T>;
-    Dynamics<T> dynamics;
+    MassAndForceMap<T> dynamics;
     dynamics.set(machine, at);
     const Cholesky<T> L(dynamics.J.matrix());
     Vec6<T> v;
@@ -118,7 +118,7 @@ template <class T> struct SweepPart {
   }
   /// Solves H x = b with rows of moments divided by the platform's size; how near H is to singular.
   template <int m> T solve(Vec6<T> (&b)[m]) const {
-    Dynamics<T> legs;
+    MassAndForceMap<T> legs;
     legs.set_legs(at);
     for (int i = 3; i < 6; ++i)
       for (T& h : legs.H.a[i]) h *= 1.0 / machine.size;
