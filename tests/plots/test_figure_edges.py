@@ -9,10 +9,10 @@ from matplotlib.figure import Figure
 
 import flexapod as fx
 from flexapod import plots
+from flexapod.mechanics.cautions import Caution, pose_cautions
 from flexapod.plots import machine_3d, response
 from flexapod.plots import path as plots_path
 from flexapod.report import findings
-from flexapod.report.cautions import cautions
 from flexapod.report.page import page
 from flexapod.report.studies import path
 from flexapod.report.terminal import summary
@@ -76,8 +76,9 @@ def test_a_report_without_cautions_has_no_box_for_them():
     hexapod = fx.load("motion-base")
     found = report(hexapod, fx.home_pose(hexapod))
     assert "To beware of" not in page(replace(found, cautions=[]))
-    assert "To beware of" in page(replace(found, cautions=["the <dog>"]))
-    assert "the &lt;dog&gt;" in page(replace(found, cautions=["the <dog>"]))
+    said = page(replace(found, cautions=[Caution("dog", "the <dog>")]))
+    assert "To beware of" in said
+    assert "the &lt;dog&gt;" in said
 
 
 def test_energies_below_zero_are_explained():
@@ -105,8 +106,8 @@ def test_a_pose_that_no_leg_forces_hold_is_said_to_be(monkeypatch):
     assert found.damped is None
     np.testing.assert_array_equal(found.omega, omega)
     words = "No leg forces hold this pose: the tangent is not available."
-    assert words in found.cautions
-    assert words in cautions(hexapod, pose, omega, [[i] for i in range(6)], 3.0, None)
+    assert words in [one.text for one in found.cautions]
+    assert words in [one.text for one in pose_cautions(hexapod, pose, omega, 3.0, None)]
 
 
 def test_the_summary_of_a_singular_pose_has_no_influences(capsys):

@@ -163,7 +163,7 @@ def test_a_singular_pose_is_reported():
     f = gather(h, SINGULAR)
     assert f.omega[0] == 0
     assert f.rest is f.damped is f.influences is None
-    assert "The pose is singular" in f.cautions[0]
+    assert "The pose is singular" in f.cautions[0].text
     text = " ".join(Elements(page(f)).words)
     assert "not available" in text
     assert np.isfinite(f.shares.strain[:, 1:]).all()
@@ -172,7 +172,7 @@ def test_a_singular_pose_is_reported():
 
 def test_near_a_singular_pose_it_warns():
     f = gather(fx.load("precision-positioner"), fx.Pose.from_rpy(0, 0, 0.244, 0, 0, np.radians(89.5)))
-    assert f.cautions[0].startswith("Near a singular pose")
+    assert f.cautions[0].text.startswith("Near a singular pose")
     assert f.rest is not None
     assert np.abs(f.rest.leg_force).max() > 0
 
@@ -182,24 +182,24 @@ def test_a_machine_that_falls_over_is_said_to():
     h = fx.load("cubic-isolator").replace({"legs.stiffness": 500.0})
     f = gather(h, fx.home_pose(h))
     assert (f.damped.pole.real > 0).any()
-    assert any(text.startswith("Not stable at rest") for text in f.cautions)
-    assert any(text.startswith("Weight and preload change mode") for text in f.cautions)
+    assert any(one.text.startswith("Not stable at rest") for one in f.cautions)
+    assert any(one.text.startswith("Weight and preload change mode") for one in f.cautions)
     assert "Not stable at rest" in page(f)
 
 
 def test_what_to_beware_of_is_said(reports):
     f, html = reports("mukherjee-ii")
-    assert any("Modes 1 and 2 are nearly repeated" in text for text in f.cautions)
-    assert all(text in f.cautions for text in f.hexapod.warnings)
+    assert any("Modes 1 and 2 are nearly repeated" in one.text for one in f.cautions)
+    assert all(text in [one.text for one in f.cautions] for text in f.hexapod.warnings)
     assert html.count("<li>") == len(f.cautions)
     h = fx.load("motion-base")
     high = gather(h, fx.Pose([0, 0, 3.5]))
-    assert sum("length 4." in text or "length 3." in text for text in high.cautions) == 6
+    assert sum("length 4." in one.text or "length 3." in one.text for one in high.cautions) == 6
     assert page(high).count('<td class="over">') == 6
     overdamped = h.replace({"legs.damping.prismatic": 1e7})
-    assert any("does not vibrate" in text for text in gather(overdamped, fx.home_pose(h)).cautions)
+    assert any("does not vibrate" in one.text for one in gather(overdamped, fx.home_pose(h)).cautions)
     homeless = h.replace({"home": None})
-    assert any("has no home pose" in text for text in gather(homeless, fx.home_pose(h)).cautions)
+    assert any("has no home pose" in one.text for one in gather(homeless, fx.home_pose(h)).cautions)
     assert gather(h.replace({"legs.stiffness[0]": 7e6}), fx.Pose.from_rpy(0.1, 0.2, 2.4, 0, 0.1, 0)).cautions == []
 
 

@@ -256,7 +256,7 @@ def test_a_pose_that_is_not_stable_at_rest_is_said_to_be(monkeypatch: pytest.Mon
 
     heavy = {"platform.mass": 1e7, "platform.mass_center": [0, 0, 0.3]}  # it topples on its springs
     found = state.snapshot(requests.question(ASKED | {"changes": heavy}))
-    assert "not stable at rest" in " ".join(found["warnings"])
+    assert "Not stable at rest" in " ".join(found["warnings"])
 
 
 def test_only_pages_are_answered() -> None:

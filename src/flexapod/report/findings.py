@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,7 +10,7 @@ import numpy as np
 from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
-from flexapod.mechanics.conditioning import SINGULAR, platform_radius
+from flexapod.mechanics.cautions import SINGULAR, Caution, mode_clusters, platform_radius, pose_cautions
 from flexapod.mechanics.kinematics import JointAngles, condition_number, inverse_kinematics, joint_angles, leg_distance
 from flexapod.mechanics.linearisation import DampedModes, linearise
 from flexapod.mechanics.modes import (
@@ -21,11 +20,9 @@ from flexapod.mechanics.modes import (
     describe_modes,
     energy_shares,
     natural_modes,
-    near_repeated,
 )
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.pose import Pose
-from flexapod.report.cautions import cautions
 from flexapod.report.influence import Influence, influences
 
 _NOTHING = 1e-12  # of the highest frequency: what is below is rounding at a singular pose
@@ -58,7 +55,7 @@ class Findings:
     damped: DampedModes | None
     clusters: list[list[int]]
     influences: list[Influence] | None
-    cautions: list[str]
+    cautions: list[Caution]
     changes: tuple[str, ...] = ()  # made to the design of this name, as KEY=VALUE
 
     @property
@@ -112,7 +109,7 @@ def gather(
         damped=damped,
         clusters=clusters,
         influences=None if singular else influences(hexapod, pose, joint, clusters[0]),
-        cautions=cautions(hexapod, pose, omega, clusters, conditioning.scaled, damped),
+        cautions=pose_cautions(hexapod, pose, omega, conditioning.scaled, damped),
         changes=changes,
     )
 
@@ -122,18 +119,6 @@ def _at_rest(hexapod: Hexapod, pose: Pose, joint: JointModel) -> tuple[Equilibri
         return hold(hexapod, pose), linearise(hexapod, pose, joint=joint).modes()
     except SingularPoseError:
         return None, None
-
-
-def mode_clusters(omega: Array) -> list[list[int]]:
-    """The modes, numbered from 0, with near-repeated ones together: [[0, 1], [2], [3], [4, 5]]."""
-    joined = set(near_repeated(omega))
-    clusters = [[0]]
-    for pair in pairwise(range(6)):
-        if pair in joined:
-            clusters[-1].append(pair[1])
-        else:
-            clusters.append([pair[1]])
-    return clusters
 
 
 def as_dict(f: Findings) -> dict[str, Any]:
@@ -166,7 +151,7 @@ def as_dict(f: Findings) -> dict[str, Any]:
         "unstretched_length_m": f.rest.unstretched_length if f.rest else None,
         "tangent": _damped_dict(f.damped) if f.damped else None,
         "influences": [one._asdict() for one in f.influences] if f.influences else None,
-        "warnings": f.cautions,
+        "warnings": [caution.text for caution in f.cautions],
     }
 
 

@@ -63,7 +63,7 @@ def _head(f: Findings) -> str:
 def _cautions(f: Findings) -> str:
     if not f.cautions:
         return ""
-    items = "".join(f"<li>{escape(text)}</li>" for text in f.cautions)
+    items = "".join(f"<li>{escape(caution.text)}</li>" for caution in f.cautions)
     return f'<section class="warnings"><h3>To beware of</h3><ul>{items}</ul></section>'
 
 

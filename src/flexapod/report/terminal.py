@@ -30,8 +30,8 @@ def summary(f: Findings, out: Console) -> None:
     if f.influences:
         out.print(Text("What matters most for the index", style="bold"))
         out.print(_influences(f))
-    for text in f.cautions:
-        out.print(Text.assemble(("Warning: ", "bold yellow"), text))
+    for caution in f.cautions:
+        out.print(Text.assemble(("Warning: ", "bold yellow"), caution.text))
 
 
 def _key(f: Findings) -> Table:

@@ -9,6 +9,7 @@ import numpy as np
 from flexapod.control.sampling_rate import sampling_time
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
+from flexapod.mechanics.cautions import pose_cautions, unitless_condition
 from flexapod.mechanics.kinematics import (
     condition_number,
     in_words,
@@ -17,12 +18,10 @@ from flexapod.mechanics.kinematics import (
     leg_distance,
     limit_excess,
 )
-from flexapod.mechanics.linearisation import linearise
+from flexapod.mechanics.linearisation import DampedModes, linearise
 from flexapod.mechanics.modes import ModeDescription, describe_modes, energy_shares, natural_modes, near_repeated
 from flexapod.pose import Pose
 from flexapod.web.requests import Question
-
-NEAR_SINGULAR = 1e6  #: cond(H) above which the page warns: a leg force then errs by 1e6 times what a length does
 
 
 def snapshot(question: Question) -> dict[str, Any]:
@@ -44,7 +43,7 @@ def snapshot(question: Question) -> dict[str, Any]:
         "shape": modes.shape.T,
         "modes": [{"text": d.text, "dominant": d.dominant, "share": d.share} for d in _described(question)],
         "strain": _strain(question),
-        "damped": damped,
+        "damped": None if damped is None else _damped(damped),
         "sampling_time": sampling_time(modes.omega[-1]),
         "legs": {
             "universal": np.round(np.degrees(angles.universal), 9) + 0.0,
@@ -53,7 +52,7 @@ def snapshot(question: Question) -> dict[str, Any]:
         },
         "leg_distance": leg_distance(hexapod, pose),
         "limits": limits,
-        "warnings": _warnings(condition, repeated, static, damped),
+        "warnings": _warnings(question, modes.omega, damped),
         "near_repeated": repeated,
     }
 
@@ -78,7 +77,7 @@ def _strain(question: Question) -> np.ndarray:
     return energy_shares(question.hexapod, question.pose, joint=question.joint).strain.T
 
 
-def _at_rest(question: Question) -> tuple[dict[str, Any], dict[str, Any] | None]:
+def _at_rest(question: Question) -> tuple[dict[str, Any], DampedModes | None]:
     """Legs that hold the pose: lengths, forces, energy in their springs; and the exact tangent's modes there.
 
     These have gravity, preload and damping. No forces and no modes where nothing holds the pose.
@@ -92,8 +91,11 @@ def _at_rest(question: Question) -> tuple[dict[str, Any], dict[str, Any] | None]
     rest, modes = linear.rest, linear.modes()
     energy = 0.5 * rest.leg_force**2 / hexapod.legs.stiffness
     static = {"length": rest.leg_length, "force": rest.leg_force, "energy": energy, "why": ""}
-    damped = {"omega": modes.omega, "frequency": modes.pole.imag / (2 * np.pi), "ratio": modes.damping_ratio}
-    return static, damped
+    return static, modes
+
+
+def _damped(modes: DampedModes) -> dict[str, Any]:
+    return {"omega": modes.omega, "frequency": modes.pole.imag / (2 * np.pi), "ratio": modes.damping_ratio}
 
 
 def _limits(hexapod: Hexapod, pose: Pose) -> dict[str, Any]:
@@ -104,17 +106,8 @@ def _limits(hexapod: Hexapod, pose: Pose) -> dict[str, Any]:
     return {"any": bool(quantities), "ok": not words, "exceeded": words, "by_leg": by_leg}
 
 
-def _warnings(
-    condition: float, repeated: list[tuple[int, int]], static: dict[str, Any], damped: dict[str, Any] | None
-) -> list[str]:
-    words = []
-    if not condition < NEAR_SINGULAR:
-        words.append(f"This pose is singular or nearly so: cond(H) is {condition:.3g}. The legs cannot hold it.")
-    elif static["why"]:
-        words.append(static["why"])
-    if repeated:
-        pairs = ", ".join(f"{i + 1} and {j + 1}" for i, j in repeated)
-        words.append(f"Modes {pairs} nearly repeat: their shapes are any mixture of the two.")
-    if damped is not None and np.any(damped["ratio"] < -1e-9):
-        words.append("With gravity and preload a motion grows by itself: this pose is not stable at rest.")
-    return words
+def _warnings(question: Question, omega: np.ndarray, damped: DampedModes | None) -> list[str]:
+    """The cautions about the pose, without those that the page shows elsewhere: limits, and the design's own."""
+    hexapod, pose = question.hexapod, question.pose
+    found = pose_cautions(hexapod, pose, omega, unitless_condition(hexapod, pose), damped)
+    return [caution.text for caution in found if caution.code not in ("limit", "design")]

@@ -39,15 +39,15 @@ def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
     if pose is None:
         return dict.fromkeys(keys)
     from flexapod.mechanics import kinematics
-    from flexapod.mechanics.conditioning import SINGULAR, platform_radius, singularity
+    from flexapod.mechanics.cautions import singularity, unitless_condition
 
-    condition = float(kinematics.condition_number(hexapod, pose, characteristic_length=platform_radius(hexapod)))
+    condition = unitless_condition(hexapod, pose)
     values = (
         common.pose_numbers(pose),
         kinematics.inverse_kinematics(hexapod, pose),
         kinematics.leg_distance(hexapod, pose),
         kinematics.condition_number(hexapod, pose),
-        [] if condition < SINGULAR else singularity(condition),
+        [caution.text for caution in singularity(condition) if caution.code == "singular"],
         kinematics.check_limits(hexapod, pose).exceeded,
     )
     return dict(zip(keys, values, strict=True))
