@@ -10,7 +10,7 @@ CORE := CMakeLists.txt $(wildcard src/core/*/*)
 CPP  := $(wildcard src/core/*/*.?pp tests/core/*.cpp)
 
 .PHONY: report paper test coverage build lint types bench bench-readme docs validation sanitize portable fuzz dist \
-        clean web web-check
+        clean web web-types web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 	$(BIN)/flexapod report $(DESIGN) --out $(OUT)
@@ -111,8 +111,13 @@ WEB := web/package.json web/package-lock.json web/index.html web/vite.config.ts 
 
 web: web/node_modules/.built ## the page's bundle, which is committed: needs Node 20
 
-web-check: web/node_modules/.installed ## is the committed bundle what the sources give?
-	cd web && npm run types && npm run build -- --outDir node_modules/.check --emptyOutDir
+web-types: build ## the page's types of the server's answers, from flexapod.web.answers
+	$(BIN)/python web/generate_answers.py
+
+web-check: build web/node_modules/.installed ## lint, types and tests of the page; is the committed bundle what the sources give?
+	$(BIN)/python web/generate_answers.py --check
+	cd web && npm run lint && npm run types && npm test
+	cd web && npm run build -- --outDir node_modules/.check --emptyOutDir
 	diff -r web/node_modules/.check src/flexapod/web/static
 
 web/node_modules/.installed: web/package.json web/package-lock.json

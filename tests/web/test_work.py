@@ -18,7 +18,7 @@ import flexapod as fx
 pytest.importorskip("starlette")
 
 from flexapod.design import design_file
-from flexapod.web import designs, requests, response
+from flexapod.web import pose_ranges, requests, response
 from flexapod.web import worker as work
 from flexapod.web.encode import as_json
 from flexapod.web.jobs import Jobs
@@ -242,13 +242,13 @@ def test_shaking_the_base_moves_the_platform_as_the_library_says() -> None:
 def test_a_design_without_a_home_stands_at_a_usual_height() -> None:
     """Where legs have limits, in the middle of them."""
     free = MACHINE.replace({"home": None})
-    x, y, z, *turn = designs.home(free)
+    x, y, z, *turn = pose_ranges.home(free)
     assert turn == [0.0, 0.0, 0.0]
     assert z > 0
     limited = free.replace({"limits.leg_length": [0.09, 0.11]})
-    pose = fx.Pose(designs.home(limited)[:3])
+    pose = fx.Pose(pose_ranges.home(limited)[:3])
     assert fx.inverse_kinematics(limited, pose).mean() == pytest.approx(0.1, rel=0.02)
-    assert [x, y] == designs.home(limited)[:2]
+    assert [x, y] == pose_ranges.home(limited)[:2]
 
 
 def test_a_pose_that_is_not_stable_at_rest_is_said_to_be(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,10 +1,10 @@
-"""The server of the page: routes, and the application made of them."""
+"""The web application: its routes, and how errors are answered."""
 
 from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Mapping
 from functools import partial
 from importlib import import_module
 from pathlib import Path
@@ -22,8 +22,10 @@ from starlette.staticfiles import StaticFiles
 from flexapod import __version__
 from flexapod.design import design_file
 from flexapod.errors import FlexapodError
-from flexapod.web import designs, requests, response, state, worker
-from flexapod.web.encode import Numbers
+from flexapod.web import description, requests, response, state, worker
+from flexapod.web.answers import Design, Refusal, Snapshot, Start
+from flexapod.web.design_errors import InvalidDesign
+from flexapod.web.encode import JSONAnswer
 from flexapod.web.jobs import Jobs
 from flexapod.web.security import Guard
 
@@ -31,40 +33,40 @@ STATIC = Path(__file__).parent / "static"
 
 
 def application(start: Path | None = None, hosts: Iterable[str] = ()) -> Starlette:
-    """The page and its server. start: the design file shown first; hosts: names it answers to beside localhost."""
+    """The application. start: the design file shown first; hosts: names it answers to beside localhost."""
     jobs = Jobs()
 
     @contextlib.asynccontextmanager
     async def lifespan(_: Starlette) -> AsyncIterator[None]:
         async with anyio.create_task_group() as tasks:
             tasks.start_soon(jobs.warm)
-            tasks.start_soon(partial(run_sync, import_module, "xarray"))  # slow; the first response would wait for it
+            tasks.start_soon(partial(run_sync, import_module, "xarray"))  # slow: before the first response needs it
             yield
             tasks.cancel_scope.cancel()
         jobs.close()
 
     async def begin(_: Request) -> Response:
-        return Numbers(await run_sync(_beginning, start))
+        return JSONAnswer(await run_sync(_start, start))
 
     async def run_job(request: Request) -> Response:
         kind = request.path_params["kind"]
         if kind not in worker.KINDS:
-            raise requests.AskingError(f"there is no job {kind!r}", 404)
+            raise requests.RequestError(f"there is no job {kind!r}", 404)
         spec = await requests.body(request)
         await run_sync(requests.question, spec)
         return StreamingResponse(jobs.run(kind, spec), media_type="application/octet-stream")
 
     async def stop_job(request: Request) -> Response:
         if not jobs.cancel(request.path_params["name"]):
-            raise requests.AskingError("no such job is running", 404)
+            raise requests.RequestError("no such job is running", 404)
         return Response(status_code=204)
 
     routes = [
         Route("/api/start", begin),
-        Route("/api/design", _asks(_design), methods=["POST"]),
-        Route("/api/state", _asks(_state), methods=["POST"]),
-        Route("/api/response", _asks(response.response), methods=["POST"]),
-        Route("/api/shake", _asks(response.shake), methods=["POST"]),
+        Route("/api/design", _post(_design), methods=["POST"]),
+        Route("/api/state", _post(_state), methods=["POST"]),
+        Route("/api/response", _post(response.response), methods=["POST"]),
+        Route("/api/shake", _post(response.shake), methods=["POST"]),
         Route("/api/jobs/{kind}", run_job, methods=["POST"]),
         Route("/api/jobs/{name}", stop_job, methods=["DELETE"]),
         Mount("/", StaticFiles(directory=STATIC, html=True)),
@@ -79,40 +81,41 @@ def application(start: Path | None = None, hosts: Iterable[str] = ()) -> Starlet
     return app
 
 
-def _beginning(start: Path | None) -> dict[str, Any]:
-    """What a new page needs before it asks anything: presets, the design to show, the keys of a design file."""
+def _start(start: Path | None) -> Start:
+    """What a new page needs first: packaged designs, the design to show, the keys of a design file."""
     presets = {name: design_file.find(name).read_text(encoding="utf-8") for name in design_file.packaged_designs()}
     return {
         "version": __version__,
         "presets": presets,
         "start": None if start is None else {"name": start.stem, "text": design_file.self_contained(start)},
-        "fields": designs.fields(),
+        "fields": description.fields(),
     }
 
 
-def _design(asked: dict[str, Any]) -> dict[str, Any]:
-    return designs.described(requests.source(asked))
+def _design(asked: dict[str, Any]) -> Design:
+    return description.described(requests.source(asked))
 
 
-def _state(asked: dict[str, Any]) -> dict[str, Any]:
+def _state(asked: dict[str, Any]) -> Snapshot:
     return state.snapshot(requests.question(asked))
 
 
-def _asks(answer: Callable[[dict[str, Any]], dict[str, Any]]) -> Callable[[Request], Awaitable[Response]]:
-    """A route that takes a JSON object and answers with one, computed in a thread so that other pages go on."""
+def _post(answer: Callable[[dict[str, Any]], Mapping[str, object]]) -> Callable[[Request], Awaitable[Response]]:
+    """An endpoint that takes a JSON object and answers with one, computed in a thread so that others can be served."""
 
     async def endpoint(request: Request) -> Response:
         asked = await requests.body(request)
         began = time.perf_counter()
         result = await run_sync(answer, asked)
         spent = 1e3 * (time.perf_counter() - began)
-        return Numbers(result, headers={"server-timing": f"compute;dur={spent:.2f}"})
+        return JSONAnswer(result, headers={"server-timing": f"compute;dur={spent:.2f}"})
 
     return endpoint
 
 
 async def _refused(_: Request, error: Exception) -> Response:
-    """Every wrong design, pose or request: what is wrong, and at which fields."""
-    fields = [e._asdict() for e in error.errors] if isinstance(error, designs.InvalidDesign) else []
-    status = error.status if isinstance(error, requests.AskingError) else 422
-    return Numbers({"error": str(error), "fields": fields}, status)
+    """The answer to a wrong request, design or pose."""
+    fields = error.errors if isinstance(error, InvalidDesign) else []
+    refusal: Refusal = {"error": str(error), "fields": fields}
+    status = error.status if isinstance(error, requests.RequestError) else 422
+    return JSONAnswer(refusal, status)

@@ -1,16 +1,17 @@
-"""Answers to the page: JSON in which NaN and infinity become null, and frames of JSON with binary numbers behind."""
+"""Encoding of answers: JSON in which NaN and infinity become null, and frames of JSON followed by binary numbers."""
 
 from __future__ import annotations
 
 import json
 import struct
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from starlette.responses import Response
 
 
-class Numbers(Response):
+class JSONAnswer(Response):
     """JSON of nested dicts, lists and NumPy arrays."""
 
     media_type = "application/json"
@@ -25,6 +26,7 @@ def as_json(content: Any) -> bytes:
 
 
 def _plain(value: Any) -> Any:
+    """The value with lists for arrays, and None for NaN and infinity."""
     if isinstance(value, dict):
         return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, np.ndarray) and np.isfinite(value).all():
@@ -38,12 +40,12 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def frame(message: dict[str, Any], data: bytes = b"") -> bytes:
+def frame(message: Mapping[str, object], data: bytes = b"") -> bytes:
     """One message of a stream: two little-endian 32-bit lengths, JSON, bytes."""
     head = as_json(message)
     return struct.pack("<II", len(head), len(data)) + head + data
 
 
 def float32(array: np.ndarray) -> bytes:
-    """Numbers as the page takes many of them: little-endian float32, last axis fastest."""
+    """The numbers of an array in the order of its memory (last axis fastest), as little-endian float32."""
     return np.ascontiguousarray(array, dtype="<f4").tobytes()

@@ -1,4 +1,4 @@
-"""What a page asks: JSON bodies turned into designs, poses and numbers, with errors a person can act on."""
+"""Requests of a page: JSON bodies read as designs, poses, boxes and numbers."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from flexapod.web import designs
 from flexapod.web.security import MAX_BODY
 
 
-class AskingError(FlexapodError, ValueError):
-    """A request that makes no sense; the page shows the message."""
+class RequestError(FlexapodError, ValueError):
+    """A wrong request; the page shows the message."""
 
     def __init__(self, message: str, status: int = 422) -> None:
         super().__init__(message)
@@ -27,7 +27,7 @@ class AskingError(FlexapodError, ValueError):
 
 
 class Question(NamedTuple):
-    """A design (text and changes), the pose at which it stands, and which joint model is meant."""
+    """What most requests are about: a design (text and changes), its pose and the joint model."""
 
     design: designs.Source
     six: tuple[float, ...]  #: x, y, z in m, roll, pitch, yaw in degrees
@@ -43,23 +43,24 @@ class Question(NamedTuple):
 
 
 async def body(request: Request) -> dict[str, Any]:
-    """The JSON object of a request, no longer than allowed even where no length was announced."""
+    """The JSON object of a request. Its length is checked as it arrives, since the header may not state it."""
     parts, size = [], 0
     async for part in request.stream():
         size += len(part)
         if size > MAX_BODY:
-            raise AskingError(f"the request is longer than {MAX_BODY} bytes; use a smaller file", 413)
+            raise RequestError(f"the request is longer than {MAX_BODY} bytes; use a smaller file", 413)
         parts.append(part)
     try:
         value = json.loads(b"".join(parts))
     except (ValueError, RecursionError):
-        raise AskingError("the request is not JSON", 400) from None
+        raise RequestError("the request is not JSON", 400) from None
     if not isinstance(value, dict):
-        raise AskingError("the request must be a JSON object", 400)
+        raise RequestError("the request must be a JSON object", 400)
     return value
 
 
 def question(asked: dict[str, Any]) -> Question:
+    """The design, pose and joint model of a request."""
     six = numbers(asked.get("pose", [0.0] * 6), "pose", 6)
     joint = asked.get("joint", "universal")
     return Question(source(asked), six, joint)
@@ -69,7 +70,7 @@ def source(asked: dict[str, Any]) -> designs.Source:
     """The design of a request as hashable text: its TOML and the changes made to it."""
     text, changes = asked.get("design"), asked.get("changes", {})
     if not isinstance(text, str) or not isinstance(changes, dict):
-        raise AskingError("design must be the text of a design file, and changes an object of key: value")
+        raise RequestError("design must be the text of a design file, and changes an object of key: value")
     return designs.Source(text, json.dumps(changes, sort_keys=True))
 
 
@@ -77,7 +78,7 @@ def numbers(value: Any, name: str, count: int | None = None) -> tuple[float, ...
     """A list of finite numbers."""
     good = isinstance(value, list) and all(_finite(item) for item in value) and count in (None, len(value))
     if not good:
-        raise AskingError(f"{name} must be {'a list of' if count is None else count} finite numbers")
+        raise RequestError(f"{name} must be {'a list of' if count is None else count} finite numbers")
     return tuple(float(item) for item in value)
 
 
@@ -85,15 +86,15 @@ def number(asked: dict[str, Any], name: str, default: float, least: float, most:
     """One number within bounds."""
     value = asked.get(name, default)
     if not _finite(value) or not least <= value <= most:
-        raise AskingError(f"{name} is {value!r}; it must be a number from {least:g} to {most:g}")
+        raise RequestError(f"{name} is {value!r}; it must be a number from {least:g} to {most:g}")
     return float(value)
 
 
 def choice(asked: dict[str, Any], name: str, allowed: tuple[str, ...]) -> str:
-    """One of some words; the first one if none is given."""
+    """One of the allowed words; the first of them if the request has none."""
     value = asked.get(name, allowed[0])
     if value not in allowed:
-        raise AskingError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
+        raise RequestError(f"{name} is {value!r}; it must be one of {', '.join(allowed)}")
     return str(value)
 
 
@@ -111,8 +112,8 @@ def box(asked: dict[str, Any]) -> tuple[Array, Array]:
     """Low and high of the six coordinates of a pose box, m and degrees."""
     given = asked.get("box")
     if not isinstance(given, dict):
-        raise AskingError("box must have low and high, six numbers each")
+        raise RequestError("box must have low and high, six numbers each")
     low, high = (np.array(numbers(given.get(side), f"box.{side}", 6)) for side in ("low", "high"))
     for i in np.flatnonzero(low > high):
-        raise AskingError(f"the box of {AXES[i]} runs from {low[i]:g} to {high[i]:g}; the first must not be the larger")
+        raise RequestError(f"the box of {AXES[i]} runs from {low[i]:g} to {high[i]:g}; low must not exceed high")
     return low, high

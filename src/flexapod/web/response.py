@@ -1,4 +1,4 @@
-"""Frequency response for the page: six by six amplitudes and phases, and the base shaken at one frequency."""
+"""Frequency responses at a pose, and the motion when the base is shaken at one frequency."""
 
 from __future__ import annotations
 
@@ -6,18 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from flexapod.conventions import AXES, Array
+from flexapod.conventions import AXES, LEGS, Array
 from flexapod.mechanics.linearisation import linearise
 from flexapod.vibration.frequency_response import transmissibility
 from flexapod.web import requests
+from flexapod.web.answers import FrequencyResponse, ShakenBase
 
 QUANTITIES = ("absolute", "relative", "compliance", "command", "leg_force")
 POINTS = 400  #: frequencies over the range, beside those at the resonances
-DRAWN = 0.15  #: greatest displacement drawn, as a part of the platform's size
+DRAWN = 0.15  #: greatest displacement drawn, as a share of the platform's size
 
 
-def response(asked: dict[str, Any]) -> dict[str, Any]:
-    """Amplitude and phase of outputs by inputs over frequency, the modes marked."""
+def response(asked: dict[str, Any]) -> FrequencyResponse:
+    """Magnitude and phase of one quantity by output, input and frequency."""
     question, quantity = requests.question(asked), requests.choice(asked, "quantity", QUANTITIES)
     loss = requests.number(asked, "loss_factor", 0.0, 0.0, 2.0)
     modes = linearise(question.hexapod, question.pose, joint=question.joint).modes()
@@ -26,7 +27,7 @@ def response(asked: dict[str, Any]) -> dict[str, Any]:
     values = data[quantity]
     _, outputs, inputs = values.dims
     z = np.moveaxis(values.to_numpy(), 0, -1)
-    legs = [f"leg {n}" for n in range(1, 7)]
+    legs = [f"leg {n}" for n in LEGS]
     names = {"leg": legs, **{axis: list(AXES) for axis in ("output", "base", "wrench")}}
     units = {"leg": ["N" if quantity == "leg_force" else "m"] * 6, **_units(data)}
     return {
@@ -42,11 +43,12 @@ def response(asked: dict[str, Any]) -> dict[str, Any]:
 
 
 def _units(data: Any) -> dict[str, list[str]]:
+    """Units of the axes of outputs and inputs."""
     return {axis: data[f"{axis}_unit"].to_numpy().tolist() for axis in ("output", "base", "wrench")}
 
 
 def _short(values: Array) -> Array:
-    """Five digits: more than a plot shows, in half the bytes."""
+    """Values rounded to five digits: more than a plot shows, in half the bytes."""
     with np.errstate(divide="ignore", invalid="ignore"):
         scale = 10.0 ** (4 - np.floor(np.log10(np.abs(values))))
         return np.where(np.isfinite(scale), np.round(values * scale) / scale, values)
@@ -64,8 +66,8 @@ def _frequencies(omega: Array, ratio: Array) -> Array:
     return np.unique(np.concatenate(grid))
 
 
-def shake(asked: dict[str, Any]) -> dict[str, Any]:
-    """The platform's complex displacement for a unit motion of the base along an axis, and how large to draw it."""
+def shake(asked: dict[str, Any]) -> ShakenBase:
+    """The platform's complex displacement for a unit motion of the base along one axis."""
     question, axis = requests.question(asked), requests.choice(asked, "axis", AXES)
     omega = requests.number(asked, "omega", 1.0, 1e-9, 1e9)
     data = transmissibility(question.hexapod, question.pose, [omega], joint=question.joint)
@@ -85,5 +87,5 @@ def shake(asked: dict[str, Any]) -> dict[str, Any]:
 
 
 def _reach(twist: Array, joints: Array) -> float:
-    """At most how far a displacement moves the farthest joint, m."""
+    """An upper bound of the displacement of the farthest joint, m."""
     return float(np.linalg.norm(twist[:3]) + np.linalg.norm(twist[3:]) * np.linalg.norm(joints, axis=1).max())

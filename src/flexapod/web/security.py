@@ -1,4 +1,4 @@
-"""What every request must pass, and the headers of every answer: host, origin, size, content security policy."""
+"""Checks of every request (host, origin, size), and the security headers of every answer."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 LOCAL_HOSTS = ("127.0.0.1", "localhost", "::1")
-MAX_BODY = 8 * 1024 * 1024  #: bytes; a recorded base motion of some 60 000 rows, and any design
+MAX_BODY = 8 * 1024 * 1024  #: bytes; enough for a recorded base motion of about 60 000 rows
 
 HEADERS = {
     "content-security-policy": (
@@ -27,7 +27,7 @@ HEADERS = {
 
 
 class Guard:
-    """Refuses requests under a foreign Host (DNS rebinding) or from another site's page, and long bodies."""
+    """Middleware that refuses unknown Host headers (DNS rebinding), pages of other sites, and long bodies."""
 
     def __init__(self, app: ASGIApp, hosts: Iterable[str] = (), max_body: int = MAX_BODY) -> None:
         self.app = app
@@ -49,6 +49,7 @@ class Guard:
         await self.app(scope, receive, send)
 
     def _refusal(self, method: str, headers: Headers) -> tuple[int, str] | None:
+        """Status and reason if the request is refused."""
         host = headers.get("host", "")
         if not self._known(f"//{host}"):
             return 421, f"this server does not answer for the host {host[:100]!r}; open it as http://127.0.0.1"
@@ -64,6 +65,7 @@ class Guard:
         return None
 
     def _known(self, url: str) -> bool:
+        """Whether the host of a URL is one of ours."""
         try:
             return (urlsplit(url).hostname or "") in self.hosts
         except ValueError:  # such as an unclosed bracket
@@ -71,6 +73,8 @@ class Guard:
 
 
 def _with_headers(send: Send) -> Send:
+    """The same `send`, with the security headers added to each answer."""
+
     async def wrapped(message: Message) -> None:
         if message["type"] == "http.response.start":
             headers = MutableHeaders(scope=message)

@@ -1,4 +1,4 @@
-"""Time simulations for the page: a base motion from its form, the trajectory as float32 rows, and how to play it."""
+"""The job of a time simulation: base motion from the form, rows of results as float32, and how to play them."""
 
 from __future__ import annotations
 
@@ -10,66 +10,65 @@ from typing import Any
 
 import numpy as np
 
-from flexapod.conventions import AXES, Array
+from flexapod.conventions import AXES, TWO_PI, Array
 from flexapod.errors import SimulationError
 from flexapod.excitation.excitation import Excitation, half_sine_shock, harmonic, sine_sweep, smooth_step
 from flexapod.excitation.recordings import parse_time_series
 from flexapod.mechanics.modes import natural_modes
 from flexapod.simulation.time_simulation import simulate
 from flexapod.web import requests
+from flexapod.web.answers import Message, SimulationRun
 from flexapod.web.encode import float32
 
 KINDS = ("harmonic", "sweep", "shock", "step", "csv")
-ROWS = 4000  #: instants of one simulation that the page gets
-MOST_PERIODS = 2e5  #: of the highest mode, about a minute of computing
-PLAYED = 8.0  #: seconds that a playback takes
-DRAWN = 0.12  #: greatest displacement drawn, as a part of the platform's size
-
-Message = tuple[dict[str, Any], bytes]
+ROWS = 4000  #: instants of one simulation that are sent
+MOST_PERIODS = 2e5  #: of the highest mode: about a minute of computing
+PLAYED = 8.0  #: duration of a playback, s
+DRAWN = 0.12  #: greatest displacement drawn, as a share of the platform's size
 
 
 def simulation(spec: dict[str, Any]) -> Iterator[Message]:
-    """One run of the complete machine on its moving base, from rest.
+    """Simulate the non-linear machine on its moving base, from rest.
 
-    Rows: time, platform and base displacement from rest (m and rotation vector), leg lengths, leg forces.
+    Rows: time, displacements of platform and base from rest (m, rotation vector), leg lengths, leg forces.
     """
     question = requests.question(spec)
     duration = requests.number(spec, "duration", 1.0, 1e-6, 1e4)
     highest = float(natural_modes(question.hexapod, question.pose, joint=question.joint).omega[-1])
-    if duration * highest > 2 * np.pi * MOST_PERIODS:
-        most = 2 * np.pi * MOST_PERIODS / highest
-        raise requests.AskingError(
+    if duration * highest > TWO_PI * MOST_PERIODS:
+        most = TWO_PI * MOST_PERIODS / highest
+        raise requests.RequestError(
             f"duration is {duration:g} s; at most {most:.3g} s are simulated here. Use the library."
         )
     motion = _motion(spec, duration)
 
     def compute(progress: Callable[[float], object]) -> tuple[Any, list[str]]:
         options = {"joint": question.joint, "samples": ROWS, "progress": progress}
-        with warnings.catch_warnings(record=True) as said:
+        with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             try:
                 data = simulate(question.hexapod, question.pose, base_motion=motion, duration=duration, **options)
                 stopped = []
             except SimulationError as error:
                 data, stopped = error.result, [str(error)]
-        return data, stopped + [str(w.message) for w in said]
+        return data, stopped + [str(w.message) for w in caught]
 
     data, words = yield from _with_progress(compute)
     if data is None or data.sizes["time"] < 2:
-        raise requests.AskingError(" ".join(words) or "the simulation ended at once")
+        raise requests.RequestError(" ".join(words) or "the simulation ended at once")
     rows = _rows(data)
     steps = f"{rows[-1, 0]:.4g} s in {data.attrs['steps']} steps" if "steps" in data.attrs else ""
-    yield _head(question, rows, " ".join([*words, steps])), float32(rows)
+    yield _run(question, rows, " ".join([*words, steps])), float32(rows)
 
 
 def _with_progress(compute: Callable[[Callable[[float], object]], Any]) -> Generator[Message, None, Any]:
-    """Compute in a thread, and report how far it is."""
+    """Compute in a thread, and yield its progress."""
     news: queue.Queue[tuple[str, Any]] = queue.Queue()
 
     def work() -> None:
         try:
             news.put(("result", compute(lambda fraction: news.put(("fraction", fraction)))))
-        except Exception as error:  # raised again below, in the job
+        except Exception as error:  # raised again below
             news.put(("error", error))
 
     threading.Thread(target=work, daemon=True).start()
@@ -83,12 +82,12 @@ def _with_progress(compute: Callable[[Callable[[float], object]], Any]) -> Gener
 
 
 def _motion(spec: dict[str, Any], duration: float) -> Excitation:
-    """The base motion that a form describes; what never starts from rest rises over a tenth of the duration."""
+    """The base motion of a form. Sines, which do not start from rest, rise over a tenth of the duration."""
     kind = requests.choice(spec, "kind", KINDS)
     if kind == "csv":
         text = spec.get("csv")
         if not isinstance(text, str):
-            raise requests.AskingError("csv must be the text of a CSV file")
+            raise requests.RequestError("csv must be the text of a CSV file")
         return parse_time_series(text.lstrip("\ufeff"))
     axis = requests.choice(spec, "axis", AXES)
     if kind == "shock":
@@ -98,16 +97,16 @@ def _motion(spec: dict[str, Any], duration: float) -> Excitation:
     amplitude = requests.number(spec, "amplitude", 1e-3, -1e3, 1e3)
     if kind == "step":
         return smooth_step(axis, amplitude, requests.number(spec, "pulse", 0.011, 1e-6, 1e3))
-    omega = 2 * np.pi * requests.number(spec, "frequency", 5.0, 1e-6, 1e6)
+    omega = TWO_PI * requests.number(spec, "frequency", 5.0, 1e-6, 1e6)
     ramp = 0.1 * duration
     if kind == "sweep":
-        end = 2 * np.pi * requests.number(spec, "end", 50.0, 1e-6, 1e6)
+        end = TWO_PI * requests.number(spec, "end", 50.0, 1e-6, 1e6)
         return sine_sweep(axis, amplitude, omega, end, duration).ramped(ramp)
     return harmonic(axis, amplitude, omega).ramped(ramp)
 
 
 def _rows(data: Any) -> Array:
-    """Time, displacements of platform and base, leg lengths and forces, (m, 25)."""
+    """Time, displacements of platform and base, leg lengths and forces, (n, 25)."""
     from scipy.spatial.transform import Rotation
 
     turned = Rotation.from_matrix(data["base_rotation"].to_numpy()).as_rotvec()
@@ -115,8 +114,8 @@ def _rows(data: Any) -> Array:
     return np.concatenate([data["time"].to_numpy()[:, None], *(np.asarray(part) for part in parts)], axis=1)
 
 
-def _head(question: requests.Question, rows: Array, words: str) -> dict[str, Any]:
-    """How to play the rows: how fast, how much larger, and what to say of them."""
+def _run(question: requests.Question, rows: Array, words: str) -> SimulationRun:
+    """How to play the rows: speed, factor of displacements, and remarks."""
     hexapod = question.hexapod
     size = float(np.linalg.norm(hexapod.platform_joints, axis=1).max())
     moved, turned = (np.linalg.norm(rows[:, [[a, a + 1, a + 2] for a in at]], axis=2) for at in ((1, 7), (4, 10)))

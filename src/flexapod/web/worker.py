@@ -1,4 +1,4 @@
-"""What runs in a job's own process: one generator of messages for each kind of job."""
+"""The process of jobs: it runs one job after another, each a generator of messages."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ from typing import Any
 
 from flexapod.errors import FlexapodError
 from flexapod.web import simulation, workspace
-
-Message = tuple[dict[str, Any], bytes]
+from flexapod.web.answers import Message
 
 KINDS: dict[str, Callable[[dict[str, Any]], Iterator[Message]]] = {
     "cloud": workspace.cloud,
@@ -21,7 +20,7 @@ KINDS: dict[str, Callable[[dict[str, Any]], Iterator[Message]]] = {
 
 
 def serve(pipe: Connection) -> None:
-    """Take jobs from the pipe until it closes; a job that fails says why and the process lives on."""
+    """Run jobs from the pipe until it closes. A job that fails sends its error, and the process goes on."""
     while True:
         try:
             kind, spec = pipe.recv()
@@ -35,6 +34,6 @@ def serve(pipe: Connection) -> None:
             pipe.send(({"type": "failed", "error": str(error)}, b""))
         except (BrokenPipeError, ConnectionResetError):
             return
-        except Exception as error:  # a fault of ours: told to the page, and in full on the server's terminal
+        except Exception as error:  # a defect of the program: traced on the server's terminal
             traceback.print_exc()
             pipe.send(({"type": "failed", "error": f"internal error ({type(error).__name__}); see the server"}, b""))

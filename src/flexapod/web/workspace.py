@@ -1,30 +1,29 @@
-"""Many poses for the page: the cloud of a pose box, a slice through it, and its worst pose, as float32 points."""
+"""Jobs over many poses: a cloud of random poses in a box, a slice through the box, and its worst pose."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from flexapod.checks import thread_count
 from flexapod.conventions import AXES, Array
 from flexapod.web import requests
+from flexapod.web.answers import Message, Progress
 from flexapod.web.encode import float32
 from flexapod.workspace.pose_sets import Box, random_poses
 from flexapod.workspace.quantities import evaluate
 
-CHUNK = 50_000  #: poses between two messages of progress: a hundredth of a second or so
-MOST_POINTS = 5_000_000  #: what a page's memory takes with ease: 8 numbers of 4 bytes each
-
-Message = tuple[dict[str, Any], bytes]
+CHUNK = 50_000  #: poses between two messages: about 0.01 s
+MOST_POINTS = 5_000_000  #: of a cloud, for the browser's memory: 32 bytes each
 
 
 def cloud(spec: dict[str, Any]) -> Iterator[Message]:
-    """Poses drawn in a box, with index and cond(H): rows x y z roll pitch yaw (m, degrees), omega_1, cond(H).
+    """Random poses in a box: rows of x, y, z, roll, pitch, yaw (m, degrees), stability index and cond(H).
 
-    A pose is rounded to float32 before anything is computed there: the page shows the numbers of that very pose.
+    A pose is rounded to float32 before the computation, so that its numbers belong to the pose that the page gets.
     """
     question, count = requests.question(spec), int(requests.number(spec, "points", 100_000, 1, MOST_POINTS))
     poses = random_poses(_box(spec), count, int(requests.number(spec, "seed", 0, 0, 2**31)))
@@ -39,12 +38,12 @@ def cloud(spec: dict[str, Any]) -> Iterator[Message]:
 
 
 def slice_map(spec: dict[str, Any]) -> Iterator[Message]:
-    """Index, cond(H) and whether limits hold over a grid of two coordinates, the other four as the pose has them."""
+    """Stability index, cond(H) and whether limits hold, over a grid of two coordinates through the pose."""
     question, (low, high) = requests.question(spec), requests.box(spec)
     across = AXES.index(requests.choice(spec, "across", AXES))
     up = AXES.index(requests.choice(spec, "up", AXES))
     if across == up:
-        raise requests.AskingError("the two coordinates of a slice must differ; choose another one")
+        raise requests.RequestError("the two coordinates of a slice must differ; choose another one")
     side = int(requests.number(spec, "side", 120, 2, 1000))
     xs, ys = np.linspace(low[across], high[across], side), np.linspace(low[up], high[up], side)
     began = time.perf_counter()
@@ -58,7 +57,7 @@ def slice_map(spec: dict[str, Any]) -> Iterator[Message]:
 
 
 def worst(spec: dict[str, Any]) -> Iterator[Message]:
-    """The pose of the lowest index in the box, refined from low poses of a sweep to the true minimum."""
+    """The pose of the lowest stability index in the box."""
     from flexapod.workspace.worst import worst_pose
 
     question = requests.question(spec)
@@ -71,17 +70,18 @@ def worst(spec: dict[str, Any]) -> Iterator[Message]:
 
 
 def _box(spec: dict[str, Any]) -> Box:
+    """The pose box of a request, in m and rad."""
     low, high = requests.box(spec)
     scale = np.repeat([1.0, np.pi / 180], 3)
     return Box(*zip(low * scale, high * scale, strict=True))
 
 
 def _quantities(question: requests.Question, six: Array, names: tuple[str, ...]) -> Array:
-    """Quantities of many poses (m, degrees), one column each. Half the machine's threads: other pages go on."""
+    """Quantities of many poses (m, degrees), one column each, with half of the threads: other pages need some."""
     rows = six * np.repeat([1.0, np.pi / 180], 3)
     found = evaluate(question.hexapod, rows, names, question.joint, max(1, thread_count(None) // 2))
     return np.stack([np.asarray(found[name], dtype=float) for name in names], axis=1)
 
 
-def _progress(kind: str, done: int, total: int, began: float) -> dict[str, Any]:
+def _progress(kind: Literal["points", "rows"], done: int, total: int, began: float) -> Progress:
     return {"type": kind, "done": done, "total": total, "seconds": time.perf_counter() - began}

@@ -1,38 +1,55 @@
 // The page: header, pose and machine numbers, 3-D view, panels; and what asks the server when something changes.
 
 import './style.css'
-import { get, Live, Refused } from './api'
-import { Animation } from '../machine3d/motion'
+import { get, Live, Refused } from '../state/api'
+import { Animation } from '../machine3d/animation'
 import { beginTheme, onTheme, toggleTheme } from '../charts/colours'
 import { designPanel, MOST_TEXT, open } from '../panels/design'
 import { button, h, select, settled, status } from '../widgets/dom'
 import { sig } from '../widgets/format'
-import { legsPanel } from '../machine3d/legs'
+import { legsPanel } from '../panels/legs'
 import { modesPanel } from '../panels/modes'
 import { numbersPanel } from '../panels/parameters'
 import { posePanel, setPose } from '../panels/pose'
 import { responsePanel } from '../panels/response'
 import { Scene } from '../machine3d/scene'
-import { fromAddress, page, sourceKey, store, toAddress } from './store'
+import { fromAddress, page, sourceKey, store, toAddress } from '../state/store'
 import { timePanel } from '../panels/simulation'
 import { tabs } from '../widgets/tabs'
-import type { Described, FieldError, Snapshot, Start } from './types'
-import { viewPanel } from '../machine3d/view'
+import type { Design, FieldError, Snapshot, Start } from '../state/answers'
+import { viewPanel } from '../panels/view'
 import { workspacePanel } from '../panels/workspace'
 
 const FIRST = 'motion-base'
 
 function header(start: Start, say: (words: string) => void): HTMLElement {
-  const presets = select('Design', [...Object.keys(start.presets).map((name) => [name, name] as const), ['', 'own design'] as const], page.preset, (name) => {
-    if (name) void open(start.presets[name], name)
-    else presets.set(page.preset)
+  const presets = select(
+    'Design',
+    [...Object.keys(start.presets).map((name) => [name, name] as const), ['', 'own design'] as const],
+    page.preset,
+    (name) => {
+      if (name) void open(start.presets[name], name)
+      else presets.set(page.preset)
+    },
+  )
+  const file = h('input', {
+    type: 'file',
+    accept: '.toml',
+    class: 'hidden',
+    id: 'design-file',
+    'aria-label': 'Open a design file',
+    tabindex: -1,
   })
-  const file = h('input', { type: 'file', accept: '.toml', class: 'hidden', id: 'design-file', 'aria-label': 'Open a design file', tabindex: -1 })
   file.addEventListener('change', () => void take(file.files?.[0]))
   const take = async (chosen: File | undefined) => {
     if (!chosen) return
-    if (chosen.size > MOST_TEXT) return say(`${chosen.name} has ${chosen.size} bytes; a design has at most ${MOST_TEXT}.`)
-    say((await open(await chosen.text(), '')) ? `${chosen.name} is open` : `${chosen.name} is not a design; see the Design panel.`)
+    if (chosen.size > MOST_TEXT)
+      return say(`${chosen.name} has ${chosen.size} bytes; a design has at most ${MOST_TEXT}.`)
+    say(
+      (await open(await chosen.text(), ''))
+        ? `${chosen.name} is open`
+        : `${chosen.name} is not a design; see the Design panel.`,
+    )
     file.value = ''
   }
   document.addEventListener('dragover', (event) => event.preventDefault())
@@ -42,7 +59,9 @@ function header(start: Start, say: (words: string) => void): HTMLElement {
   })
   store.on(['design', 'text', 'preset'], () => {
     presets.set(page.preset)
-    presets.element.options[presets.element.options.length - 1].textContent = page.preset ? 'own design' : (page.design?.name ?? 'own design')
+    presets.element.options[presets.element.options.length - 1].textContent = page.preset
+      ? 'own design'
+      : (page.design?.name ?? 'own design')
     document.title = `${page.design?.name ?? 'Flexapod'} · Flexapod`
   })
   const share = async () => {
@@ -82,7 +101,20 @@ const KEYS: [string, string][] = [
 function help(): HTMLDialogElement {
   const old = document.querySelector('dialog')
   if (old) return old
-  const dialog = h('dialog', { 'aria-label': 'Keys' }, h('h2', {}, 'Keys'), h('dl', {}, ...KEYS.flatMap(([key, words]) => [h('dt', {}, key), h('dd', {}, words)])), h('p', { class: 'hint' }, 'Drawn with three.js and uPlot; ', h('a', { href: './licenses.txt' }, 'their licences'), '.'), button('Close', () => dialog.close()))
+  const dialog = h(
+    'dialog',
+    { 'aria-label': 'Keys' },
+    h('h2', {}, 'Keys'),
+    h('dl', {}, ...KEYS.flatMap(([key, words]) => [h('dt', {}, key), h('dd', {}, words)])),
+    h(
+      'p',
+      { class: 'hint' },
+      'Drawn with three.js and uPlot; ',
+      h('a', { href: './licenses.txt' }, 'their licences'),
+      '.',
+    ),
+    button('Close', () => dialog.close()),
+  )
   document.body.append(dialog)
   return dialog
 }
@@ -107,7 +139,10 @@ function shortcuts(scene: Scene): void {
 function readout(): HTMLElement {
   const cell = (name: string, id: string, unit: string) => {
     const value = h('output', { id })
-    return { value, element: h('div', { class: 'figure' }, h('span', { class: 'name' }, name, unit && `, ${unit}`), value) }
+    return {
+      value,
+      element: h('div', { class: 'figure' }, h('span', { class: 'name' }, name, unit && `, ${unit}`), value),
+    }
   }
   const index = cell('Index ω₁', 'index', 'rad/s')
   const frequency = cell('f₁', 'frequency', 'Hz')
@@ -116,7 +151,8 @@ function readout(): HTMLElement {
   const limits = cell('Limits', 'limits', '')
   const spoken = status({ class: 'hidden' })
   const speak = settled(900, () => {
-    if (page.snapshot) spoken.textContent = `Index ${sig(page.snapshot.index, 4)} radians per second, condition number ${sig(page.snapshot.condition, 3)}. ${page.snapshot.limits.exceeded.join('. ')}`
+    if (page.snapshot)
+      spoken.textContent = `Index ${sig(page.snapshot.index, 4)} radians per second, condition number ${sig(page.snapshot.condition, 3)}. ${page.snapshot.limits.exceeded.join('. ')}`
   })
   store.on(['snapshot'], () => {
     const s = page.snapshot
@@ -125,11 +161,20 @@ function readout(): HTMLElement {
     frequency.value.textContent = sig(s.frequency[0])
     condition.value.textContent = sig(s.condition, 4)
     force.value.textContent = s.legs.force ? sig(Math.max(...s.legs.force.map((f) => Math.abs(f ?? 0))), 4) : '–'
-    limits.value.textContent = !s.limits.any ? 'none set' : s.limits.ok ? 'within' : `${s.limits.exceeded.length} exceeded`
+    limits.value.textContent = !s.limits.any
+      ? 'none set'
+      : s.limits.ok
+        ? 'within'
+        : `${s.limits.exceeded.length} exceeded`
     limits.element.classList.toggle('exceeded', !s.limits.ok)
     speak()
   })
-  return h('div', { class: 'readout', role: 'group', 'aria-label': 'Chief results' }, ...[index, frequency, condition, force, limits].map((c) => c.element), spoken)
+  return h(
+    'div',
+    { class: 'readout', role: 'group', 'aria-label': 'Chief results' },
+    ...[index, frequency, condition, force, limits].map((c) => c.element),
+    spoken,
+  )
 }
 
 async function begin(): Promise<void> {
@@ -149,14 +194,20 @@ async function begin(): Promise<void> {
   const refused = h('p', { class: 'refused', role: 'alert', hidden: true })
   document.body.append(
     header(start, say),
-    h('main', {}, h('div', { class: 'side' }, posePanel(), numbers.element), h('div', { class: 'middle' }, readout(), viewPanel(scene), refused), tabs([
-      ['modes', 'Modes', modesPanel(animation)],
-      ['legs', 'Legs', legsPanel()],
-      ['workspace', 'Workspace', workspacePanel()],
-      ['response', 'Response', responsePanel(animation)],
-      ['time', 'Time', timePanel(animation)],
-      ['design', 'Design', design.element],
-    ])),
+    h(
+      'main',
+      {},
+      h('div', { class: 'side' }, posePanel(), numbers.element),
+      h('div', { class: 'middle' }, readout(), viewPanel(scene), refused),
+      tabs([
+        ['modes', 'Modes', modesPanel(animation)],
+        ['legs', 'Legs', legsPanel()],
+        ['workspace', 'Workspace', workspacePanel()],
+        ['response', 'Response', responsePanel(animation)],
+        ['time', 'Time', timePanel(animation)],
+        ['design', 'Design', design.element],
+      ]),
+    ),
     toast,
   )
   shortcuts(scene)
@@ -172,8 +223,18 @@ async function begin(): Promise<void> {
       design.fail(f.key, f.message)
     }
   }
-  const state = new Live<Snapshot>('api/state', () => store.question(), (snapshot) => store.set({ snapshot, error: '' }), failed)
-  const describe = new Live<Described>('api/design', () => ({ design: page.text, changes: page.changes }), (d) => store.set({ design: d, described: sourceKey(page.text, page.changes) }), failed)
+  const state = new Live<Snapshot>(
+    'api/state',
+    () => store.question(),
+    (snapshot) => store.set({ snapshot, error: '' }),
+    failed,
+  )
+  const describe = new Live<Design>(
+    'api/design',
+    () => ({ design: page.text, changes: page.changes }),
+    (d) => store.set({ design: d, described: sourceKey(page.text, page.changes) }),
+    failed,
+  )
   const address = settled(250, () => void toAddress().then((a) => history.replaceState(null, '', `#${a}`)))
   const changed = settled(120, describe.request)
   store.on(['pose', 'joint', 'text', 'changes'], state.request)
@@ -187,7 +248,14 @@ async function begin(): Promise<void> {
 /** Show what an address says, or what the server was started with. */
 async function restore(start: Start, hash: string): Promise<void> {
   const said = await fromAddress(hash, start.presets)
-  const preset = said.text !== undefined ? (said.preset ?? '') : start.start && start.presets[start.start.name] === start.start.text ? start.start.name : start.start ? '' : FIRST
+  const preset =
+    said.text !== undefined
+      ? (said.preset ?? '')
+      : start.start && start.presets[start.start.name] === start.start.text
+        ? start.start.name
+        : start.start
+          ? ''
+          : FIRST
   const text = said.text ?? start.start?.text ?? start.presets[FIRST]
   const { text: _text, preset: _preset, ...rest } = said
   if (await open(text, preset, rest)) return

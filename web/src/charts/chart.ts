@@ -37,7 +37,8 @@ export function ticks(scale: Scale, wanted: number): number[] {
     const every = Math.max(1, Math.ceil(decades / wanted))
     const steps = decades <= 1.5 ? [1, 2, 5] : decades <= 2.5 ? [1, 3] : [1]
     const found: number[] = []
-    for (let e = Math.floor(Math.log10(min)); e <= Math.ceil(Math.log10(max)); e += every) for (const s of steps) found.push(s * 10 ** e)
+    for (let e = Math.floor(Math.log10(min)); e <= Math.ceil(Math.log10(max)); e += every)
+      for (const s of steps) found.push(s * 10 ** e)
     return found.filter((v) => v >= min * 0.999999 && v <= max * 1.000001)
   }
   const rough = (max - min) / wanted
@@ -65,7 +66,8 @@ export function axes(box: Box2, x: Scale, y: Scale, look: Look): SVGGElement {
   const { left, top, width, height } = box
   const text = (at: [number, number], words: string, more: Record<string, unknown> = {}) =>
     group.append(svg('text', { x: at[0], y: at[1], 'text-anchor': 'middle', ...more }, words))
-  const line = (x1: number, y1: number, x2: number, y2: number) => group.append(svg('line', { x1, y1, x2, y2, stroke: look.muted, 'stroke-opacity': 0.28 }))
+  const line = (x1: number, y1: number, x2: number, y2: number) =>
+    group.append(svg('line', { x1, y1, x2, y2, stroke: look.muted, 'stroke-opacity': 0.28 }))
   for (const value of ticks(x, Math.max(3, width / 70))) {
     const at = left + width * fraction(x, value)
     line(at, top, at, top + height)
@@ -89,15 +91,27 @@ export function bar(box: Box2, scale: Scale, colour: (t: number) => string, look
   const steps = 64
   for (let i = 0; i < steps; i++) {
     const height = box.height / steps
-    group.append(svg('rect', { x: box.left, y: box.top + box.height - (i + 1) * height, width: box.width, height: height + 0.5, fill: colour((i + 0.5) / steps) }))
+    group.append(
+      svg('rect', {
+        x: box.left,
+        y: box.top + box.height - (i + 1) * height,
+        width: box.width,
+        height: height + 0.5,
+        fill: colour((i + 0.5) / steps),
+      }),
+    )
   }
   for (const value of ticks(scale, 5)) {
     const y = box.top + box.height * (1 - fraction(scale, value))
-    group.append(svg('text', { x: box.left + box.width + 5, y: y + 0.35 * look.size, fill: look.muted }, tickText(value, scale)))
+    group.append(
+      svg('text', { x: box.left + box.width + 5, y: y + 0.35 * look.size, fill: look.muted }, tickText(value, scale)),
+    )
   }
   const x = box.left + box.width + 52
   const middle = box.top + box.height / 2
-  group.append(svg('text', { x, y: middle, 'text-anchor': 'middle', transform: `rotate(-90 ${x} ${middle})` }, scale.label))
+  group.append(
+    svg('text', { x, y: middle, 'text-anchor': 'middle', transform: `rotate(-90 ${x} ${middle})` }, scale.label),
+  )
   return group
 }
 
@@ -109,27 +123,91 @@ export interface Series {
 }
 
 /** A whole figure of lines over x for a file: axes, lines, marks and a legend. */
-export function lineFigure(title: string, x: Scale & { values: ArrayLike<number> }, y: Scale, series: Series[], marks: { at: number; name: string }[], look: Look): SVGSVGElement {
+export function lineFigure(
+  title: string,
+  x: Scale & { values: ArrayLike<number> },
+  y: Scale,
+  series: Series[],
+  marks: { at: number; name: string }[],
+  look: Look,
+): SVGSVGElement {
   const [width, height] = [760, 460]
   const box = { left: 78, top: 34, width: width - 200, height: height - 90 }
   const figure = svg('svg', { xmlns: 'http://www.w3.org/2000/svg', viewBox: `0 0 ${width} ${height}`, width, height })
   figure.append(svg('rect', { width, height, fill: look.paper }))
-  figure.append(svg('text', { x: box.left, y: 20, fill: look.text, 'font-family': 'system-ui, sans-serif', 'font-size': 14, 'font-weight': 600 }, title))
-  const clip = svg('clipPath', { id: 'plot' }, svg('rect', { x: box.left, y: box.top, width: box.width, height: box.height }))
+  figure.append(
+    svg(
+      'text',
+      {
+        x: box.left,
+        y: 20,
+        fill: look.text,
+        'font-family': 'system-ui, sans-serif',
+        'font-size': 14,
+        'font-weight': 600,
+      },
+      title,
+    ),
+  )
+  const clip = svg(
+    'clipPath',
+    { id: 'plot' },
+    svg('rect', { x: box.left, y: box.top, width: box.width, height: box.height }),
+  )
   figure.append(svg('defs', {}, clip), axes(box, x, y, look))
   for (const mark of marks) {
     const t = fraction(x, mark.at)
     if (t < 0 || t > 1) continue
     const at = box.left + box.width * t
-    figure.append(svg('line', { x1: at, x2: at, y1: box.top, y2: box.top + box.height, stroke: look.muted, 'stroke-dasharray': '2 3' }))
-    figure.append(svg('text', { x: at + 3, y: box.top + 12, 'font-size': 10, 'font-family': 'system-ui, sans-serif', fill: look.muted }, mark.name))
+    figure.append(
+      svg('line', {
+        x1: at,
+        x2: at,
+        y1: box.top,
+        y2: box.top + box.height,
+        stroke: look.muted,
+        'stroke-dasharray': '2 3',
+      }),
+    )
+    figure.append(
+      svg(
+        'text',
+        { x: at + 3, y: box.top + 12, 'font-size': 10, 'font-family': 'system-ui, sans-serif', fill: look.muted },
+        mark.name,
+      ),
+    )
   }
   series.forEach((line, i) => {
-    figure.append(svg('path', { d: path(box, x, y, line.values), fill: 'none', stroke: line.colour, 'stroke-width': 1.5, 'stroke-dasharray': line.dash.join(' '), 'clip-path': 'url(#plot)' }))
+    figure.append(
+      svg('path', {
+        d: path(box, x, y, line.values),
+        fill: 'none',
+        stroke: line.colour,
+        'stroke-width': 1.5,
+        'stroke-dasharray': line.dash.join(' '),
+        'clip-path': 'url(#plot)',
+      }),
+    )
     const top = box.top + 10 + 18 * i
     const left = box.left + box.width + 14
-    figure.append(svg('line', { x1: left, x2: left + 22, y1: top, y2: top, stroke: line.colour, 'stroke-width': 2, 'stroke-dasharray': line.dash.join(' ') }))
-    figure.append(svg('text', { x: left + 28, y: top + 4, 'font-size': 12, 'font-family': 'system-ui, sans-serif', fill: look.text }, line.name))
+    figure.append(
+      svg('line', {
+        x1: left,
+        x2: left + 22,
+        y1: top,
+        y2: top,
+        stroke: line.colour,
+        'stroke-width': 2,
+        'stroke-dasharray': line.dash.join(' '),
+      }),
+    )
+    figure.append(
+      svg(
+        'text',
+        { x: left + 28, y: top + 4, 'font-size': 12, 'font-family': 'system-ui, sans-serif', fill: look.text },
+        line.name,
+      ),
+    )
   })
   return figure
 }

@@ -1,8 +1,30 @@
 // Colour maps that people with colour-blindness read too, and the colours of the theme for canvases.
 
 /** Samples of cividis (J. R. Nunez and others, 2018), of viridis, and of a blue-white-orange pair for signed numbers. */
-const CIVIDIS = ['#00224e', '#123570', '#3b496c', '#575d6d', '#707173', '#8a8678', '#a59c74', '#c3b369', '#e1cc55', '#fee838']
-const VIRIDIS = ['#440154', '#482878', '#3e4989', '#31688e', '#26828e', '#1f9e89', '#35b779', '#6ece58', '#b5de2b', '#fde725']
+const CIVIDIS = [
+  '#00224e',
+  '#123570',
+  '#3b496c',
+  '#575d6d',
+  '#707173',
+  '#8a8678',
+  '#a59c74',
+  '#c3b369',
+  '#e1cc55',
+  '#fee838',
+]
+const VIRIDIS = [
+  '#440154',
+  '#482878',
+  '#3e4989',
+  '#31688e',
+  '#26828e',
+  '#1f9e89',
+  '#35b779',
+  '#6ece58',
+  '#b5de2b',
+  '#fde725',
+]
 const SIGNED = ['#08519c', '#3182bd', '#6baed6', '#bdd7e7', '#d9d9d9', '#fdd0a2', '#fd8d3c', '#e6550d', '#a63603']
 
 export type Map = (t: number) => [number, number, number]
@@ -12,7 +34,11 @@ function interpolated(stops: string[]): Map {
   return (t) => {
     const at = Math.min(Math.max(Number.isFinite(t) ? t : 0, 0), 1) * (rgb.length - 1)
     const i = Math.min(Math.floor(at), rgb.length - 2)
-    return [0, 1, 2].map((c) => Math.round(rgb[i][c] + (at - i) * (rgb[i + 1][c] - rgb[i][c]))) as [number, number, number]
+    return [0, 1, 2].map((c) => Math.round(rgb[i][c] + (at - i) * (rgb[i + 1][c] - rgb[i][c]))) as [
+      number,
+      number,
+      number,
+    ]
   }
 }
 

@@ -74,7 +74,12 @@ export class Heat {
     const box = this.box()
     const side = this.grid.side
     this.canvas.width = this.canvas.height = side
-    Object.assign(this.canvas.style, { left: `${box.left}px`, top: `${box.top}px`, width: `${box.width}px`, height: `${box.height}px` })
+    Object.assign(this.canvas.style, {
+      left: `${box.left}px`,
+      top: `${box.top}px`,
+      width: `${box.width}px`,
+      height: `${box.height}px`,
+    })
     const image = new ImageData(side, side)
     for (let j = 0; j < side; j++) {
       for (let i = 0; i < side; i++) {
@@ -89,7 +94,10 @@ export class Heat {
     this.canvas.getContext('2d')!.putImageData(image, 0, 0)
     this.over.setAttribute('viewBox', `0 0 ${width} ${height}`)
     this.over.replaceChildren(...this.vectors(box, this.look()))
-    this.element.setAttribute('aria-label', `Heat map of ${this.scale.label}, ${sig(this.scale.min, 3)} to ${sig(this.scale.max, 3)}. ${rangeWords(this.grid.x, this.grid.y)}. Arrow keys move the machine.`)
+    this.element.setAttribute(
+      'aria-label',
+      `Heat map of ${this.scale.label}, ${sig(this.scale.min, 3)} to ${sig(this.scale.max, 3)}. ${rangeWords(this.grid.x, this.grid.y)}. Arrow keys move the machine.`,
+    )
   }
 
   private colour(t: number): [number, number, number] {
@@ -102,13 +110,24 @@ export class Heat {
 
   private vectors(box: Box2, look: Look): SVGElement[] {
     const grid = this.grid!
-    const column = { left: box.left + box.width + 14, top: box.top + box.height * 0.1, width: 12, height: box.height * 0.8 }
-    const parts: SVGElement[] = [axes(box, grid.x, grid.y, look), bar(column, this.scale, (t) => css(this.colour(t)), look)]
+    const column = {
+      left: box.left + box.width + 14,
+      top: box.top + box.height * 0.1,
+      width: 12,
+      height: box.height * 0.8,
+    }
+    const parts: SVGElement[] = [
+      axes(box, grid.x, grid.y, look),
+      bar(column, this.scale, (t) => css(this.colour(t)), look),
+    ]
     if (this.here) {
       const [tx, ty] = [fraction(grid.x, this.here[0]), 1 - fraction(grid.y, this.here[1])]
       if (tx >= 0 && tx <= 1 && ty >= 0 && ty <= 1) {
         const d = `M${box.left + tx * box.width - 8} ${box.top + ty * box.height}h16m-8 -8v16`
-        parts.push(svg('path', { d, stroke: '#ffffff', 'stroke-width': 5 }), svg('path', { d, stroke: '#d55e00', 'stroke-width': 2.5 }))
+        parts.push(
+          svg('path', { d, stroke: '#ffffff', 'stroke-width': 5 }),
+          svg('path', { d, stroke: '#d55e00', 'stroke-width': 2.5 }),
+        )
       }
     }
     return parts
@@ -118,7 +137,10 @@ export class Heat {
     if (!this.grid) return
     const at = this.element.getBoundingClientRect()
     const box = this.box()
-    const [tx, ty] = [(event.clientX - at.left - box.left) / box.width, 1 - (event.clientY - at.top - box.top) / box.height]
+    const [tx, ty] = [
+      (event.clientX - at.left - box.left) / box.width,
+      1 - (event.clientY - at.top - box.top) / box.height,
+    ]
     const inside = tx >= 0 && tx <= 1 && ty >= 0 && ty <= 1
     this.cursor = inside ? [valueAt(this.grid.x, tx), valueAt(this.grid.y, ty)] : null
     this.tip.hidden = !inside
@@ -133,7 +155,9 @@ export class Heat {
   }
 
   private key(event: KeyboardEvent): void {
-    const way = ({ ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] } as Record<string, number[]>)[event.key]
+    const way = (
+      { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] } as Record<string, number[]>
+    )[event.key]
     if (!way || !this.grid || !this.here) return
     event.preventDefault()
     const step = (s: Scale, v: number, w: number) => Math.min(Math.max(v + (w * (s.max - s.min)) / 100, s.min), s.max)
@@ -149,7 +173,14 @@ export class Heat {
     const box = this.box()
     const look = this.look()
     const figure = svg('svg', { xmlns: 'http://www.w3.org/2000/svg', viewBox: `0 0 ${width} ${height}`, width, height })
-    const image = svg('image', { x: box.left, y: box.top, width: box.width, height: box.height, href: this.canvas.toDataURL(), preserveAspectRatio: 'none' })
+    const image = svg('image', {
+      x: box.left,
+      y: box.top,
+      width: box.width,
+      height: box.height,
+      href: this.canvas.toDataURL(),
+      preserveAspectRatio: 'none',
+    })
     figure.append(svg('rect', { width, height, fill: look.paper }), image, ...this.vectors(box, look))
     return figure
   }

@@ -34,7 +34,13 @@ export class LinePlot {
   }
 
   show(lines: Lines): void {
-    const same = this.plot && this.shown && this.shown.title === lines.title && this.shown.series.length === lines.series.length && this.shown.x.log === lines.x.log && this.shown.y.label === lines.y.label
+    const same =
+      this.plot &&
+      this.shown &&
+      this.shown.title === lines.title &&
+      this.shown.series.length === lines.series.length &&
+      this.shown.x.log === lines.x.log &&
+      this.shown.y.label === lines.y.label
     this.shown = lines
     if (same) {
       this.plot!.setData(this.data(lines), false)
@@ -66,7 +72,9 @@ export class LinePlot {
 
   private data(lines: Lines): uPlot.AlignedData {
     const safe = (values: ArrayLike<number | null>) =>
-      lines.y.log ? Array.from(values, (v) => (v !== null && v > 0 && Number.isFinite(v) ? v : null)) : Array.from(values, (v) => (v !== null && Number.isFinite(v) ? v : null))
+      lines.y.log
+        ? Array.from(values, (v) => (v !== null && v > 0 && Number.isFinite(v) ? v : null))
+        : Array.from(values, (v) => (v !== null && Number.isFinite(v) ? v : null))
     return [Array.from(lines.at), ...lines.series.map((s) => safe(s.values))] as uPlot.AlignedData
   }
 
@@ -91,7 +99,13 @@ export class LinePlot {
       cursor: { drag: { x: true, y: false }, points: { size: 6 }, ...(this.sync ? { sync: { key: this.sync } } : {}) },
       legend: { show: this.legend },
       scales: {
-        x: { time: false, distr: lines.x.log ? 3 : 1, min: lines.x.min, max: lines.x.max, range: (_u, min, max) => [min ?? lines.x.min, max ?? lines.x.max] },
+        x: {
+          time: false,
+          distr: lines.x.log ? 3 : 1,
+          min: lines.x.min,
+          max: lines.x.max,
+          range: (_u, min, max) => [min ?? lines.x.min, max ?? lines.x.max],
+        },
         y: { distr: lines.y.log ? 3 : 1, min: lines.y.min, max: lines.y.max, range: (_u, min, max) => [min, max] },
       },
       axes: [
@@ -100,7 +114,17 @@ export class LinePlot {
       ],
       series: [
         { label: lines.x.label, value: (_u, v) => sig(v, 4) },
-        ...lines.series.map((s): uPlot.Series => ({ label: s.name, stroke: s.colour, dash: s.dash, width: 1.5, points: { show: false }, show: !this.hidden.has(s.name), value: (_u, v) => sig(v, 3) })),
+        ...lines.series.map(
+          (s): uPlot.Series => ({
+            label: s.name,
+            stroke: s.colour,
+            dash: s.dash,
+            width: 1.5,
+            points: { show: false },
+            show: !this.hidden.has(s.name),
+            value: (_u, v) => sig(v, 3),
+          }),
+        ),
       ],
       hooks: {
         draw: [(u) => this.marks(u, lines, t.muted)],
@@ -129,7 +153,8 @@ export class LinePlot {
       c.moveTo(x, u.bbox.top)
       c.lineTo(x, u.bbox.top + u.bbox.height)
       c.stroke()
-      if (x - last > 14 * devicePixelRatio) c.fillText(mark.name, x + 2 * devicePixelRatio, u.bbox.top + 10 * devicePixelRatio)
+      if (x - last > 14 * devicePixelRatio)
+        c.fillText(mark.name, x + 2 * devicePixelRatio, u.bbox.top + 10 * devicePixelRatio)
       last = x
     }
     c.restore()
@@ -159,7 +184,10 @@ export class LinePlot {
   figure(): SVGSVGElement {
     const lines = this.shown!
     const seen = lines.series.filter((s) => !this.hidden.has(s.name))
-    return lineFigure(lines.title, { ...lines.x, values: lines.at }, lines.y, seen, lines.marks, { ...theme(), size: 12 })
+    return lineFigure(lines.title, { ...lines.x, values: lines.at }, lines.y, seen, lines.marks, {
+      ...theme(),
+      size: 12,
+    })
   }
 
   get ready(): boolean {
@@ -180,10 +208,17 @@ export function span(series: ArrayLike<number | null>[], log: boolean, decades =
   }
   if (!(high >= low)) return log ? [0.1, 10] : [-1, 1]
   if (log) {
-    const sorted = series.map((values) => Array.from(values).filter((v): v is number => v !== null && Number.isFinite(v) && v > 0).sort((a, b) => a - b))
+    const sorted = series.map((values) =>
+      Array.from(values)
+        .filter((v): v is number => v !== null && Number.isFinite(v) && v > 0)
+        .sort((a, b) => a - b),
+    )
     const usual = Math.max(...sorted.map((values) => values[values.length >> 1] ?? 0))
     const top = Math.min(high * 1.5, usual * 1e4) // an undamped peak has no top worth showing
-    const seen = sorted.flat().filter((v) => v > top / 10 ** decades).sort((a, b) => a - b)
+    const seen = sorted
+      .flat()
+      .filter((v) => v > top / 10 ** decades)
+      .sort((a, b) => a - b)
     return [(seen[Math.floor(seen.length / 50)] ?? low) / 2, Math.max(top, low * 4)]
   }
   const room = Math.max(0.06 * (high - low), least) || 0.1 * Math.abs(high) || 1

@@ -84,7 +84,9 @@ export class Cloud {
 
   /** The points sorted by index, as places in the cloud; those without one left out. */
   order(): Uint32Array {
-    const places = new Uint32Array(this.filled).map((_, i) => i).filter((i) => Number.isFinite(this.data[i * WIDTH + 6]))
+    const places = new Uint32Array(this.filled)
+      .map((_, i) => i)
+      .filter((i) => Number.isFinite(this.data[i * WIDTH + 6]))
     return places.sort((a, b) => this.data[a * WIDTH + 6] - this.data[b * WIDTH + 6])
   }
 
@@ -122,12 +124,20 @@ export class Cloud {
     const [w, hgt] = [Math.round(box.width * ratio), Math.round(box.height * ratio)]
     this.canvas.width = w
     this.canvas.height = hgt
-    Object.assign(this.canvas.style, { left: `${box.left}px`, top: `${box.top}px`, width: `${box.width}px`, height: `${box.height}px` })
+    Object.assign(this.canvas.style, {
+      left: `${box.left}px`,
+      top: `${box.top}px`,
+      width: `${box.width}px`,
+      height: `${box.height}px`,
+    })
     this.canvas.getContext('2d')!.putImageData(this.shaded(w, hgt, box), 0, 0)
     const look = this.look()
     this.over.setAttribute('viewBox', `0 0 ${width} ${height}`)
     this.over.replaceChildren(...this.vectors(box, look))
-    this.element.setAttribute('aria-label', `Scatter of ${count(this.filled)} poses. ${rangeWords(this.x, this.y)}. Arrow keys step through poses by index, Enter moves the machine there.`)
+    this.element.setAttribute(
+      'aria-label',
+      `Scatter of ${count(this.filled)} poses. ${rangeWords(this.x, this.y)}. Arrow keys step through poses by index, Enter moves the machine there.`,
+    )
   }
 
   private look(): Look {
@@ -175,18 +185,36 @@ export class Cloud {
 
   private vectors(box: Box2, look: Look): SVGElement[] {
     const density = { label: 'poses on a pixel', min: 1, max: this.most, log: true }
-    const column = { left: box.left + box.width + 14, top: box.top + box.height * 0.2, width: 10, height: box.height * 0.6 }
-    const parts: SVGElement[] = [axes(box, this.x, this.y, look), bar(column, density, (t) => css(this.colour(t)), look)]
+    const column = {
+      left: box.left + box.width + 14,
+      top: box.top + box.height * 0.2,
+      width: 10,
+      height: box.height * 0.6,
+    }
+    const parts: SVGElement[] = [
+      axes(box, this.x, this.y, look),
+      bar(column, density, (t) => css(this.colour(t)), look),
+    ]
     const circle = (index: number, condition: number, more: Record<string, unknown>) => {
       const [tx, ty] = [fraction(this.x, condition), 1 - fraction(this.y, index)]
       if (tx < 0 || tx > 1 || ty < 0 || ty > 1) return
-      parts.push(svg('circle', { cx: box.left + tx * box.width, cy: box.top + ty * box.height, r: 6, fill: 'none', 'stroke-width': 2.5, ...more }))
+      parts.push(
+        svg('circle', {
+          cx: box.left + tx * box.width,
+          cy: box.top + ty * box.height,
+          r: 6,
+          fill: 'none',
+          'stroke-width': 2.5,
+          ...more,
+        }),
+      )
     }
     if (this.here) {
       circle(this.here.index, this.here.condition, { stroke: look.paper, 'stroke-width': 6 })
       circle(this.here.index, this.here.condition, { stroke: '#d55e00' })
     }
-    if (this.picked >= 0) circle(this.data[this.picked * WIDTH + 6], this.data[this.picked * WIDTH + 7], { stroke: look.text })
+    if (this.picked >= 0)
+      circle(this.data[this.picked * WIDTH + 6], this.data[this.picked * WIDTH + 7], { stroke: look.text })
     return parts
   }
 
@@ -250,7 +278,13 @@ export class Cloud {
     const box = this.box()
     const look = this.look()
     const figure = svg('svg', { xmlns: 'http://www.w3.org/2000/svg', viewBox: `0 0 ${width} ${height}`, width, height })
-    const image = svg('image', { x: box.left, y: box.top, width: box.width, height: box.height, href: this.canvas.toDataURL() })
+    const image = svg('image', {
+      x: box.left,
+      y: box.top,
+      width: box.width,
+      height: box.height,
+      href: this.canvas.toDataURL(),
+    })
     figure.append(svg('rect', { width, height, fill: look.paper }), image, ...this.vectors(box, look))
     return figure
   }

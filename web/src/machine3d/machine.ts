@@ -2,7 +2,7 @@
 
 import * as THREE from 'three'
 import { EXCEEDED, theme } from '../charts/colours'
-import type { Geometry } from '../app/types'
+import type { Geometry } from '../state/answers'
 
 /** Displacement of a rigid body for an animation: along (m) and about (rad) the inertial axes. */
 export interface Twist {
@@ -15,14 +15,19 @@ export const noTwist = (): Twist => ({ along: new THREE.Vector3(), about: new TH
 const Y = new THREE.Vector3(0, 1, 0)
 const vector = (v: number[]) => new THREE.Vector3(v[0], v[1], v[2])
 
-function phong(colour: THREE.ColorRepresentation, more: THREE.MeshPhongMaterialParameters = {}): THREE.MeshPhongMaterial {
+function phong(
+  colour: THREE.ColorRepresentation,
+  more: THREE.MeshPhongMaterialParameters = {},
+): THREE.MeshPhongMaterial {
   return new THREE.MeshPhongMaterial({ color: colour, specular: 0x222222, shininess: 24, ...more })
 }
 
 /** A prism over the joints, taken in the order of their angle about z. */
 function plate(joints: THREE.Vector3[], thickness: number, material: THREE.Material): THREE.Mesh {
   const middle = joints.reduce((sum, j) => sum.add(j), new THREE.Vector3()).divideScalar(joints.length)
-  const ring = [...joints].sort((a, b) => Math.atan2(a.y - middle.y, a.x - middle.x) - Math.atan2(b.y - middle.y, b.x - middle.x))
+  const ring = [...joints].sort(
+    (a, b) => Math.atan2(a.y - middle.y, a.x - middle.x) - Math.atan2(b.y - middle.y, b.x - middle.x),
+  )
   const grown = ring.map((j) => j.clone().sub(middle).multiplyScalar(1.1).add(middle))
   const points: number[] = []
   const push = (...vs: THREE.Vector3[]) => vs.forEach((v) => points.push(v.x, v.y, v.z))
@@ -52,7 +57,9 @@ function label(text: string, colour: string): THREE.Sprite {
   context.fillText(text, 32, 34)
   const texture = new THREE.CanvasTexture(canvas)
   texture.colorSpace = THREE.SRGBColorSpace
-  const sprite = new THREE.Sprite(new THREE.SpriteMaterial({ map: texture, sizeAttenuation: false, depthTest: false, depthWrite: false }))
+  const sprite = new THREE.Sprite(
+    new THREE.SpriteMaterial({ map: texture, sizeAttenuation: false, depthTest: false, depthWrite: false }),
+  )
   sprite.renderOrder = 10
   sprite.userData.label = text
   sprite.userData.colour = colour
@@ -91,13 +98,37 @@ export class Machine {
 
   /** Show a pose; rebuilds the meshes only where the design is another one. Returns whether it was. */
   show(geometry: Geometry, legAtHome: number): boolean {
-    const key = JSON.stringify([geometry.base, geometry.platform, geometry.axes, geometry.mass_center, legAtHome, theme().dark])
+    const key = JSON.stringify([
+      geometry.base,
+      geometry.platform,
+      geometry.axes,
+      geometry.mass_center,
+      legAtHome,
+      theme().dark,
+    ])
     const rebuilt = key !== this.key
     if (rebuilt) this.build(geometry, legAtHome)
     this.key = key
     const m = geometry.matrix
     this.rest.position.copy(vector(geometry.position))
-    const matrix = new THREE.Matrix4().set(m[0][0], m[0][1], m[0][2], 0, m[1][0], m[1][1], m[1][2], 0, m[2][0], m[2][1], m[2][2], 0, 0, 0, 0, 1)
+    const matrix = new THREE.Matrix4().set(
+      m[0][0],
+      m[0][1],
+      m[0][2],
+      0,
+      m[1][0],
+      m[1][1],
+      m[1][2],
+      0,
+      m[2][0],
+      m[2][1],
+      m[2][2],
+      0,
+      0,
+      0,
+      0,
+      1,
+    )
     this.rest.turn.setFromRotationMatrix(matrix)
     this.place(...this.moved)
     return rebuilt
@@ -105,8 +136,14 @@ export class Machine {
 
   /** The outermost points of the machine as it stands. */
   extent(): THREE.Vector3[] {
-    const up = this.joints.platform.map((p) => p.clone().multiplyScalar(1.2).applyQuaternion(this.rest.turn).add(this.rest.position))
-    return [...this.joints.base.map((p) => p.clone().multiplyScalar(1.15)), ...up, this.masses.clone().applyQuaternion(this.rest.turn).add(this.rest.position)]
+    const up = this.joints.platform.map((p) =>
+      p.clone().multiplyScalar(1.2).applyQuaternion(this.rest.turn).add(this.rest.position),
+    )
+    return [
+      ...this.joints.base.map((p) => p.clone().multiplyScalar(1.15)),
+      ...up,
+      this.masses.clone().applyQuaternion(this.rest.turn).add(this.rest.position),
+    ]
   }
 
   /** Displace platform and base from the pose shown. */
@@ -168,14 +205,19 @@ export class Machine {
     this.root.add(this.base, this.platform)
     this.labels = []
     this.joints = { base: geometry.base.map(vector), platform: geometry.platform.map(vector) }
-    const span = Math.max(...this.joints.base.map((v) => Math.hypot(v.x, v.y)), ...this.joints.platform.map((v) => Math.hypot(v.x, v.y)))
+    const span = Math.max(
+      ...this.joints.base.map((v) => Math.hypot(v.x, v.y)),
+      ...this.joints.platform.map((v) => Math.hypot(v.x, v.y)),
+    )
     this.size = span
     this.lowerLength = 0.58 * legAtHome
     this.radius = 0.62 * Math.hypot(2 * span, legAtHome)
     const t = theme()
     const thickness = 0.06 * span
     this.base.add(plate(this.joints.base, -thickness, phong(t.dark ? 0x47525f : 0x9aa5b1)))
-    this.platform.add(plate(this.joints.platform, thickness, phong(t.dark ? 0x7d93a8 : 0xb7c6d6, { transparent: true, opacity: 0.9 })))
+    this.platform.add(
+      plate(this.joints.platform, thickness, phong(t.dark ? 0x7d93a8 : 0xb7c6d6, { transparent: true, opacity: 0.9 })),
+    )
     this.frame(this.base, 0.45 * span, t.text)
     this.frame(this.platform, 0.38 * span, t.text)
     this.masses.copy(vector(geometry.mass_center))
@@ -242,7 +284,10 @@ export class Machine {
   }
 
   private massCentre(at: THREE.Vector3, t: ReturnType<typeof theme>): void {
-    const ball = new THREE.Mesh(new THREE.SphereGeometry(0.045 * this.size, 20, 14), phong(0xe69f00, { emissive: 0x5a3d00, depthTest: false, transparent: true, opacity: 0.95 }))
+    const ball = new THREE.Mesh(
+      new THREE.SphereGeometry(0.045 * this.size, 20, 14),
+      phong(0xe69f00, { emissive: 0x5a3d00, depthTest: false, transparent: true, opacity: 0.95 }),
+    )
     ball.renderOrder = 5
     ball.position.copy(at)
     const name = label('G', t.text)

@@ -28,7 +28,8 @@ function graphics(): Graphics {
   if (!context) return { kind: 'none', parameters: {} }
   const info = context.getExtension('WEBGL_debug_renderer_info')
   const name = String(context.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : context.RENDERER))
-  if (/swiftshader|llvmpipe|software|basic render/i.test(name)) return { kind: 'software', parameters: { canvas, context } }
+  if (/swiftshader|llvmpipe|software|basic render/i.test(name))
+    return { kind: 'software', parameters: { canvas, context } }
   context.getExtension('WEBGL_lose_context')?.loseContext()
   return { kind: 'hardware', parameters: { antialias: true } }
 }
@@ -52,7 +53,13 @@ export class Scene {
     this.light.position.set(2, -3, 5)
     this.world.add(this.sky, this.light, this.light.target, this.grid, this.machine.root)
     if (this.graphics.kind === 'none' || !this.begin()) {
-      this.element.append(h('p', { class: 'notice' }, 'This browser shows no 3-D (WebGL is missing). The tables and plots work all the same.'))
+      this.element.append(
+        h(
+          'p',
+          { class: 'notice' },
+          'This browser shows no 3-D (WebGL is missing). The tables and plots work all the same.',
+        ),
+      )
     }
     onTheme(() => this.paintGround())
   }
@@ -78,7 +85,12 @@ export class Scene {
   }
 
   private key(event: KeyboardEvent): void {
-    const turns: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }
+    const turns: Record<string, [number, number]> = {
+      ArrowLeft: [-1, 0],
+      ArrowRight: [1, 0],
+      ArrowUp: [0, -1],
+      ArrowDown: [0, 1],
+    }
     const offset = this.camera.position.clone().sub(this.controls!.target)
     const round = new THREE.Spherical().setFromVector3(new THREE.Vector3(offset.x, offset.z, -offset.y))
     if (event.key in turns) {
@@ -120,7 +132,10 @@ export class Scene {
     const half = Math.tan((this.camera.fov * Math.PI) / 360) / 1.12
     return points.reduce((most, point) => {
       const p = point.clone().sub(centre)
-      return Math.max(most, p.dot(back) + Math.max(Math.abs(p.dot(up)) / half, Math.abs(p.dot(right)) / (half * this.camera.aspect)))
+      return Math.max(
+        most,
+        p.dot(back) + Math.max(Math.abs(p.dot(up)) / half, Math.abs(p.dot(right)) / (half * this.camera.aspect)),
+      )
     }, 0)
   }
 
@@ -140,7 +155,9 @@ export class Scene {
   private resize(): void {
     const { clientWidth, clientHeight } = this.element
     if (!this.renderer || !clientWidth || !clientHeight) return
-    this.renderer.setPixelRatio(this.graphics.kind === 'software' ? Math.min(1, devicePixelRatio) : Math.min(2, devicePixelRatio))
+    this.renderer.setPixelRatio(
+      this.graphics.kind === 'software' ? Math.min(1, devicePixelRatio) : Math.min(2, devicePixelRatio),
+    )
     this.renderer.setSize(clientWidth, clientHeight, false)
     this.camera.aspect = clientWidth / clientHeight
     this.camera.updateProjectionMatrix()
@@ -167,6 +184,10 @@ export class Scene {
   async saveSvg(name: string): Promise<void> {
     const { vectorView } = await import('./vector')
     const { clientWidth, clientHeight } = this.element
-    saveText(`${name}.svg`, vectorView(this.world, this.camera, clientWidth || 800, clientHeight || 600), 'image/svg+xml')
+    saveText(
+      `${name}.svg`,
+      vectorView(this.world, this.camera, clientWidth || 800, clientHeight || 600),
+      'image/svg+xml',
+    )
   }
 }

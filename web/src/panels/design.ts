@@ -1,12 +1,12 @@
 // The design: every number as a form, or its file as text. Errors stand at the field and at the line.
 
-import { ask, Refused } from '../app/api'
+import { ask, Refused } from '../state/api'
 import { button, freshId, h, select, settled, status } from '../widgets/dom'
 import { saveText } from '../widgets/download'
 import { field, parsed } from '../widgets/format'
 import { change } from './parameters'
-import { page, sourceKey, store, type Page } from '../app/store'
-import type { Described, Field, FieldError } from '../app/types'
+import { page, sourceKey, store, type Page } from '../state/store'
+import type { Design, Field, FieldError } from '../state/answers'
 
 type Nested = number | Nested[]
 export const MOST_TEXT = 1024 * 1024
@@ -14,12 +14,25 @@ export const MOST_TEXT = 1024 * 1024
 /** Open a design: shown if it is one, with the rest of a state, otherwise its text with what is wrong. Resolves to whether it was. */
 export async function open(text: string, preset: string, rest: Partial<Page> = {}): Promise<boolean> {
   if (text.length > MOST_TEXT) {
-    draft(text.slice(0, 2000), [{ key: '', message: `The file has ${text.length} characters; a design has at most ${MOST_TEXT}.`, line: 0 }])
+    draft(text.slice(0, 2000), [
+      { key: '', message: `The file has ${text.length} characters; a design has at most ${MOST_TEXT}.`, line: 0 },
+    ])
     return false
   }
   try {
-    const design = await ask<Described>('api/design', { design: text, changes: {} })
-    store.set({ text, preset, changes: {}, design, described: sourceKey(text, {}), box: design.box, pose: design.home, mode: -1, error: '', ...rest })
+    const design = await ask<Design>('api/design', { design: text, changes: {} })
+    store.set({
+      text,
+      preset,
+      changes: {},
+      design,
+      described: sourceKey(text, {}),
+      box: design.box,
+      pose: design.home,
+      mode: -1,
+      error: '',
+      ...rest,
+    })
     return true
   } catch (error) {
     if (!(error instanceof Refused)) throw error
@@ -30,7 +43,8 @@ export async function open(text: string, preset: string, rest: Partial<Page> = {
 
 let draft: (text: string, errors: FieldError[]) => void = () => undefined
 
-const allEqual = (value: Nested): boolean => Array.isArray(value) && value.every((v) => JSON.stringify(v) === JSON.stringify(value[0]))
+const allEqual = (value: Nested): boolean =>
+  Array.isArray(value) && value.every((v) => JSON.stringify(v) === JSON.stringify(value[0]))
 
 class FieldRow {
   readonly element: HTMLElement
@@ -40,12 +54,23 @@ class FieldRow {
   private value: Nested | undefined
 
   constructor(private readonly rule: Field) {
-    const name = rule.key.replace(/^\w+\./, '').replace(/_deg$/, '').replace(/[._]/g, ' ')
+    const name = rule.key
+      .replace(/^\w+\./, '')
+      .replace(/_deg$/, '')
+      .replace(/[._]/g, ' ')
     const perLeg = rule.key.startsWith('legs.') || rule.shapes.length > 1
     this.element = h(
       'div',
       { class: 'field-row', 'data-key': rule.key },
-      h('div', { class: 'bar' }, h('strong', {}, name), h('span', { class: 'unit' }, rule.unit), h('span', { class: 'meaning' }, rule.meaning), h('span', { class: 'spring' }), perLeg && button('Each leg', () => this.turn(), { class: 'quiet each', 'aria-pressed': 'false' })),
+      h(
+        'div',
+        { class: 'bar' },
+        h('strong', {}, name),
+        h('span', { class: 'unit' }, rule.unit),
+        h('span', { class: 'meaning' }, rule.meaning),
+        h('span', { class: 'spring' }),
+        perLeg && button('Each leg', () => this.turn(), { class: 'quiet each', 'aria-pressed': 'false' }),
+      ),
       this.cells,
       this.wrong,
     )
@@ -90,7 +115,8 @@ class FieldRow {
       whole = put(whole, path, text.trim() === '' ? Number.NaN : parsed(text))
       const flat = [whole].flat(3) as number[]
       if (this.rule.optional && flat.every((v) => Number.isNaN(v))) change(this.rule.key, null)
-      else if (flat.some((v) => Number.isNaN(v))) this.fail(text.trim() === '' ? 'Fill in all the numbers of this field.' : `“${text}” is not a number.`)
+      else if (flat.some((v) => Number.isNaN(v)))
+        this.fail(text.trim() === '' ? 'Fill in all the numbers of this field.' : `“${text}” is not a number.`)
       else change(this.rule.key, structuredClone(whole))
     }
     this.cells.replaceChildren(grid(this.rule, shaped, write))
@@ -112,7 +138,14 @@ function put(value: Nested, path: number[], item: number): Nested {
 function grid(rule: Field, value: Nested, write: (path: number[], text: string) => void): HTMLElement {
   const cell = (v: number, path: number[]) => {
     const place = path.map((i) => `[${i}]`).join('')
-    const input = h('input', { type: 'text', class: 'number', inputmode: 'decimal', value: Number.isNaN(v) ? '' : field(Number(v.toPrecision(9))), 'aria-label': `${rule.key}${place} ${rule.unit}`, placeholder: rule.optional ? 'none' : '' })
+    const input = h('input', {
+      type: 'text',
+      class: 'number',
+      inputmode: 'decimal',
+      value: Number.isNaN(v) ? '' : field(Number(v.toPrecision(9))),
+      'aria-label': `${rule.key}${place} ${rule.unit}`,
+      placeholder: rule.optional ? 'none' : '',
+    })
     input.addEventListener('change', () => {
       write(path, input.value)
     })
@@ -120,8 +153,24 @@ function grid(rule: Field, value: Nested, write: (path: number[], text: string) 
   }
   if (!Array.isArray(value)) return h('div', { class: 'line' }, cell(value, []))
   if (!Array.isArray(value[0])) return h('div', { class: 'line' }, ...value.map((v, i) => cell(v as number, [i])))
-  if (!Array.isArray((value[0] as Nested[])[0])) return h('div', { class: 'matrix' }, ...value.map((row, i) => h('div', { class: 'line' }, ...(row as number[]).map((v, j) => cell(v, [i, j])))))
-  return h('div', { class: 'matrices' }, ...value.map((m, k) => h('div', { class: 'matrix' }, h('span', { class: 'hint' }, `leg ${k + 1}`), ...(m as number[][]).map((row, i) => h('div', { class: 'line' }, ...row.map((v, j) => cell(v, [k, i, j])))))))
+  if (!Array.isArray((value[0] as Nested[])[0]))
+    return h(
+      'div',
+      { class: 'matrix' },
+      ...value.map((row, i) => h('div', { class: 'line' }, ...(row as number[]).map((v, j) => cell(v, [i, j])))),
+    )
+  return h(
+    'div',
+    { class: 'matrices' },
+    ...value.map((m, k) =>
+      h(
+        'div',
+        { class: 'matrix' },
+        h('span', { class: 'hint' }, `leg ${k + 1}`),
+        ...(m as number[][]).map((row, i) => h('div', { class: 'line' }, ...row.map((v, j) => cell(v, [k, i, j])))),
+      ),
+    ),
+  )
 }
 
 const GROUPS: [string, string][] = [
@@ -143,9 +192,19 @@ function form(fields: Field[]): { element: HTMLElement; fail(key: string, messag
   })
   const groups = GROUPS.map(([start, title]) => {
     const inside = [...rows].filter(([key]) => key === start || (start.endsWith('.') && key.startsWith(start)))
-    return h('details', { class: 'fold', open: start === 'platform.' || undefined }, h('summary', {}, title), ...inside.map(([, row]) => row.element))
+    return h(
+      'details',
+      { class: 'fold', open: start === 'platform.' || undefined },
+      h('summary', {}, title),
+      ...inside.map(([, row]) => row.element),
+    )
   })
-  const element = h('div', { class: 'form' }, h('div', { class: 'bar' }, h('label', { for: name.id }, 'Name'), name), ...groups)
+  const element = h(
+    'div',
+    { class: 'form' },
+    h('div', { class: 'bar' }, h('label', { for: name.id }, 'Name'), name),
+    ...groups,
+  )
   return {
     element,
     fail(key, message) {
@@ -167,12 +226,21 @@ interface Editor {
 
 function editor(): Editor {
   let drafting = false // the text is no design, and not the one of the machine shown
-  const area = h('textarea', { class: 'code', spellcheck: 'false', autocomplete: 'off', wrap: 'off', 'aria-label': 'Design file (TOML)', rows: 30 })
+  const area = h('textarea', {
+    class: 'code',
+    spellcheck: 'false',
+    autocomplete: 'off',
+    wrap: 'off',
+    'aria-label': 'Design file (TOML)',
+    rows: 30,
+  })
   const gutter = h('div', { class: 'gutter', 'aria-hidden': 'true' })
   const list = h('ul', { class: 'errors', role: 'alert' })
   const number = (errors: FieldError[]) => {
     const wrong = new Set(errors.map((e) => e.line))
-    gutter.replaceChildren(...area.value.split('\n').map((_, i) => h('div', { class: wrong.has(i + 1) ? 'bad' : '' }, String(i + 1))))
+    gutter.replaceChildren(
+      ...area.value.split('\n').map((_, i) => h('div', { class: wrong.has(i + 1) ? 'bad' : '' }, String(i + 1))),
+    )
     gutter.scrollTop = area.scrollTop
   }
   const goTo = (line: number) => {
@@ -184,20 +252,32 @@ function editor(): Editor {
   }
   const complain = (errors: FieldError[]) => {
     const broken = errors.length > 0
-    list.replaceChildren(...errors.map((e) => h('li', {}, e.line ? button(`line ${e.line}`, () => goTo(e.line), { class: 'link' }) : null, e.line ? ': ' : '', e.message)))
+    list.replaceChildren(
+      ...errors.map((e) =>
+        h(
+          'li',
+          {},
+          e.line ? button(`line ${e.line}`, () => goTo(e.line), { class: 'link' }) : null,
+          e.line ? ': ' : '',
+          e.message,
+        ),
+      ),
+    )
     area.setAttribute('aria-invalid', String(broken))
     number(errors)
   }
   const read = settled(400, async () => {
     const text = area.value
     try {
-      const design = await ask<Described>('api/design', { design: text, changes: {} })
+      const design = await ask<Design>('api/design', { design: text, changes: {} })
       if (text !== area.value) return
       complain([])
-      if (text !== page.text || Object.keys(page.changes).length) store.set({ text, preset: '', changes: {}, design, described: sourceKey(text, {}), error: '' })
+      if (text !== page.text || Object.keys(page.changes).length)
+        store.set({ text, preset: '', changes: {}, design, described: sourceKey(text, {}), error: '' })
     } catch (error) {
       if (!(error instanceof Refused)) throw error
-      if (text === area.value) complain(error.fields.length ? error.fields : [{ key: '', message: error.message, line: 0 }])
+      if (text === area.value)
+        complain(error.fields.length ? error.fields : [{ key: '', message: error.message, line: 0 }])
     }
   })
   area.addEventListener('input', () => {
@@ -231,7 +311,15 @@ export function designPanel(fields: Field[], reveal: () => void): DesignPanel {
   const sheet = form(fields)
   const text = editor()
   const note = status({ class: 'hint' })
-  const view = select('View of the design', [['form', 'Form'], ['toml', 'TOML text']] as const, 'form', (v) => turn(v))
+  const view = select(
+    'View of the design',
+    [
+      ['form', 'Form'],
+      ['toml', 'TOML text'],
+    ] as const,
+    'form',
+    (v) => turn(v),
+  )
   const turn = (v: 'form' | 'toml') => {
     view.set(v)
     sheet.element.hidden = v !== 'form'
@@ -249,9 +337,25 @@ export function designPanel(fields: Field[], reveal: () => void): DesignPanel {
     if (!text.drafting()) note.textContent = ''
     warnings.replaceChildren(...(page.design?.warnings ?? []).map((w) => h('li', {}, w)))
   })
-  const save = () => page.design && saveText(`${page.design.name.replace(/[^\w.-]+/g, '-')}.toml`, page.design.toml, 'application/toml')
+  const save = () =>
+    page.design && saveText(`${page.design.name.replace(/[^\w.-]+/g, '-')}.toml`, page.design.toml, 'application/toml')
   return {
-    element: h('div', { id: 'design' }, h('div', { class: 'bar' }, h('h2', {}, 'Design'), view.element, h('span', { class: 'spring' }), button('Save TOML', save, { class: 'quiet' })), note, warnings, sheet.element, text.element),
+    element: h(
+      'div',
+      { id: 'design' },
+      h(
+        'div',
+        { class: 'bar' },
+        h('h2', {}, 'Design'),
+        view.element,
+        h('span', { class: 'spring' }),
+        button('Save TOML', save, { class: 'quiet' }),
+      ),
+      note,
+      warnings,
+      sheet.element,
+      text.element,
+    ),
     fail: sheet.fail,
   }
 }

@@ -2,8 +2,8 @@
 
 import { button, freshId, h, select } from '../widgets/dom'
 import { field, parsed } from '../widgets/format'
-import { page, store } from '../app/store'
-import type { ChiefNumber } from '../app/types'
+import { page, store } from '../state/store'
+import type { Parameter } from '../state/answers'
 
 export function change(key: string, value: unknown): void {
   const changes = { ...page.changes }
@@ -13,7 +13,7 @@ export function change(key: string, value: unknown): void {
 }
 
 /** Slider position 0 to 1 to value and back: a factor of ten each way, or a stretch about the original. */
-function scaleOf(chief: ChiefNumber): { at(value: number): number; value(at: number): number } {
+function scaleOf(chief: Parameter): { at(value: number): number; value(at: number): number } {
   const { original, size } = chief
   if (chief.logarithmic && original > 0) {
     const low = original / 10
@@ -32,10 +32,21 @@ class NumberRow {
   private readonly wrong = h('p', { class: 'wrong', role: 'alert', hidden: true })
   private typing = false // a number that is being typed stays, whatever is answered meanwhile
 
-  constructor(private chief: ChiefNumber) {
+  constructor(private chief: Parameter) {
     const id = freshId('number')
-    this.number = h('input', { type: 'text', inputmode: 'decimal', id, class: 'number', autocomplete: 'off', 'data-key': chief.key })
-    this.undo = button('↺', () => change(chief.key, undefined), { class: 'icon', 'aria-label': `Reset ${chief.label}`, title: 'Back to the design' })
+    this.number = h('input', {
+      type: 'text',
+      inputmode: 'decimal',
+      id,
+      class: 'number',
+      autocomplete: 'off',
+      'data-key': chief.key,
+    })
+    this.undo = button('↺', () => change(chief.key, undefined), {
+      class: 'icon',
+      'aria-label': `Reset ${chief.label}`,
+      title: 'Back to the design',
+    })
     this.slider.setAttribute('aria-label', `${chief.label} slider`)
     this.slider.addEventListener('input', () => change(chief.key, scaleOf(this.chief).value(Number(this.slider.value))))
     const put = () => {
@@ -69,11 +80,12 @@ class NumberRow {
     this.number.setAttribute('aria-invalid', String(message !== ''))
   }
 
-  show(chief: ChiefNumber): void {
+  show(chief: Parameter): void {
     this.chief = chief
     const value = this.current()
     this.slider.value = String(scaleOf(chief).at(value))
-    if (!this.typing && (document.activeElement !== this.number || parsed(this.number.value) !== value)) this.number.value = field(Number(value.toPrecision(6)))
+    if (!this.typing && (document.activeElement !== this.number || parsed(this.number.value) !== value))
+      this.number.value = field(Number(value.toPrecision(6)))
     this.undo.style.visibility = chief.key in page.changes ? 'visible' : 'hidden'
     this.fail('')
   }
@@ -89,12 +101,15 @@ export function numbersPanel(): NumbersPanel {
   const rows = new Map<string, NumberRow>()
   const joints = select(
     'Joint model',
-    [['universal', 'Universal joints (exact)'], ['spin_free', 'Spin-free legs (the paper)']] as const,
+    [
+      ['universal', 'Universal joints (exact)'],
+      ['spin_free', 'Spin-free legs (the paper)'],
+    ] as const,
     page.joint,
     (joint) => store.set({ joint }),
   )
   const show = () => {
-    for (const chief of page.design?.chief ?? []) {
+    for (const chief of page.design?.parameters ?? []) {
       const row = rows.get(chief.key)
       if (row) row.show(chief)
       else {
@@ -106,7 +121,10 @@ export function numbersPanel(): NumbersPanel {
   }
   store.on(['design', 'changes'], show)
   store.on(['joint'], () => joints.set(page.joint))
-  const reset = button('Reset', () => store.set({ changes: {} }), { class: 'quiet', title: 'Undo all changes to the design' })
+  const reset = button('Reset', () => store.set({ changes: {} }), {
+    class: 'quiet',
+    title: 'Undo all changes to the design',
+  })
   store.on(['changes'], () => (reset.disabled = Object.keys(page.changes).length === 0))
   return {
     element: h(

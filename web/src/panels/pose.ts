@@ -2,8 +2,8 @@
 
 import { button, freshId, h, select } from '../widgets/dom'
 import { field, parsed } from '../widgets/format'
-import { page, store } from '../app/store'
-import { COORDINATES } from '../app/types'
+import { page, store } from '../state/store'
+import { COORDINATES } from '../state/answers'
 
 const isLength = (i: number) => i < 3
 const factor = (i: number) => (isLength(i) && page.unit === 'mm' ? 1000 : 1)
@@ -29,7 +29,14 @@ function row(i: number): Row {
   const id = freshId('pose')
   const name = COORDINATES[i]
   const slider = h('input', { type: 'range', step: 'any', 'aria-label': `${name} slider`, tabindex: 0 })
-  const number = h('input', { type: 'text', inputmode: 'decimal', id, class: 'number', autocomplete: 'off', spellcheck: 'false' })
+  const number = h('input', {
+    type: 'text',
+    inputmode: 'decimal',
+    id,
+    class: 'number',
+    autocomplete: 'off',
+    spellcheck: 'false',
+  })
   const suffix = h('span', { class: 'unit' })
   let typing = false // a number that is being typed stays, whatever is answered meanwhile
   const put = () => {
@@ -79,8 +86,19 @@ function row(i: number): Row {
 export function posePanel(): HTMLElement {
   const rows = COORDINATES.map((_, i) => row(i))
   const show = () => rows.forEach((r) => r.show())
-  const units = select('Unit of lengths', [['mm', 'mm'], ['m', 'm']] as const, page.unit, (value) => store.set({ unit: value }))
-  const home = button('Home', () => page.design && setPose(page.design.home), { title: 'Move to the home pose (H)', class: 'quiet' })
+  const units = select(
+    'Unit of lengths',
+    [
+      ['mm', 'mm'],
+      ['m', 'm'],
+    ] as const,
+    page.unit,
+    (value) => store.set({ unit: value }),
+  )
+  const home = button('Home', () => page.design && setPose(page.design.home), {
+    title: 'Move to the home pose (H)',
+    class: 'quiet',
+  })
   store.on(['pose', 'unit', 'box', 'design'], () => {
     units.set(page.unit)
     show()
@@ -88,7 +106,14 @@ export function posePanel(): HTMLElement {
   return h(
     'section',
     { 'aria-labelledby': 'pose-title', class: 'block' },
-    h('div', { class: 'bar' }, h('h2', { id: 'pose-title' }, 'Pose'), h('span', { class: 'spring' }), home, units.element),
+    h(
+      'div',
+      { class: 'bar' },
+      h('h2', { id: 'pose-title' }, 'Pose'),
+      h('span', { class: 'spring' }),
+      home,
+      units.element,
+    ),
     ...rows.map((r) => r.element),
   )
 }

@@ -1,14 +1,14 @@
 // Frequency response: how the platform follows the base, forces or leg commands; and the base shaken, in 3-D.
 
-import { ask, Live, Refused } from '../app/api'
-import { twist, type Animation } from '../machine3d/motion'
+import { ask, Live, Refused } from '../state/api'
+import { twist, type Animation } from '../machine3d/animation'
 import { categories, DASHES, onTheme } from '../charts/colours'
 import { button, freshId, h, select, settled, status, svg } from '../widgets/dom'
 import { csvButton, figureButtons, saveCsv } from '../widgets/download'
 import { field, parsed, sig } from '../widgets/format'
 import { LinePlot, span, type Lines } from '../charts/lines'
-import { page, store } from '../app/store'
-import { COORDINATES } from '../app/types'
+import { page, store } from '../state/store'
+import { COORDINATES } from '../state/answers'
 
 interface Answer {
   omega: number[]
@@ -33,22 +33,73 @@ const TURN = 2 * Math.PI
 export function responsePanel(animation: Animation): HTMLElement {
   let answer: Answer | null = null
   const note = status({ class: 'hint' })
-  const what = select('Response', [['absolute', 'Transmissibility: motion by base motion'], ['relative', 'Motion relative to the base'], ['compliance', 'Compliance: motion by wrench'], ['command', 'Motion by leg command'], ['leg_force', 'Leg force by base motion']] as const, 'absolute', () => live.request())
-  const layout = select('Panels', [['all', 'One panel per output'], ['one', 'One large panel'], ['phase', 'One large panel, phase']] as const, 'all', () => show())
-  const output = select('Output', COORDINATES.map((c, i) => [String(i), c] as const), '2', () => show())
-  const hertz = select('Frequency axis', [['Hz', 'Hz'], ['rad', 'rad/s']] as const, 'Hz', () => show())
-  const loss = h('input', { type: 'text', class: 'number tiny', value: '0', id: freshId('loss'), inputmode: 'decimal', title: 'Structural damping of the legs, K (1 + iη)' })
+  const what = select(
+    'Response',
+    [
+      ['absolute', 'Transmissibility: motion by base motion'],
+      ['relative', 'Motion relative to the base'],
+      ['compliance', 'Compliance: motion by wrench'],
+      ['command', 'Motion by leg command'],
+      ['leg_force', 'Leg force by base motion'],
+    ] as const,
+    'absolute',
+    () => live.request(),
+  )
+  const layout = select(
+    'Panels',
+    [
+      ['all', 'One panel per output'],
+      ['one', 'One large panel'],
+      ['phase', 'One large panel, phase'],
+    ] as const,
+    'all',
+    () => show(),
+  )
+  const output = select(
+    'Output',
+    COORDINATES.map((c, i) => [String(i), c] as const),
+    '2',
+    () => show(),
+  )
+  const hertz = select(
+    'Frequency axis',
+    [
+      ['Hz', 'Hz'],
+      ['rad', 'rad/s'],
+    ] as const,
+    'Hz',
+    () => show(),
+  )
+  const loss = h('input', {
+    type: 'text',
+    class: 'number tiny',
+    value: '0',
+    id: freshId('loss'),
+    inputmode: 'decimal',
+    title: 'Structural damping of the legs, K (1 + iη)',
+  })
   loss.addEventListener('change', () => live.request())
   const grid = h('div', { class: 'panels' })
-  const plots = COORDINATES.map(() => new LinePlot(() => (layout.element.value === 'all' ? 190 : 430), (x) => shakeAt(x)))
+  const plots = COORDINATES.map(
+    () =>
+      new LinePlot(
+        () => (layout.element.value === 'all' ? 190 : 430),
+        (x) => shakeAt(x),
+      ),
+  )
   for (const plot of plots) plot.legend = false
   grid.append(...plots.map((p) => p.element))
 
   const request = () => ({ ...store.question(), quantity: what.element.value, loss_factor: parsed(loss.value) })
-  const live = new Live<Answer>('api/response', request, (a) => {
-    answer = a
-    show()
-  }, (error) => (note.textContent = error.message))
+  const live = new Live<Answer>(
+    'api/response',
+    request,
+    (a) => {
+      answer = a
+      show()
+    },
+    (error) => (note.textContent = error.message),
+  )
 
   const scale = () => (hertz.element.value === 'Hz' ? 1 / TURN : 1)
   const lines = (a: Answer, o: number, phase: boolean): Lines => {
@@ -58,8 +109,15 @@ export function responsePanel(animation: Animation): HTMLElement {
     const units = [...new Set(a.input_units)].map((u) => `${a.output_units[o]}/${u}`.replace(/^(\S+)\/\1$/, '1'))
     return {
       title: `${a.outputs[o]} (${a.output_units[o]}) ${phase ? 'phase' : 'amplitude'}`,
-      x: { label: `frequency, ${hertz.element.value === 'Hz' ? 'Hz' : 'rad/s'}`, min: a.omega[0] * k, max: a.omega[a.omega.length - 1] * k, log: true },
-      y: phase ? { label: `${a.outputs[o]}: phase, °`, min, max } : { label: `${a.outputs[o]}, ${units.join(' or ')}`, min, max, log: true },
+      x: {
+        label: `frequency, ${hertz.element.value === 'Hz' ? 'Hz' : 'rad/s'}`,
+        min: a.omega[0] * k,
+        max: a.omega[a.omega.length - 1] * k,
+        log: true,
+      },
+      y: phase
+        ? { label: `${a.outputs[o]}: phase, °`, min, max }
+        : { label: `${a.outputs[o]}, ${units.join(' or ')}`, min, max, log: true },
       at: a.omega.map((w) => w * k),
       series: a.inputs.map((name, i) => ({ name, colour: categories()[i], dash: DASHES[i], values: values[i] })),
       marks: a.modes.map((m) => ({ at: m.omega * k, name: m.name })),
@@ -73,7 +131,19 @@ export function responsePanel(animation: Animation): HTMLElement {
     keys.replaceChildren(
       h('span', { class: 'hint' }, 'by'),
       ...names.map((name, i) => {
-        const sample = svg('svg', { width: 22, height: 8, 'aria-hidden': 'true' }, svg('line', { x1: 0, x2: 22, y1: 4, y2: 4, stroke: categories()[i], 'stroke-width': 2.5, 'stroke-dasharray': DASHES[i].join(' ') }))
+        const sample = svg(
+          'svg',
+          { width: 22, height: 8, 'aria-hidden': 'true' },
+          svg('line', {
+            x1: 0,
+            x2: 22,
+            y1: 4,
+            y2: 4,
+            stroke: categories()[i],
+            'stroke-width': 2.5,
+            'stroke-dasharray': DASHES[i].join(' '),
+          }),
+        )
         const key = h('button', { type: 'button', class: 'key', 'aria-pressed': 'true' }, sample, name)
         key.addEventListener('click', () => {
           const on = key.getAttribute('aria-pressed') !== 'true'
@@ -113,23 +183,56 @@ export function responsePanel(animation: Animation): HTMLElement {
   const shaker = shakePart(animation, () => page.tab === 'response')
   const shakeAt = (x: number) => shaker.at(x / scale() / TURN)
   const chosenPlot = () => plots.find((p) => p.ready && !p.element.hidden)!
-  const figure = () => (layout.element.value === 'all' ? panelsFigure(plots.map((p) => p.figure())) : chosenPlot().figure())
+  const figure = () =>
+    layout.element.value === 'all' ? panelsFigure(plots.map((p) => p.figure())) : chosenPlot().figure()
   const csv = () => {
     if (!answer) return
     const a = answer
-    const head = ['omega_rad_s', 'frequency_hz', ...a.outputs.flatMap((o) => a.inputs.flatMap((i) => [`${o}_by_${i}_amplitude`, `${o}_by_${i}_phase_deg`]))]
-    saveCsv(`response-${what.element.value}`, head, a.omega.map((w, n) => [w, w / TURN, ...a.outputs.flatMap((_, o) => a.inputs.flatMap((__, i) => [a.magnitude[o][i][n], a.phase[o][i][n]]))]))
+    const head = [
+      'omega_rad_s',
+      'frequency_hz',
+      ...a.outputs.flatMap((o) => a.inputs.flatMap((i) => [`${o}_by_${i}_amplitude`, `${o}_by_${i}_phase_deg`])),
+    ]
+    saveCsv(
+      `response-${what.element.value}`,
+      head,
+      a.omega.map((w, n) => [
+        w,
+        w / TURN,
+        ...a.outputs.flatMap((_, o) => a.inputs.flatMap((__, i) => [a.magnitude[o][i][n], a.phase[o][i][n]])),
+      ]),
+    )
   }
   const element = h(
     'div',
     { id: 'response' },
-    h('div', { class: 'bar' }, h('h2', {}, 'Frequency response'), h('span', { class: 'spring' }), csvButton('Response', csv), figureButtons(() => `response-${what.element.value}`, 'Response', figure)),
-    h('div', { class: 'bar tools' }, what.element, layout.element, output.element, hertz.element, h('label', { for: loss.id }, 'loss factor'), loss),
+    h(
+      'div',
+      { class: 'bar' },
+      h('h2', {}, 'Frequency response'),
+      h('span', { class: 'spring' }),
+      csvButton('Response', csv),
+      figureButtons(() => `response-${what.element.value}`, 'Response', figure),
+    ),
+    h(
+      'div',
+      { class: 'bar tools' },
+      what.element,
+      layout.element,
+      output.element,
+      hertz.element,
+      h('label', { for: loss.id }, 'loss factor'),
+      loss,
+    ),
     note,
     shaker.element,
     keys,
     grid,
-    h('p', { class: 'hint' }, 'Exact tangent at rest, with damping. Dotted lines: damped natural frequencies. Click a plot to shake the base there; drag across to zoom, double-click to see all; click a name above to hide its line.'),
+    h(
+      'p',
+      { class: 'hint' },
+      'Exact tangent at rest, with damping. Dotted lines: damped natural frequencies. Click a plot to shake the base there; drag across to zoom, double-click to see all; click a name above to hide its line.',
+    ),
   )
   output.element.hidden = true
   return element
@@ -137,8 +240,19 @@ export function responsePanel(animation: Animation): HTMLElement {
 
 /** The base shaken at one frequency along one axis. */
 function shakePart(animation: Animation, shown: () => boolean): { element: HTMLElement; at(hertz: number): void } {
-  const frequency = h('input', { type: 'text', class: 'number', inputmode: 'decimal', id: freshId('shake'), 'aria-label': 'Shaking frequency, Hz' })
-  const axis = select('Axis of the base', COORDINATES.map((c) => [c, c] as const), 'z', () => void go(true))
+  const frequency = h('input', {
+    type: 'text',
+    class: 'number',
+    inputmode: 'decimal',
+    id: freshId('shake'),
+    'aria-label': 'Shaking frequency, Hz',
+  })
+  const axis = select(
+    'Axis of the base',
+    COORDINATES.map((c) => [c, c] as const),
+    'z',
+    () => void go(true),
+  )
   const words = status({ class: 'hint', id: 'shake-words' })
   let on = false
   const toggle = button('Shake the base', () => void go(!on), { 'aria-pressed': 'false', id: 'shake' })
@@ -183,7 +297,21 @@ function shakePart(animation: Animation, shown: () => boolean): { element: HTMLE
   store.on(['tab', 'mode'], () => (on && (!shown() || page.mode >= 0) ? stop() : undefined))
   frequency.addEventListener('change', () => void go(true))
   return {
-    element: h('div', {}, h('div', { class: 'bar tools' }, toggle, h('span', {}, 'along'), axis.element, h('span', {}, 'at'), frequency, h('span', {}, 'Hz')), words),
+    element: h(
+      'div',
+      {},
+      h(
+        'div',
+        { class: 'bar tools' },
+        toggle,
+        h('span', {}, 'along'),
+        axis.element,
+        h('span', {}, 'at'),
+        frequency,
+        h('span', {}, 'Hz'),
+      ),
+      words,
+    ),
     at(hertz) {
       frequency.value = field(Number(hertz.toPrecision(5)))
       void go(true)

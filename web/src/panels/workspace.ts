@@ -1,6 +1,6 @@
 // The workspace: cloud of index against cond(H), slice heat map, worst pose. Clicking any of them moves the machine.
 
-import { floats } from '../app/api'
+import { floats } from '../state/api'
 import { Cloud } from '../charts/scatter'
 import { onTheme } from '../charts/colours'
 import { button, freshId, h, select, settled } from '../widgets/dom'
@@ -9,8 +9,8 @@ import { count, duration, field, parsed, sig } from '../widgets/format'
 import { Heat, type Grid } from '../charts/heatmap'
 import { setPose } from './pose'
 import { Runner } from '../widgets/job'
-import { page, store } from '../app/store'
-import { COORDINATES, type Coordinate } from '../app/types'
+import { page, store } from '../state/store'
+import { COORDINATES, type Coordinate } from '../state/answers'
 
 const POSE_HEAD = ['x_m', 'y_m', 'z_m', 'roll_deg', 'pitch_deg', 'yaw_deg']
 const unitOf = (c: Coordinate) => (COORDINATES.indexOf(c) < 3 ? 'm' : '°')
@@ -20,7 +20,12 @@ const tidy = (six: number[]) => six.map((v) => Number(Number(v).toPrecision(9)))
 function boxTable(): HTMLElement {
   const inputs = COORDINATES.map((c, i) =>
     (['low', 'high'] as const).map((side) => {
-      const input = h('input', { type: 'text', class: 'number', inputmode: 'decimal', 'aria-label': `${side === 'low' ? 'Least' : 'Greatest'} ${c}, ${unitOf(c)}` })
+      const input = h('input', {
+        type: 'text',
+        class: 'number',
+        inputmode: 'decimal',
+        'aria-label': `${side === 'low' ? 'Least' : 'Greatest'} ${c}, ${unitOf(c)}`,
+      })
       input.addEventListener('change', () => {
         const value = parsed(input.value)
         if (!Number.isFinite(value)) return show()
@@ -46,8 +51,24 @@ function boxTable(): HTMLElement {
     h(
       'table',
       { class: 'data narrow' },
-      h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, ''), h('th', { scope: 'col' }, 'from'), h('th', { scope: 'col' }, 'to'))),
-      h('tbody', {}, ...COORDINATES.map((c, i) => h('tr', {}, h('th', { scope: 'row' }, `${c}, ${unitOf(c)}`), h('td', {}, inputs[i][0]), h('td', {}, inputs[i][1])))),
+      h(
+        'thead',
+        {},
+        h('tr', {}, h('th', { scope: 'col' }, ''), h('th', { scope: 'col' }, 'from'), h('th', { scope: 'col' }, 'to')),
+      ),
+      h(
+        'tbody',
+        {},
+        ...COORDINATES.map((c, i) =>
+          h(
+            'tr',
+            {},
+            h('th', { scope: 'row' }, `${c}, ${unitOf(c)}`),
+            h('td', {}, inputs[i][0]),
+            h('td', {}, inputs[i][1]),
+          ),
+        ),
+      ),
     ),
     button('Box of the design', () => page.design && store.set({ box: page.design.box }), { class: 'quiet' }),
   )
@@ -62,23 +83,60 @@ function cloudPart(): Part {
   const summary = h('div', { class: 'scroll' })
   const cloud = new Cloud((point) => setPose(tidy(point.six)))
   const runner = new Runner()
-  const points = select('Number of poses', ([10_000, 100_000, 300_000, 1_000_000] as const).map((n) => [String(n), `${count(n)} poses`] as const), '100000', () => run())
-  const scale = select('Axis of the index', [['linear', 'linear'], ['log', 'logarithmic']] as const, 'linear', (kind) => (cloud.logarithmic = kind === 'log'))
+  const points = select(
+    'Number of poses',
+    ([10_000, 100_000, 300_000, 1_000_000] as const).map((n) => [String(n), `${count(n)} poses`] as const),
+    '100000',
+    () => run(),
+  )
+  const scale = select(
+    'Axis of the index',
+    [
+      ['linear', 'linear'],
+      ['log', 'logarithmic'],
+    ] as const,
+    'linear',
+    (kind) => (cloud.logarithmic = kind === 'log'),
+  )
   const seed = h('input', { type: 'text', class: 'number tiny', value: '1', inputmode: 'numeric', id: freshId('seed') })
   const summarise = () => {
     const order = cloud.order()
     if (!order.length) return summary.replaceChildren()
-    const pick: [string, number][] = [['lowest', 0], ['5 %', 0.05], ['median', 0.5], ['95 %', 0.95], ['highest', 1]]
+    const pick: [string, number][] = [
+      ['lowest', 0],
+      ['5 %', 0.05],
+      ['median', 0.5],
+      ['95 %', 0.95],
+      ['highest', 1],
+    ]
     summary.replaceChildren(
       h(
         'table',
         { class: 'data', id: 'cloud-table' },
         h('caption', { class: 'hidden' }, 'Poses of the cloud by index'),
         h('thead', {}, h('tr', {}, ...['index', 'ω₁ rad/s', 'cond(H)', ''].map((t) => h('th', { scope: 'col' }, t)))),
-        h('tbody', {}, ...pick.map(([name, share]) => {
-          const p = cloud.point(order[Math.round(share * (order.length - 1))])
-          return h('tr', {}, h('th', { scope: 'row' }, name), h('td', {}, sig(p.index)), h('td', {}, sig(p.condition)), h('td', {}, button('Go', () => setPose(tidy(p.six)), { class: 'quiet', 'aria-label': `Move the machine to the pose of the ${name} index` })))
-        })),
+        h(
+          'tbody',
+          {},
+          ...pick.map(([name, share]) => {
+            const p = cloud.point(order[Math.round(share * (order.length - 1))])
+            return h(
+              'tr',
+              {},
+              h('th', { scope: 'row' }, name),
+              h('td', {}, sig(p.index)),
+              h('td', {}, sig(p.condition)),
+              h(
+                'td',
+                {},
+                button('Go', () => setPose(tidy(p.six)), {
+                  class: 'quiet',
+                  'aria-label': `Move the machine to the pose of the ${name} index`,
+                }),
+              ),
+            )
+          }),
+        ),
       ),
     )
   }
@@ -86,9 +144,13 @@ function cloudPart(): Part {
     const total = Number(points.element.value)
     const began = performance.now()
     cloud.begin(total)
-    const whole = await runner.run('cloud', { ...store.question(), box: page.box, points: total, seed: Math.max(0, Math.round(parsed(seed.value)) || 0) }, (message, data) => {
-      if (message.type === 'points') cloud.add(floats(data))
-    })
+    const whole = await runner.run(
+      'cloud',
+      { ...store.question(), box: page.box, points: total, seed: Math.max(0, Math.round(parsed(seed.value)) || 0) },
+      (message, data) => {
+        if (message.type === 'points') cloud.add(floats(data))
+      },
+    )
     if (whole) runner.say(`${count(cloud.size)} poses in ${duration((performance.now() - began) / 1000)}`)
     if (cloud.size) summarise()
     element.dataset.points = String(cloud.size)
@@ -101,8 +163,28 @@ function cloudPart(): Part {
   const element = h(
     'section',
     { 'aria-label': 'Cloud of poses', class: 'card', id: 'cloud' },
-    h('div', { class: 'bar' }, h('h3', {}, 'Index against cond(H)'), h('span', { class: 'spring' }), csvButton('Cloud', csv), figureButtons(() => 'workspace', 'Cloud', () => cloud.figure())),
-    h('div', { class: 'bar tools' }, points.element, h('label', { for: seed.id }, 'seed'), seed, scale.element, button('Run', () => void run()), worst.button),
+    h(
+      'div',
+      { class: 'bar' },
+      h('h3', {}, 'Index against cond(H)'),
+      h('span', { class: 'spring' }),
+      csvButton('Cloud', csv),
+      figureButtons(
+        () => 'workspace',
+        'Cloud',
+        () => cloud.figure(),
+      ),
+    ),
+    h(
+      'div',
+      { class: 'bar tools' },
+      points.element,
+      h('label', { for: seed.id }, 'seed'),
+      seed,
+      scale.element,
+      button('Run', () => void run()),
+      worst.button,
+    ),
     runner.element,
     worst.element,
     cloud.element,
@@ -144,7 +226,15 @@ function slicePart(): Part {
   const options = COORDINATES.map((c) => [c, c] as const)
   const across = select('Coordinate across', options, 'x', () => void run())
   const up = select('Coordinate up', options, 'y', () => void run())
-  const what = select('Quantity', [['0', 'index ω₁'], ['1', 'cond(H)']] as const, '0', () => heat.shown && heat.show(heat.shown, Number(what.element.value)))
+  const what = select(
+    'Quantity',
+    [
+      ['0', 'index ω₁'],
+      ['1', 'cond(H)'],
+    ] as const,
+    '0',
+    () => heat.shown && heat.show(heat.shown, Number(what.element.value)),
+  )
   const scale = (c: Coordinate) => {
     const i = COORDINATES.indexOf(c)
     return { label: `${c}, ${unitOf(c)}`, min: page.box.low[i], max: page.box.high[i] }
@@ -155,23 +245,32 @@ function slicePart(): Part {
     const values = new Float32Array(3 * side * side).fill(Number.NaN)
     const grid: Grid = { side, x: scale(a), y: scale(u), values }
     let at = 0
-    const whole = await runner.run('slice', { ...store.question(), box: page.box, across: a, up: u, side }, (message, data) => {
-      if (message.type !== 'rows') return
-      const part = floats(data)
-      values.set(part, at)
-      at += part.length
-      drawn = { across: a, up: u }
-      heat.show(grid, Number(what.element.value))
-      mark()
-    })
-    if (whole) runner.say(`${count(side * side)} poses; the other four coordinates are the machine's. Paler: beyond the limits.`)
+    const whole = await runner.run(
+      'slice',
+      { ...store.question(), box: page.box, across: a, up: u, side },
+      (message, data) => {
+        if (message.type !== 'rows') return
+        const part = floats(data)
+        values.set(part, at)
+        at += part.length
+        drawn = { across: a, up: u }
+        heat.show(grid, Number(what.element.value))
+        mark()
+      },
+    )
+    if (whole)
+      runner.say(`${count(side * side)} poses; the other four coordinates are the machine's. Paler: beyond the limits.`)
   }
   const mark = () => heat.mark(page.pose[COORDINATES.indexOf(drawn.across)], page.pose[COORDINATES.indexOf(drawn.up)])
   const csv = () => {
     const grid = heat.shown
     if (!grid) return
     const place = (s: Grid['x'], i: number) => s.min + (i * (s.max - s.min)) / (grid.side - 1)
-    const rows = Array.from({ length: grid.side ** 2 }, (_, i) => [place(grid.x, i % grid.side), place(grid.y, Math.floor(i / grid.side)), ...grid.values.subarray(3 * i, 3 * i + 3)])
+    const rows = Array.from({ length: grid.side ** 2 }, (_, i) => [
+      place(grid.x, i % grid.side),
+      place(grid.y, Math.floor(i / grid.side)),
+      ...grid.values.subarray(3 * i, 3 * i + 3),
+    ])
     saveCsv('slice', [drawn.across, drawn.up, 'index_rad_s', 'cond_h', 'within_limits'], rows)
   }
   const again = settled(250, () => visible(element) && void run())
@@ -184,8 +283,27 @@ function slicePart(): Part {
   const element = h(
     'section',
     { 'aria-label': 'Slice of the workspace', class: 'card', id: 'slice' },
-    h('div', { class: 'bar' }, h('h3', {}, 'Slice at the pose'), h('span', { class: 'spring' }), csvButton('Slice', csv), figureButtons(() => 'slice', 'Slice', () => heat.figure())),
-    h('div', { class: 'bar tools' }, what.element, h('span', {}, 'over'), across.element, h('span', {}, 'and'), up.element),
+    h(
+      'div',
+      { class: 'bar' },
+      h('h3', {}, 'Slice at the pose'),
+      h('span', { class: 'spring' }),
+      csvButton('Slice', csv),
+      figureButtons(
+        () => 'slice',
+        'Slice',
+        () => heat.figure(),
+      ),
+    ),
+    h(
+      'div',
+      { class: 'bar tools' },
+      what.element,
+      h('span', {}, 'over'),
+      across.element,
+      h('span', {}, 'and'),
+      up.element,
+    ),
     runner.element,
     heat.element,
   )
@@ -211,4 +329,3 @@ export function workspacePanel(): HTMLElement {
   const element = h('div', {}, boxTable(), ...parts.map((p) => p.element))
   return element
 }
-

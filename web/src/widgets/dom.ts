@@ -10,16 +10,26 @@ function fill(element: Element, attributes: Attributes, children: Child[]): void
     else if (name === 'value' && 'value' in element) (element as HTMLInputElement).value = String(value)
     else element.setAttribute(name, value === true ? '' : String(value))
   }
-  for (const child of children) if (child !== null && child !== undefined && child !== false) element.append(child instanceof Node ? child : String(child))
+  for (const child of children)
+    if (child !== null && child !== undefined && child !== false)
+      element.append(child instanceof Node ? child : String(child))
 }
 
-export function h<K extends keyof HTMLElementTagNameMap>(tag: K, attributes: Attributes = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
+export function h<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Attributes = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
   const element = document.createElement(tag)
   fill(element, attributes, children)
   return element
 }
 
-export function svg<K extends keyof SVGElementTagNameMap>(tag: K, attributes: Attributes = {}, ...children: Child[]): SVGElementTagNameMap[K] {
+export function svg<K extends keyof SVGElementTagNameMap>(
+  tag: K,
+  attributes: Attributes = {},
+  ...children: Child[]
+): SVGElementTagNameMap[K] {
   const element = document.createElementNS('http://www.w3.org/2000/svg', tag)
   fill(element, attributes, children)
   return element
@@ -34,8 +44,17 @@ export interface Choice<T extends string> {
   set(value: T): void
 }
 
-export function select<T extends string>(label: string, options: readonly (readonly [T, string])[], value: T, chosen: (value: T) => void): Choice<T> {
-  const element = h('select', { 'aria-label': label, title: label }, ...options.map(([v, text]) => h('option', { value: v }, text)))
+export function select<T extends string>(
+  label: string,
+  options: readonly (readonly [T, string])[],
+  value: T,
+  chosen: (value: T) => void,
+): Choice<T> {
+  const element = h(
+    'select',
+    { 'aria-label': label, title: label },
+    ...options.map(([v, text]) => h('option', { value: v }, text)),
+  )
   element.value = value
   element.addEventListener('change', () => chosen(element.value as T))
   return { element, set: (v) => (element.value = v) }

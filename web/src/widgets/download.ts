@@ -53,8 +53,16 @@ export function figureButtons(name: () => string, what: string, figure: () => SV
   return h(
     'span',
     { class: 'downloads', role: 'group', 'aria-label': `Download ${what}` },
-    button('PNG', () => void savePng(name(), figure()), { class: 'quiet', 'aria-label': `${what} as PNG`, title: `${what} as PNG` }),
-    button('SVG', () => saveSvg(name(), figure()), { class: 'quiet', 'aria-label': `${what} as SVG`, title: `${what} as SVG` }),
+    button('PNG', () => void savePng(name(), figure()), {
+      class: 'quiet',
+      'aria-label': `${what} as PNG`,
+      title: `${what} as PNG`,
+    }),
+    button('SVG', () => saveSvg(name(), figure()), {
+      class: 'quiet',
+      'aria-label': `${what} as SVG`,
+      title: `${what} as SVG`,
+    }),
   )
 }
 

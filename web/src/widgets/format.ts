@@ -22,7 +22,11 @@ export function field(value: number): string {
 
 /** A number typed by a person: decimal comma, spaces and a typographic minus are all right. NaN if it is none. */
 export function parsed(text: string): number {
-  const clean = text.trim().replace(/−/g, '-').replace(/[\s_]/g, '').replace(/^([^.]*),([^.,]*)$/, '$1.$2')
+  const clean = text
+    .trim()
+    .replace(/−/g, '-')
+    .replace(/[\s_]/g, '')
+    .replace(/^([^.]*),([^.,]*)$/, '$1.$2')
   return clean === '' ? Number.NaN : Number(clean)
 }
 

@@ -1,6 +1,6 @@
 // A long job on the page: progress, time left, cancelling, and its error.
 
-import { job, Refused, type JobMessage } from '../app/api'
+import { job, Refused, type JobMessage } from '../state/api'
 import { button, h, status } from './dom'
 import { duration } from './format'
 

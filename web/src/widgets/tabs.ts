@@ -1,12 +1,26 @@
 // Panels behind tabs, by the usual keys: arrows, Home and End.
 
 import { h } from './dom'
-import { page, store } from '../app/store'
+import { page, store } from '../state/store'
 
 export function tabs(panels: [string, string, HTMLElement][]): HTMLElement {
   const names = panels.map(([name]) => name)
-  const heads = panels.map(([name, title]) => h('button', { type: 'button', role: 'tab', id: `tab-${name}`, 'aria-controls': `panel-${name}`, onclick: () => store.set({ tab: name }) }, title))
-  const bodies = panels.map(([name, , body]) => h('div', { role: 'tabpanel', id: `panel-${name}`, 'aria-labelledby': `tab-${name}`, class: 'panel' }, body))
+  const heads = panels.map(([name, title]) =>
+    h(
+      'button',
+      {
+        type: 'button',
+        role: 'tab',
+        id: `tab-${name}`,
+        'aria-controls': `panel-${name}`,
+        onclick: () => store.set({ tab: name }),
+      },
+      title,
+    ),
+  )
+  const bodies = panels.map(([name, , body]) =>
+    h('div', { role: 'tabpanel', id: `panel-${name}`, 'aria-labelledby': `tab-${name}`, class: 'panel' }, body),
+  )
   const list = h('div', { role: 'tablist', 'aria-label': 'Panels', class: 'tabs' }, ...heads)
   const show = () => {
     const at = Math.max(0, names.indexOf(page.tab))
@@ -25,7 +39,11 @@ export function tabs(panels: [string, string, HTMLElement][]): HTMLElement {
     store.set({ tab: names[next] })
     heads[next].focus()
   })
-  const whole = h('button', { type: 'button', class: 'quiet wide-only', 'aria-pressed': 'false', title: 'Give the panels the whole width' }, '⤢ Wide')
+  const whole = h(
+    'button',
+    { type: 'button', class: 'quiet wide-only', 'aria-pressed': 'false', title: 'Give the panels the whole width' },
+    '⤢ Wide',
+  )
   whole.addEventListener('click', () => {
     const on = document.body.classList.toggle('wide')
     whole.setAttribute('aria-pressed', String(on))

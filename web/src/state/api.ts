@@ -1,9 +1,12 @@
 // Talking to the server: one question in flight with the latest one next, and streams of binary points.
 
-import type { FieldError } from './types'
+import type { FieldError } from './answers'
 
 export class Refused extends Error {
-  constructor(message: string, readonly fields: FieldError[] = []) {
+  constructor(
+    message: string,
+    readonly fields: FieldError[] = [],
+  ) {
     super(message)
   }
 }
@@ -11,7 +14,12 @@ export class Refused extends Error {
 async function send(path: string, body: unknown, signal?: AbortSignal): Promise<Response> {
   let response: Response
   try {
-    response = await fetch(path, { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body), signal })
+    response = await fetch(path, {
+      method: 'POST',
+      headers: { 'content-type': 'application/json' },
+      body: JSON.stringify(body),
+      signal,
+    })
   } catch (error) {
     if (signal?.aborted) throw error
     throw new Refused('The server does not answer. Is `flexapod serve` still running?')

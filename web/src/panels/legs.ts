@@ -3,7 +3,7 @@
 import { h } from '../widgets/dom'
 import { csvButton, saveCsv } from '../widgets/download'
 import { sig } from '../widgets/format'
-import { page, store } from '../app/store'
+import { page, store } from '../state/store'
 
 export function legsPanel(): HTMLElement {
   const body = h('tbody')
@@ -36,13 +36,38 @@ export function legsPanel(): HTMLElement {
   const write = () => {
     const s = page.snapshot
     if (!s) return
-    saveCsv('legs', ['leg', 'length_m', 'static_force_n', 'static_energy_j', 'universal_angle_deg', 'spherical_angle_deg', 'exceeded'],
-      s.legs.length.map((length, i) => [i + 1, length, s.legs.force?.[i], s.legs.energy?.[i], s.legs.universal[i], s.legs.spherical[i], s.limits.by_leg[i].join('; ')]))
+    saveCsv(
+      'legs',
+      [
+        'leg',
+        'length_m',
+        'static_force_n',
+        'static_energy_j',
+        'universal_angle_deg',
+        'spherical_angle_deg',
+        'exceeded',
+      ],
+      s.legs.length.map((length, i) => [
+        i + 1,
+        length,
+        s.legs.force?.[i],
+        s.legs.energy?.[i],
+        s.legs.universal[i],
+        s.legs.spherical[i],
+        s.limits.by_leg[i].join('; '),
+      ]),
+    )
   }
   return h(
     'div',
     {},
-    h('div', { class: 'bar' }, h('h2', {}, 'Legs at rest'), h('span', { class: 'spring' }), csvButton('Table of legs', write)),
+    h(
+      'div',
+      { class: 'bar' },
+      h('h2', {}, 'Legs at rest'),
+      h('span', { class: 'spring' }),
+      csvButton('Table of legs', write),
+    ),
     h(
       'div',
       { class: 'scroll' },
@@ -50,7 +75,23 @@ export function legsPanel(): HTMLElement {
         'table',
         { class: 'data', id: 'legs-table' },
         h('caption', { class: 'hidden' }, 'Length, static force and energy, joint angles and limits of each leg'),
-        h('thead', {}, h('tr', {}, h('th', { scope: 'col' }, 'Leg'), h('th', { scope: 'col' }, 'length', head), ...[['force', 'N'], ['energy', 'J'], ['base joint', '°'], ['platform joint', '°'], ['limits', '']].map(([name, unit]) => h('th', { scope: 'col' }, name, unit ? h('small', {}, ` ${unit}`) : '')))),
+        h(
+          'thead',
+          {},
+          h(
+            'tr',
+            {},
+            h('th', { scope: 'col' }, 'Leg'),
+            h('th', { scope: 'col' }, 'length', head),
+            ...[
+              ['force', 'N'],
+              ['energy', 'J'],
+              ['base joint', '°'],
+              ['platform joint', '°'],
+              ['limits', ''],
+            ].map(([name, unit]) => h('th', { scope: 'col' }, name, unit ? h('small', {}, ` ${unit}`) : '')),
+          ),
+        ),
         body,
       ),
     ),

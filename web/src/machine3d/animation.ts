@@ -59,5 +59,13 @@ export function twist(numbers: number[], factor: number): Twist {
 export function reach(numbers: number[], points: number[][]): number {
   const along = new THREE.Vector3(numbers[0], numbers[1], numbers[2])
   const about = new THREE.Vector3(numbers[3], numbers[4], numbers[5])
-  return Math.max(...points.map((p) => about.clone().cross(new THREE.Vector3(p[0], p[1], p[2])).add(along).length()))
+  return Math.max(
+    ...points.map((p) =>
+      about
+        .clone()
+        .cross(new THREE.Vector3(p[0], p[1], p[2]))
+        .add(along)
+        .length(),
+    ),
+  )
 }

@@ -1,6 +1,6 @@
 // The state of this page, and its address: everything a shared link restores.
 
-import type { Box, Described, Snapshot } from './types'
+import type { PoseBox, Design, Snapshot } from './answers'
 
 export interface Page {
   preset: string // name of a packaged design, '' for another text
@@ -12,8 +12,8 @@ export interface Page {
   colour: 'plain' | 'force' | 'energy' | 'strain'
   tab: string
   unit: 'mm' | 'm'
-  box: Box
-  design: Described | null
+  box: PoseBox
+  design: Design | null
   described: string // which text and changes `design` describes
   snapshot: Snapshot | null
   error: string
@@ -59,7 +59,8 @@ class Store {
 }
 
 /** Tells designs of the page apart. */
-export const sourceKey = (text: string, changes: Record<string, unknown>): string => `${JSON.stringify(changes)} ${text}`
+export const sourceKey = (text: string, changes: Record<string, unknown>): string =>
+  `${JSON.stringify(changes)} ${text}`
 
 export const store = new Store()
 export const page = store.page
@@ -75,7 +76,8 @@ export async function toAddress(): Promise<string> {
   if (page.mode >= 0) part.set('mode', String(page.mode + 1))
   if (page.colour !== 'force') part.set('colour', page.colour)
   if (page.unit !== 'mm') part.set('unit', page.unit)
-  if (page.design && JSON.stringify(page.box) !== JSON.stringify(page.design.box)) part.set('box', [...page.box.low, ...page.box.high].join(','))
+  if (page.design && JSON.stringify(page.box) !== JSON.stringify(page.design.box))
+    part.set('box', [...page.box.low, ...page.box.high].join(','))
   part.set('tab', page.tab)
   return part.toString().replace(/%2C/g, ',')
 }
@@ -117,7 +119,10 @@ function numbers(text: string | null, length: number): number[] | null {
 async function packed(text: string): Promise<string> {
   const stream = new Blob([text]).stream().pipeThrough(new CompressionStream('deflate-raw'))
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer())
-  return btoa(String.fromCharCode(...bytes)).replace(/\+/g, '-').replace(/\//g, '_').replace(/=+$/, '')
+  return btoa(String.fromCharCode(...bytes))
+    .replace(/\+/g, '-')
+    .replace(/\//g, '_')
+    .replace(/=+$/, '')
 }
 
 async function unpacked(text: string): Promise<string> {

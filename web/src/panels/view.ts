@@ -3,9 +3,9 @@
 import { onTheme, css, cividis, signed, theme } from '../charts/colours'
 import { button, h, select } from '../widgets/dom'
 import { sig } from '../widgets/format'
-import type { Scene } from './scene'
-import { page, store, type Page } from '../app/store'
-import type { Snapshot } from '../app/types'
+import type { Scene } from '../machine3d/scene'
+import { page, store, type Page } from '../state/store'
+import type { Snapshot } from '../state/answers'
 
 interface Painted {
   colours: string[]
@@ -18,7 +18,14 @@ interface Painted {
 /** Colours of the legs by the chosen quantity; grey where it does not exist. */
 function painted(s: Snapshot): Painted | null {
   const by: Page['colour'] = page.colour
-  const values = by === 'force' ? s.legs.force : by === 'energy' ? s.legs.energy : by === 'strain' ? (s.strain[page.mode] ?? null) : null
+  const values =
+    by === 'force'
+      ? s.legs.force
+      : by === 'energy'
+        ? s.legs.energy
+        : by === 'strain'
+          ? (s.strain[page.mode] ?? null)
+          : null
   if (!values || values.some((v) => v === null)) return null
   const numbers = values as number[]
   const most = Math.max(...numbers.map(Math.abs)) || 1
@@ -26,7 +33,12 @@ function painted(s: Snapshot): Painted | null {
   const [low, high] = both ? [-most, most] : [0, most]
   const sequential = theme().dark ? (t: number) => cividis(0.22 + 0.78 * t) : cividis // its darkest would sink into the ground
   const map = both ? signed : sequential
-  const label = by === 'force' ? 'static force, N (+ compression)' : by === 'energy' ? 'static strain energy, J' : `strain energy share, mode ${page.mode + 1}`
+  const label =
+    by === 'force'
+      ? 'static force, N (+ compression)'
+      : by === 'energy'
+        ? 'static strain energy, J'
+        : `strain energy share, mode ${page.mode + 1}`
   return { colours: numbers.map((v) => css(map((v - low) / (high - low)))), label, low, high, map }
 }
 
@@ -55,12 +67,26 @@ const NAMES = { iso: 'Iso', front: 'Front', side: 'Side', top: 'Top' }
 
 export function viewPanel(scene: Scene): HTMLElement {
   const legend = colourBar()
-  const colour = select('Colour of the legs', [['force', 'Legs: force'], ['energy', 'Legs: energy'], ['strain', 'Legs: strain in mode'], ['plain', 'Legs: plain']] as const, page.colour, (value) => store.set({ colour: value }))
-  const labels = button('Labels', () => {
-    scene.machine.showLabels(!scene.machine.labelsShown)
-    labels.setAttribute('aria-pressed', String(scene.machine.labelsShown))
-    scene.draw()
-  }, { 'aria-pressed': 'true', class: 'quiet' })
+  const colour = select(
+    'Colour of the legs',
+    [
+      ['force', 'Legs: force'],
+      ['energy', 'Legs: energy'],
+      ['strain', 'Legs: strain in mode'],
+      ['plain', 'Legs: plain'],
+    ] as const,
+    page.colour,
+    (value) => store.set({ colour: value }),
+  )
+  const labels = button(
+    'Labels',
+    () => {
+      scene.machine.showLabels(!scene.machine.labelsShown)
+      labels.setAttribute('aria-pressed', String(scene.machine.labelsShown))
+      scene.draw()
+    },
+    { 'aria-pressed': 'true', class: 'quiet' },
+  )
   const notes = h('ul', { class: 'notes', 'aria-label': 'Notes on this pose' })
   let digest = ''
   const show = () => {
@@ -74,7 +100,10 @@ export function viewPanel(scene: Scene): HTMLElement {
     const p = painted(s)
     legend.show(p)
     const plain = theme().dark ? '#8fa3b8' : '#6b7f94'
-    scene.machine.paint(p?.colours ?? Array(6).fill(plain), s.limits.by_leg.map((words) => words.length > 0))
+    scene.machine.paint(
+      p?.colours ?? Array(6).fill(plain),
+      s.limits.by_leg.map((words) => words.length > 0),
+    )
     notes.replaceChildren(
       ...s.limits.exceeded.map((words) => h('li', { class: 'exceeded' }, `▲ ${words}`)),
       ...s.warnings.map((words) => h('li', {}, words)),
@@ -88,11 +117,22 @@ export function viewPanel(scene: Scene): HTMLElement {
   store.on(['colour'], () => colour.set(page.colour))
   onTheme(show)
   const file = () => (page.design?.name ?? 'hexapod').replace(/[^\w.-]+/g, '-')
-  const views = (['iso', 'front', 'side', 'top'] as const).map((name) => button(NAMES[name], () => scene.look(name), { class: 'quiet', title: `${name} view` }))
+  const views = (['iso', 'front', 'side', 'top'] as const).map((name) =>
+    button(NAMES[name], () => scene.look(name), { class: 'quiet', title: `${name} view` }),
+  )
   return h(
     'section',
     { class: 'view', 'aria-label': 'The machine in 3-D' },
-    h('div', { class: 'bar tools over' }, h('span', { role: 'group', 'aria-label': 'Standard views' }, ...views), colour.element, labels, h('span', { class: 'spring' }), button('PNG', () => scene.savePng(file()), { class: 'quiet', 'aria-label': '3-D view as PNG' }), button('SVG', () => void scene.saveSvg(file()), { class: 'quiet', 'aria-label': '3-D view as SVG' })),
+    h(
+      'div',
+      { class: 'bar tools over' },
+      h('span', { role: 'group', 'aria-label': 'Standard views' }, ...views),
+      colour.element,
+      labels,
+      h('span', { class: 'spring' }),
+      button('PNG', () => scene.savePng(file()), { class: 'quiet', 'aria-label': '3-D view as PNG' }),
+      button('SVG', () => void scene.saveSvg(file()), { class: 'quiet', 'aria-label': '3-D view as SVG' }),
+    ),
     h('div', { class: 'stage' }, scene.element, legend.element),
     notes,
   )

@@ -1,0 +1,67 @@
+"""A design as the page shows it: its numbers by key, main parameters, home pose, pose box, warnings and TOML text."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.schema import KEYS, TEXT_KEYS
+from flexapod.design.units import printed, si_unit
+from flexapod.web import pose_ranges
+from flexapod.web.answers import Design, Field
+from flexapod.web.designs import Source, built, original
+from flexapod.web.parameters import main_parameters
+
+
+def fields() -> list[Field]:
+    """Every key of a design file that holds numbers, with its meaning, unit and shapes, for the form."""
+    shorthand = re.compile(r"\.(circle|rod)\.|^cubic\.")
+    return [
+        {
+            "key": _field_key(key),
+            "meaning": rule.meaning,
+            "unit": "°" if rule.dimension == "angle" else printed(si_unit(rule.dimension)),
+            "shapes": [list(shape) for shape in rule.shapes],
+            "optional": key.startswith(("limits.", "home.")),
+        }
+        for key, rule in KEYS.items()
+        if not shorthand.search(key)
+    ]
+
+
+def described(source: Source) -> Design:
+    """All that the page shows of a design itself. Raises InvalidDesign with every field that is wrong."""
+    hexapod = built(source)
+    home = pose_ranges.home(hexapod)
+    return {
+        "name": hexapod.name,
+        "digest": hexapod.digest,
+        "warnings": list(hexapod.warnings),
+        "values": _values(hexapod),
+        "parameters": main_parameters(hexapod, original(source.text)),
+        "home": home,
+        "box": pose_ranges.box(hexapod),
+        "leg": pose_ranges.mean_leg_length(hexapod, home),
+        "toml": source.text if source.changes == "{}" else hexapod.to_toml(),
+    }
+
+
+def _field_key(key: str) -> str:
+    """A key as the form has it: angles in degrees, as people write them."""
+    return f"{key}_deg" if KEYS[key].dimension == "angle" else key
+
+
+def _values(hexapod: Hexapod) -> dict[str, Any]:
+    """Every number of a design by the key of its field."""
+    values: dict[str, Any] = {}
+    for key, value in hexapod.values().items():
+        if key in TEXT_KEYS:
+            values[key] = value
+        elif KEYS[key].dimension == "angle":
+            values[_field_key(key)] = np.round(np.degrees(value), 12).tolist()
+        else:
+            values[key] = value.tolist()
+    return values
