@@ -59,8 +59,8 @@ def ring(seen: Any, step: float) -> tuple[float, float]:
     return omega, float(np.hypot(*parts[:2]))
 
 
-def own_run(v: Vibration) -> fx.simulation.Run:
+def own_run(v: Vibration) -> fx.simulation.SimulationRun:
     """The experiment for Flexapod."""
     x, y, z = (fx.excitation.polynomial(channel, [1.0]) for channel in "xyz")
     force, moment = (a * x + b * y + c * z for a, b, c in np.split(v.wrench, 2))
-    return fx.simulation.Run(v.hexapod, v.pose, force=force, moment=moment)
+    return fx.simulation.SimulationRun(v.hexapod, v.pose, force=force, moment=moment)

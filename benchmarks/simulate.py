@@ -20,7 +20,7 @@ import flexapod as fx
 from benchmarks._contest import OURS, Contender, Contest, Plan, cpu_seconds
 from benchmarks._machine import missing
 from benchmarks._vibration import WANTED, Vibration, machine, own_run, ring, vibration
-from flexapod.simulation.integrator import Method, equations, integrate
+from flexapod.simulation.integrator import IntegratorOptions, equations, integrate
 
 TURNS = 5
 RTOL = 1e-9
@@ -55,7 +55,8 @@ TOLD = {  # the candidates of the table of all tools, and in which words
 def _against_integrators(plan: Plan) -> Contest:
     name = "mukherjee-ii"
     hexapod, pose = fx.load(name), fx.Pose(MACHINES[name])
-    run = fx.simulation.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, fx.natural_modes(hexapod, pose).omega[2]))
+    shaken = fx.harmonic("z", 1e-6, fx.natural_modes(hexapod, pose).omega[2])
+    run = fx.simulation.SimulationRun(hexapod, pose, base_motion=shaken)
     found = {c.name: c for c in _candidates(run, plan.has("scikit-sundae"))}
     contenders = []
     for name, how in TOLD.items():
@@ -75,11 +76,11 @@ def _against_simulators(plan: Plan) -> Contest:
     trial = vibration(hexapod, pose, 5)
     rtol, samples = 1e-4, 4000
     times = np.linspace(0, trial.duration, samples + 1)
-    run, method = own_run(trial), Method(rtol=rtol, threads=1)
-    omega, own = ring(integrate([run], times, method=method).relative[0] @ trial.weights, times[1])
+    run, options = own_run(trial), IntegratorOptions(rtol=rtol, threads=1)
+    omega, own = ring(integrate([run], times, options=options).relative[0] @ trial.weights, times[1])
     _, amplitude = ring(integrate([run], times).relative[0] @ trial.weights, times[1])
     v = trial._replace(duration=TIMED / plan.size(1, 10))
-    timed = cpu_seconds(lambda: integrate([run], [v.duration], method=method, motions=False), v.duration)
+    timed = cpu_seconds(lambda: integrate([run], [v.duration], options=options, motions=False), v.duration)
     error, how = abs(omega / trial.omega - 1), f"rtol {rtol:g}, {_lost(own / amplitude)}"
     contenders = [Contender(OURS, "flexapod", how, timed, error, WANTED)]
     if plan.has("mujoco"):
@@ -130,7 +131,7 @@ def main() -> None:
     for name, position in MACHINES.items():
         hexapod, pose = fx.load(name), fx.Pose(position)
         omega = fx.natural_modes(hexapod, pose).omega
-        run = fx.simulation.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, omega[2]))
+        run = fx.simulation.SimulationRun(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, omega[2]))
         print(f"{name}: modes {omega[0]:.4g} to {omega[-1]:.5g} rad/s, rtol {RTOL:g}")
         _table(run, _candidates(run, not missing("scikit-sundae")))
     print("mukherjee-ii with damped legs")
@@ -142,9 +143,9 @@ def main() -> None:
         _mujoco.main()
 
 
-def _candidates(run: fx.simulation.Run, sundials: bool) -> list[Candidate]:
+def _candidates(run: fx.simulation.SimulationRun, sundials: bool) -> list[Candidate]:
     def flexapod(duration: float, **options: Any) -> Any:
-        found = integrate([run], [duration], method=Method(rtol=RTOL, threads=1), motions=False, **options)
+        found = integrate([run], [duration], options=IntegratorOptions(rtol=RTOL, threads=1), motions=False, **options)
         return found.relative[0, 0]
 
     eq = equations(run)
@@ -174,7 +175,7 @@ def _candidates(run: fx.simulation.Run, sundials: bool) -> list[Candidate]:
     return candidates + (_sundials(eq, y0, scale) if sundials else [])
 
 
-def _written_in_python(run: fx.simulation.Run) -> Callable[[float, Any], Any]:
+def _written_in_python(run: fx.simulation.SimulationRun) -> Callable[[float, Any], Any]:
     """Eq. 35 as a user writes it: absolute position, quaternion, velocities."""
     hexapod = run.hexapod
     unstretched = fx.hold(hexapod, run.pose).unstretched_length
@@ -190,13 +191,13 @@ def _written_in_python(run: fx.simulation.Run) -> Callable[[float, Any], Any]:
     return rates
 
 
-def _seen(run: fx.simulation.Run, t: float, z: Any) -> Any:
+def _seen(run: fx.simulation.SimulationRun, t: float, z: Any) -> Any:
     """Displacement from rest seen from the base, for a base that does not turn."""
     base = run.base_motion.motion(t)
     return np.concatenate([z[:3] - base.pose.position - run.pose.position, Rotation.from_quat(z[3:7]).as_rotvec()])
 
 
-def _scale(run: fx.simulation.Run) -> Any:
+def _scale(run: fx.simulation.SimulationRun) -> Any:
     """Largest displacement, rotation, velocity, angular velocity, each three times: what absolute errors refer to."""
     found = integrate([run], np.linspace(0, 0.02, 2000))
     x, rate = found.relative[0], np.gradient(found.relative[0], 1e-5, axis=0)
@@ -216,7 +217,7 @@ def _sundials(eq: Any, y0: Any, scale: Any) -> list[Candidate]:
     return [Candidate(f"SUNDIALS {m}", 0.02, lambda T, m=m: solve(T, m)) for m in ("Adams", "BDF")]
 
 
-def _table(run: fx.simulation.Run, candidates: list[Candidate]) -> None:
+def _table(run: fx.simulation.SimulationRun, candidates: list[Candidate]) -> None:
     least = dict.fromkeys((c.name for c in candidates), np.inf)
     error = {}
     for turn in range(TURNS):
@@ -234,8 +235,8 @@ def _table(run: fx.simulation.Run, candidates: list[Candidate]) -> None:
         )
 
 
-def _error(run: fx.simulation.Run, duration: float, end: Any) -> float:
-    exact = integrate([run], [0.5 * duration, duration], method=Method(rtol=1e-13)).relative[0, -1]
+def _error(run: fx.simulation.SimulationRun, duration: float, end: Any) -> float:
+    exact = integrate([run], [0.5 * duration, duration], options=IntegratorOptions(rtol=1e-13)).relative[0, -1]
     return max(np.abs(end[i] - exact[i]).max() / np.abs(exact[i]).max() for i in (slice(0, 3), slice(3, 6)))
 
 
@@ -243,10 +244,12 @@ def _damped() -> None:
     """Where an implicit method would be better: legs with ever more damping, 0.02 s at rtol 1e-6."""
     for damping in (1e-3, 1e4, 1e5, 1e6):
         hexapod = fx.load("mukherjee-ii").replace({"legs.damping.prismatic": damping})
-        run = fx.simulation.Run(hexapod, fx.Pose(MACHINES["mukherjee-ii"]), base_motion=fx.harmonic("z", 1e-6, 750.0))
+        run = fx.simulation.SimulationRun(
+            hexapod, fx.Pose(MACHINES["mukherjee-ii"]), base_motion=fx.harmonic("z", 1e-6, 750.0)
+        )
         eq, scale = equations(run), _scale(run)
         began = time.process_time()
-        integrate([run], [0.02], method=Method(rtol=1e-6, threads=1), motions=False)
+        integrate([run], [0.02], options=IntegratorOptions(rtol=1e-6, threads=1), motions=False)
         ours = time.process_time() - began
         began = time.process_time()
         solve_ivp(eq.rates, (0, 0.02), eq.start(), "Radau", rtol=1e-6, atol=1e-6 * scale)
@@ -256,10 +259,13 @@ def _damped() -> None:
 
 def _many() -> None:
     hexapod, pose = fx.load("mukherjee-ii"), fx.Pose(MACHINES["mukherjee-ii"])
-    runs = [fx.simulation.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, w)) for w in np.linspace(300, 900, 200)]
+    runs = [
+        fx.simulation.SimulationRun(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, w))
+        for w in np.linspace(300, 900, 200)
+    ]
     for threads in (1, None):
         began = time.perf_counter()
-        integrate(runs, [0.1], method=Method(rtol=RTOL, threads=threads), motions=False)
+        integrate(runs, [0.1], options=IntegratorOptions(rtol=RTOL, threads=threads), motions=False)
         words = "one thread" if threads else "all threads"
         print(f"200 simulations of 0.1 s on {words}: {time.perf_counter() - began:.2f} s")
 

@@ -62,8 +62,8 @@ from .plots.animation import animate_mode as animate_mode
 from .plots.animation import animate_simulation as animate_simulation
 from .pose import Motion as Motion
 from .pose import Pose as Pose
+from .simulation.batch import simulate_many as simulate_many
 from .simulation.time_simulation import simulate as simulate
-from .simulation.time_simulation import simulate_many as simulate_many
 from .vibration.frequency_response import random_response as random_response
 from .vibration.frequency_response import transmissibility as transmissibility
 from .vibration.stepped import stepped_sine as stepped_sine

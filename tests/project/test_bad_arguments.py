@@ -6,7 +6,7 @@ import pytest
 import flexapod as fx
 from flexapod import excitation, optimisation
 from flexapod.excitation.spectra import Spectrum
-from flexapod.simulation.integrator import Run
+from flexapod.simulation.run import SimulationRun
 
 ZERO = np.zeros(3)
 PAIR = fx.Pose.from_rpy([0.0, 0.05], 0.0, [0.89, 0.9])
@@ -83,11 +83,11 @@ CASES = [
         A,
         "the response of roll holds NaN or infinity",
     ),
-    (lambda: Run(machine(), NEAR, base="floor"), fx.PoseError, "base is 'floor'; a simulation takes a Pose"),
+    (lambda: SimulationRun(machine(), NEAR, base="floor"), fx.PoseError, "base is str; give a flexapod Pose"),
     (
         lambda: fx.simulate(machine(), NEAR, force=np.ones((2, 3)), duration=0.1),
-        fx.PoseError,
-        r"force has shape \(2, 3\); one simulation takes three numbers",
+        A,
+        r"force has shape \(2, 3\); it must have shape \(3,\)",
     ),
     (lambda: fx.simulate(machine(), NEAR, times=np.zeros((3, 4))), A, r"times have shape \(3, 4\)"),
     (

@@ -18,7 +18,6 @@ PENDING = {
     "mechanics",
     "workspace",
     "excitation",
-    "simulation",
     "vibration",
     "paths",
     "optimisation",

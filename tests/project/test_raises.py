@@ -175,7 +175,9 @@ PROVOKED = {
         MACHINE, HOME, TOO_MUCH.on(fx.linearise(MACHINE, HOME)).sampled(0.1), SHAKEN, 1.0
     ),
     ("simulate_many", "ArgumentError"): lambda: fx.simulate_many([], 1.0),
-    ("simulate_many", "SingularPoseError"): lambda: fx.simulate_many([fx.simulation.Run(MACHINE, SINGULAR)], 1.0),
+    ("simulate_many", "SingularPoseError"): lambda: fx.simulate_many(
+        [fx.simulation.SimulationRun(MACHINE, SINGULAR)], 1.0
+    ),
     ("sine_sweep", "ArgumentError"): lambda: fx.sine_sweep("z", 1.0, 1.0, 2.0, 1.0, law="cubic"),
     ("smooth_step", "ArgumentError"): lambda: fx.excitation.smooth_step("z", 1.0, 0.0),
     ("static_equilibrium", "KinematicsError"): lambda: fx.static_equilibrium(MACHINE, -LEGS),

@@ -18,11 +18,11 @@ import json
 import numpy as np
 import flexapod as fx
 from flexapod import _core
-from flexapod.simulation.integrator import Method, equations, integrate
+from flexapod.simulation.integrator import IntegratorOptions, equations, integrate
 hexapod, pose = fx.load("mukherjee-ii"), fx.Pose([0, 0, 0.085])
 base = fx.harmonic("z", 1e-5, 700.0) + fx.harmonic("roll", 1e-3, 300.0)
-run = fx.simulation.Run(hexapod, pose, base_motion=base, force=fx.harmonic("x", 0.5, 90.0))
-found = integrate([run], [0.004, 0.01], method=Method(rtol=1e-10), works=True)
+run = fx.simulation.SimulationRun(hexapod, pose, base_motion=base, force=fx.harmonic("x", 0.5, 90.0))
+found = integrate([run], [0.004, 0.01], options=IntegratorOptions(rtol=1e-10), works=True)
 moving = fx.Motion(pose, [0.1, -0.2, 0.3], [1.0, 2.0, -1.5])
 a, alpha = fx.forward_dynamics(hexapod, moving, leg_force=[1, 2, -1, 0.5, -0.3, 1.5])
 eq = equations(run)

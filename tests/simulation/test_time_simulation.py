@@ -13,7 +13,7 @@ from tests.oracles.closed_chain import ClosedChain
 
 import flexapod as fx
 from flexapod.errors import ArgumentError, PoseError, SimulationError, SingularPoseError
-from flexapod.simulation.integrator import Method, integrate
+from flexapod.simulation.integrator import IntegratorOptions, integrate
 
 FRICTION = ("prismatic", "universal", "spherical")
 SMOOTH = {f"legs.damping.{joint}": 0.0 for joint in FRICTION}
@@ -94,11 +94,11 @@ def test_order_of_convergence(joint, measured):
     size = np.linalg.norm(hexapod.platform_joints, axis=1).mean()
     start = fx.Motion(pose, 0.1 * size * omega[0] * np.array([1, 0, -1]), 0.1 * omega[0] * np.array([1, -1, 2]))
     base = fx.harmonic("roll", 0.2, 0.4 * omega[0]) + fx.harmonic("x", 0.05 * size, 0.6 * omega[0])
-    runs, duration = [fx.simulation.Run(hexapod, pose, base_motion=base, start=start)], 32.0 / omega[-1]
+    runs, duration = [fx.simulation.SimulationRun(hexapod, pose, base_motion=base, start=start)], 32.0 / omega[-1]
 
     def end(step, rtol=1e-2):
-        method = Method(rtol=rtol, max_step=step)
-        return integrate(runs, [duration], joint=joint, method=method).displacement[0, 0]
+        options = IntegratorOptions(rtol=rtol, max_step=step)
+        return integrate(runs, [duration], joint=joint, options=options).displacement[0, 0]
 
     exact = end(0.05 / omega[-1], 1e-14)
     errors = np.array([np.linalg.norm(end(h / omega[-1]) - exact) for h in (1.6, 0.8, 0.4)])
@@ -109,10 +109,10 @@ def test_order_of_convergence(joint, measured):
 def test_interpolant_is_as_good_as_the_steps():
     """Samples fall inside steps, in the middle of which order 7 is worst."""
     hexapod, pose = machine()
-    run = [fx.simulation.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, 750.0))]
+    run = [fx.simulation.SimulationRun(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, 750.0))]
     times = np.linspace(0, 0.05, 997)
-    coarse = integrate(run, times, method=Method(rtol=1e-8)).displacement
-    exact = integrate(run, times, method=Method(rtol=1e-13)).displacement
+    coarse = integrate(run, times, options=IntegratorOptions(rtol=1e-8)).displacement
+    exact = integrate(run, times, options=IntegratorOptions(rtol=1e-13)).displacement
     scale = np.abs(exact).max()
     assert np.abs(coarse - exact).max() < 1e-5 * scale  # 700 steps at 1e-8 each
     assert np.abs(coarse - exact).max() > 1e-12 * scale  # and the tolerance matters
@@ -224,7 +224,7 @@ def test_small_vibration_has_the_tangents_frequency(measured):
         velocity[3:],
     )
     times = np.linspace(0, 60 / abs(pole), 300)
-    found = integrate([fx.simulation.Run(hexapod, pose, start=start)], times).displacement[0]
+    found = integrate([fx.simulation.SimulationRun(hexapod, pose, start=start)], times).displacement[0]
     expected = scale * np.real(np.exp(np.outer(times, [pole])) * shape)
     # Start: positions of 1e-1 m rounded to 1e-17 m; the rest is 1e-9 of the machine's size squared.
     measured("time/tangent", (found - expected) / np.abs(expected).max(), 1e-6)
@@ -369,8 +369,10 @@ def test_trajectory_agrees_with_scipy_in_the_inertial_frame(measured):
 def test_many_runs_are_the_single_ones_whatever_the_threads():
     hexapod, pose = machine()
     other, elsewhere = machine("cubic-isolator")
-    runs = [fx.simulation.Run(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, w)) for w in (300.0, 500.0, 800.0)]
-    runs.append(fx.simulation.Run(other, elsewhere, force=fx.excitation.half_sine_pulse("x", 3.0, 0.01)))
+    runs = [
+        fx.simulation.SimulationRun(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, w)) for w in (300.0, 500.0, 800.0)
+    ]
+    runs.append(fx.simulation.SimulationRun(other, elsewhere, force=fx.excitation.half_sine_pulse("x", 3.0, 0.01)))
     many = fx.simulate_many(runs, 0.05, samples=40)
     alone = fx.simulate_many(runs, 0.05, samples=40, threads=1)
     assert many.sizes["run"] == 4
@@ -382,8 +384,8 @@ def test_many_runs_are_the_single_ones_whatever_the_threads():
 def test_a_run_that_ends_early_is_data():
     hexapod, pose = machine()
     soft = hexapod.replace({"legs.stiffness": 1e3, "gravity": [0, 0, 0]})
-    thrown = fx.simulation.Run(soft, pose, start=fx.Motion(pose, (0, 0, -3.0)))
-    dataset = fx.simulate_many([fx.simulation.Run(soft, pose), thrown], 0.2, samples=50)
+    thrown = fx.simulation.SimulationRun(soft, pose, start=fx.Motion(pose, (0, 0, -3.0)))
+    dataset = fx.simulate_many([fx.simulation.SimulationRun(soft, pose), thrown], 0.2, samples=50)
     assert dataset.status.values.tolist() == ["complete", "singular"]
     end = dataset.end_time.values[1]
     assert 0 < end < 0.2
@@ -552,7 +554,7 @@ def test_a_quiet_recording_is_not_stepped_over():
     ("arguments", "kind", "words"),
     [
         ({"duration": 0.0}, ArgumentError, "duration is 0"),
-        ({}, ArgumentError, "duration is None"),
+        ({}, ArgumentError, "duration is missing"),
         ({"duration": 1.0, "times": [0, 1]}, ArgumentError, "must not be"),
         ({"times": [0.0, 1.0, 0.5]}, ArgumentError, "ascending"),
         ({"times": [-1.0, 1.0]}, ArgumentError, ">= 0"),
@@ -560,15 +562,21 @@ def test_a_quiet_recording_is_not_stepped_over():
         ({"duration": 1.0, "rtol": 0.5}, ArgumentError, "rtol is 0.5"),
         ({"duration": 1.0, "atol": -1.0}, ArgumentError, "atol is -1"),
         ({"duration": 1.0, "threads": 0}, ArgumentError, "threads is 0"),
-        ({"duration": 1.0, "tolerance": 1e-9}, ArgumentError, "'tolerance' is no argument"),
+        (
+            {"duration": 1.0, "tolerance": 1e-9},
+            TypeError,
+            r"simulate\(\) got an unexpected keyword argument 'tolerance'",
+        ),
+        ({"duration": 1.0, "base": fx.harmonic("z", 1.0, 1.0)}, ArgumentError, "Did you mean base_motion"),
+        ({"duration": 1.0, "base_motion": [0, 0, 1]}, ArgumentError, "base_motion is .* must be an Excitation"),
         ({"duration": 1.0, "start": "moving"}, ArgumentError, "start is 'moving'"),
         ({"duration": 1.0, "joint": "ball"}, fx.ArgumentError, "joint is 'ball'"),
-        ({"duration": 1.0, "force": [1.0, 2.0]}, PoseError, "force has shape"),
+        ({"duration": 1.0, "force": [1.0, 2.0]}, ArgumentError, "force has shape"),
         ({"duration": 1.0, "force": fx.harmonic("roll", 1.0, 1.0)}, ArgumentError, "force drives 'roll'"),
         ({"duration": 1.0, "moment": fx.harmonic("1", 1.0, 1.0)}, ArgumentError, "moment drives '1'"),
         ({"duration": 1.0, "base_motion": fx.harmonic("1", 1.0, 1.0)}, ArgumentError, "base_motion drives '1'"),
         ({"duration": 1.0, "leg_command": fx.harmonic("x", 1.0, 1.0)}, ArgumentError, "leg_command drives 'x'"),
-        ({"duration": 1.0, "unstretched_length": np.ones(5)}, PoseError, "unstretched_length has shape"),
+        ({"duration": 1.0, "unstretched_length": np.ones(5)}, ArgumentError, "unstretched_length has shape"),
         ({"duration": 1.0, "start": fx.Pose(np.zeros((2, 3)))}, PoseError, "start has batch axes"),
         (
             {"duration": 1.0, "base_motion": fx.excitation.time_series(np.arange(9) * 1e-5, np.zeros(9), "z")},

@@ -6,7 +6,8 @@ from tests.helpers.states import CENTER
 
 import flexapod as fx
 from flexapod.conventions import AXES
-from flexapod.simulation.integrator import Method, Run, integrate
+from flexapod.simulation.integrator import IntegratorOptions, integrate
+from flexapod.simulation.run import SimulationRun
 
 II = fx.Pose(CENTER["mukherjee-ii"])
 STRONG = {"legs.damping.prismatic": 2e5, "legs.damping.universal": 3.0, "legs.damping.spherical": 2.0}
@@ -75,8 +76,8 @@ def settled(hexapod, omega: float, amplitude: float, axis: str) -> np.ndarray:
     periods = int(np.ceil(25 / slowest * omega / (2 * np.pi)))  # e^-25 is 1e-11
     period = 2 * np.pi / omega
     times = (periods + np.arange(64) / 64) * period
-    run = Run(hexapod, II, base_motion=fx.harmonic(axis, amplitude, omega))
-    x = integrate([run], times, method=Method(rtol=1e-11), motions=False).displacement[0]
+    run = SimulationRun(hexapod, II, base_motion=fx.harmonic(axis, amplitude, omega))
+    x = integrate([run], times, options=IntegratorOptions(rtol=1e-11), motions=False).displacement[0]
     return 1j * np.exp(-1j * omega * times) @ x * 2 / 64 / amplitude
 
 
@@ -98,8 +99,8 @@ def test_with_the_papers_friction_it_is_the_driven_part_of_a_run_from_rest(paper
     """A transient of 1/e in minutes: fitted together with the driven motion by least squares over a second."""
     omega, amplitude = 550.136, 1e-6
     times = np.linspace(0.0, 1.0, 20001)
-    run = Run(paper, II, base_motion=fx.harmonic("z", amplitude, omega))
-    x = integrate([run], times, method=Method(rtol=1e-11), motions=False).displacement[0]
+    run = SimulationRun(paper, II, base_motion=fx.harmonic("z", amplitude, omega))
+    x = integrate([run], times, options=IntegratorOptions(rtol=1e-11), motions=False).displacement[0]
     rates = np.append(1j * omega, fx.linearise(paper, II).modes().pole)
     waves = np.exp(np.outer(times, rates))
     fitted = np.linalg.lstsq(np.hstack([waves.real, -waves.imag]), x, rcond=None)[0]

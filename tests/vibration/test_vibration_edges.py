@@ -15,7 +15,8 @@ from flexapod.paths.planning import _Task
 from flexapod.paths.requirements import Margins
 from flexapod.plots import animation
 from flexapod.pose import rotation_from_vector
-from flexapod.simulation.integrator import Run, equations
+from flexapod.simulation.integrator import equations
+from flexapod.simulation.run import SimulationRun
 from flexapod.vibration import stepped
 from flexapod.vibration.harmonic import _solve
 
@@ -53,7 +54,7 @@ def test_an_excitation_times_a_number_is_as_much_larger(one):
 def test_equations_for_other_integrators_are_the_forward_dynamics(machine):
     """The state is the platform seen from a base at rest: displacement from rest and velocities."""
     pose = fx.Pose.from_rpy(0.05, 0.02, 0.89, 0.1, 0.0, 0.2)
-    found = equations(Run(machine, pose))
+    found = equations(SimulationRun(machine, pose))
     np.testing.assert_array_equal(found.start(), np.zeros(12))
     y = np.array([1e-3, -2e-3, 5e-4, 0.01, -0.02, 0.015, 0.3, -0.1, 0.2, 0.5, 0.4, -0.6])
     turn = fx.Pose(np.zeros(3), rotation_from_vector(y[3:6])).matrix @ pose.matrix

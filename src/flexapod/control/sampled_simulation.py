@@ -21,7 +21,8 @@ from flexapod.excitation.excitation import Excitation
 from flexapod.mechanics.inputs import ZERO, is_universal
 from flexapod.mechanics.linearisation import RestOptions, linearise
 from flexapod.pose import Pose
-from flexapod.simulation.integrator import OUTCOMES, Run, prepare
+from flexapod.simulation.integrator import OUTCOMES, prepare
+from flexapod.simulation.run import SimulationRun
 
 CASES = ("controlled", "passive")
 _SIGNALS = 6 * len(MEASURES)
@@ -170,7 +171,7 @@ class _Bench:
 
     def run(self, law: Controller, limit: Array, noise: Array, progress: Callable[[float], Any] | None) -> _Found:
         """The simulation in the core."""
-        run = Run(
+        run = SimulationRun(
             self.hexapod,
             self.pose,
             base_motion=self.base_motion,

@@ -21,7 +21,8 @@ from flexapod.mechanics.modes import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.plots import response
 from flexapod.pose import Pose
-from flexapod.simulation.integrator import Method, Run, integrate
+from flexapod.simulation.integrator import IntegratorOptions, integrate
+from flexapod.simulation.run import SimulationRun
 from flexapod.vibration.frequency_response import transmissibility
 from flexapod.vibration.harmonic import complex_poles, steady_response
 from flexapod.vibration.stepped import stepped_sine
@@ -166,8 +167,8 @@ class _Shaken(NamedTuple):
 def _shake(omega: float, joint: JointModel) -> _Shaken:
     hexapod, pose = load(DESIGN), Pose(POSE)
     times = np.linspace(0.0, DURATION, 12001)
-    run = Run(hexapod, pose, base_motion=harmonic("z", AMPLITUDE, omega))
-    path = integrate([run], times, joint=joint, method=Method(rtol=1e-10), motions=False)
+    run = SimulationRun(hexapod, pose, base_motion=harmonic("z", AMPLITUDE, omega))
+    path = integrate([run], times, joint=joint, options=IntegratorOptions(rtol=1e-10), motions=False)
     found = path.displacement[0]
     tangent = _FromRest(linearise(hexapod, pose, joint=joint), omega)
     apart = np.abs(found - tangent.displacement(times)).max(axis=0) / np.abs(found).max(axis=0)

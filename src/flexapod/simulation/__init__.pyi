@@ -1,3 +1,3 @@
-from .integrator import Run as Run
+from .batch import simulate_many as simulate_many
+from .run import SimulationRun as SimulationRun
 from .time_simulation import simulate as simulate
-from .time_simulation import simulate_many as simulate_many

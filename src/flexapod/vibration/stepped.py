@@ -18,7 +18,8 @@ from flexapod.errors import ArgumentError
 from flexapod.excitation.excitation import harmonic
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.pose import Motion, Pose
-from flexapod.simulation.integrator import Method, Run, integrate
+from flexapod.simulation.integrator import IntegratorOptions, integrate
+from flexapod.simulation.run import SimulationRun
 from flexapod.vibration.harmonic import frequencies, steady_response
 
 __all__ = ["stepped_sine"]
@@ -104,12 +105,13 @@ class _Shaker:
 
     def one_period(self, omega: Array, state: Array) -> tuple[Array, Array, Array]:
         """Displacements (n, _SAMPLES, 6), state (n, 12) after a period, and which runs came so far."""
+        shaken = [harmonic(self.axis, self.amplitude, w) for w in omega]
         runs = [
-            Run(self.hexapod, self.pose, base_motion=harmonic(self.axis, self.amplitude, w), start=self._motion(z))
-            for w, z in zip(omega, state, strict=True)
+            SimulationRun(self.hexapod, self.pose, base_motion=motion, start=self._motion(z))
+            for motion, z in zip(shaken, state, strict=True)
         ]
         times = (2 * np.pi / omega)[:, None] * np.arange(_SAMPLES + 1) / _SAMPLES
-        path = integrate(runs, times, joint=self.joint, method=Method(rtol=1e-11))
+        path = integrate(runs, times, joint=self.joint, options=IntegratorOptions(rtol=1e-11))
         end = np.concatenate([path.displacement[:, -1], path.platform[:, -1, 12:18]], axis=1)
         return path.displacement[:, :-1], end, path.status == "complete"
 

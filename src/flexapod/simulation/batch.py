@@ -1,0 +1,162 @@
+"""Many time simulations at once, as one xarray Dataset."""
+
+from __future__ import annotations
+
+import inspect
+import warnings
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from flexapod.checks import positive, whole
+from flexapod.conventions import Array, JointModel
+from flexapod.errors import ArgumentError, shown
+from flexapod.mechanics.modes import advised_sampling_time, natural_modes
+from flexapod.simulation.datasets import one_run
+from flexapod.simulation.integrator import IntegratorOptions, integrate
+from flexapod.simulation.run import SimulationRun
+
+MOST_SAMPLES = 20_000
+
+
+def simulate_many(
+    runs: Sequence[SimulationRun],
+    duration: float | None = None,
+    *,
+    times: ArrayLike | None = None,
+    samples: int | None = None,
+    joint: JointModel = "universal",
+    rtol: float = 1e-9,
+    atol: float | None = None,
+    max_step: float = np.inf,
+    max_steps: float = 1e8,
+    stop_at_singular: bool = True,
+    energies: bool = True,
+    reactions: bool = False,
+    threads: int | None = None,
+    progress: Callable[[float], object] | None = None,
+) -> xr.Dataset:
+    """Simulate many machines at once, on all threads.
+
+    Parameters
+    ----------
+    runs : sequence of SimulationRun
+        What to simulate.
+    duration : float, optional
+        Length of every simulation, s. Needed unless `times` is given.
+    times : array_like, optional
+        Instants of the result, (m,) s, ascending from 0 or later, the same for all runs.
+    samples : int, optional
+        Number of instants, evenly spaced from 0 to `duration`; by default as in `simulate`, for the stiffest machine.
+    joint : {"universal", "spin_free"}, optional
+        Model of the joint between a leg and the base.
+    rtol, atol, max_step, max_steps, stop_at_singular : optional
+        Accuracy and limits of the integrator, as in `simulate`.
+    energies, reactions : bool, optional
+        Whether the energy balance and the joints' forces are computed.
+    threads : int, optional
+        Threads to use; all by default.
+    progress : callable, optional
+        Called with the share done, 0 to 1.
+
+    Returns
+    -------
+    xarray.Dataset
+        The variables of `simulate` with a first dimension `run`, and over `run`: status ("complete", or why it ended),
+        end_time (s), steps, evaluations, energy_error_relative. A run that ends early is NaN from there on.
+
+    Raises
+    ------
+    ArgumentError
+        If there are no runs, or an argument has a wrong shape or range.
+    SingularPoseError
+        If no leg forces hold the pose of a run.
+
+    Warns
+    -----
+    UserWarning
+        If a recording is sampled too coarsely for the machine.
+
+    See Also
+    --------
+    simulate : one simulation, whose early end is an error.
+
+    Notes
+    -----
+    The method is that of `simulate`. Runs are spread over the threads; their results do not depend on the number of
+    threads.
+
+    Examples
+    --------
+    >>> hexapod = fx.load("cubic-isolator")
+    >>> runs = [
+    ...     fx.simulation.SimulationRun(hexapod, base_motion=fx.harmonic("z", 1e-6, omega)) for omega in (100.0, 200.0)
+    ... ]
+    >>> result = fx.simulate_many(runs, 0.05, samples=50)
+    >>> result.status.values.tolist()
+    ['complete', 'complete']
+    """
+    options = IntegratorOptions(rtol, atol, max_step, max_steps, stop_at_singular, threads)
+    for i, run in enumerate(runs):
+        if not isinstance(run, SimulationRun):
+            raise ArgumentError(f"runs[{i}] is {shown(run)}; it must be a flexapod.simulation.SimulationRun.")
+    highest = [natural_modes(run.hexapod, run.pose, joint=joint, base=run.base).omega[-1] for run in runs]
+    at = _sample_times(times, duration, samples, max(highest, default=0.0))
+    notes = [note for run, omega in zip(runs, highest, strict=True) for note in _coarse(run, omega)]
+    for note in dict.fromkeys(notes):
+        warnings.warn(note, UserWarning, stacklevel=_outside())
+    found = integrate(runs, at, joint=joint, options=options, works=energies, progress=progress)
+    each = [
+        one_run(run, found, i, at, joint=joint, energies=energies, reactions=reactions) for i, run in enumerate(runs)
+    ]
+    dataset = xr.concat([part.reindex(time=at) for part in each], dim="run", combine_attrs="drop_conflicts")
+    dataset.attrs = {
+        "design": ", ".join(sorted({run.hexapod.name for run in runs})),
+        "joint": joint,
+        "method": "Runge-Kutta 8(5,3), Dormand and Prince; orientation on SO(3)",
+        "rtol": rtol,
+        "warnings": list(dict.fromkeys(notes)),
+        "last": found.last,
+    }
+    return dataset
+
+
+def _outside() -> int:
+    """Stack level of the first caller outside this package, for warnings."""
+    here = Path(__file__).parent
+    level = 1
+    frame = inspect.currentframe()
+    while frame is not None and Path(frame.f_code.co_filename).parent == here:
+        level, frame = level + 1, frame.f_back
+    return level - 1
+
+
+def _sample_times(times: ArrayLike | None, duration: float | None, samples: int | None, highest: float) -> Array:
+    if times is not None:
+        if duration is not None or samples is not None:
+            raise ArgumentError("times is given, so duration and samples must not be.")
+        return np.asarray(times, dtype=np.float64)
+    if duration is None:
+        raise ArgumentError("duration is missing; give the length of the simulation in s, or times.")
+    end = positive(duration, "duration", "s")
+    if samples is None:
+        needed = MOST_SAMPLES if highest <= 0 else int(np.ceil(end / advised_sampling_time(highest)))
+        samples = min(MOST_SAMPLES, max(needed, 1)) + 1
+    return np.linspace(0.0, end, whole(samples, "samples", 2))
+
+
+def _coarse(run: SimulationRun, highest: float) -> list[str]:
+    """What a recording cannot show because of its sampling."""
+    notes = []
+    for use, history in run.histories().items():
+        for term in history.terms:
+            if term.sampled > 0 and np.pi / term.sampled < highest:
+                notes.append(
+                    f"the recording of {use} {term.channel} is sampled every {term.sampled:.4g} s and holds nothing "
+                    f"above {np.pi / term.sampled:.4g} rad/s, but {run.hexapod.name!r} has natural frequencies up to "
+                    f"{highest:.4g} rad/s: what excites them is not in it."
+                )
+    return notes

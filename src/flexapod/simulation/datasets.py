@@ -1,0 +1,108 @@
+"""The Dataset of a simulation: motions, leg forces, the energy balance and what the joints carry."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from flexapod.conventions import AXES, LEGS, TRANSLATIONS, Array, JointModel
+from flexapod.design.hexapod import Hexapod
+from flexapod.excitation.excitation import Excitation
+from flexapod.mechanics.dynamics import energy, joint_reactions
+from flexapod.mechanics.kinematics import leg_rates
+from flexapod.pose import Motion, Pose
+from flexapod.simulation.integrator import Trajectories
+from flexapod.simulation.run import SimulationRun
+
+
+def one_run(
+    run: SimulationRun, found: Trajectories, i: int, times: Array, *, joint: JointModel, energies: bool, reactions: bool
+) -> xr.Dataset:
+    """One run of many, as far as it got."""
+    reached = int(np.isfinite(found.displacement[i, :, 0]).sum())
+    times = times[:reached]
+    platform, base = _motion(found.platform[i, :reached]), _motion(found.base[i, :reached])
+    command = Excitation() if run.leg_command is None else run.leg_command
+    unstretched = found.unstretched_length[i] + command.evaluate(times)[0]
+    length = leg_rates(run.hexapod, platform, base=base).length
+    force = found.leg_force[i, :reached]
+    three, turned = ("time", "axis"), ("time", "axis", "body_axis")
+    variables: dict[str, tuple[tuple[str, ...], Any, dict[str, str]]] = {
+        "displacement": (("time", "output"), found.displacement[i, :reached], {"units": "m, rad"}),
+        "relative_displacement": (("time", "output"), found.relative[i, :reached], {"units": "m, rad"}),
+        "position": (three, platform.pose.position, {"units": "m"}),
+        "rotation": (turned, platform.pose.matrix, {"units": "1"}),
+        "velocity": (three, platform.velocity, {"units": "m/s"}),
+        "angular_velocity": (three, platform.angular_velocity, {"units": "rad/s"}),
+        "acceleration": (three, platform.acceleration, {"units": "m/s2"}),
+        "angular_acceleration": (three, platform.angular_acceleration, {"units": "rad/s2"}),
+        "base_position": (three, base.pose.position, {"units": "m"}),
+        "base_rotation": (turned, base.pose.matrix, {"units": "1"}),
+        "leg_length": (("time", "leg"), length, {"units": "m"}),
+        "unstretched_length": (("time", "leg"), unstretched, {"units": "m"}),
+        "leg_force": (("time", "leg"), force, {"units": "N"}),
+    }
+    state = _State(run.hexapod, platform, base, unstretched, force)
+    if energies:
+        variables |= _energies(state, found.work[i, :reached], joint)
+    if reactions:
+        variables |= _reactions(state, joint)
+    variables |= {
+        "status": ((), str(found.status[i]), {}),
+        "end_time": ((), found.end_time[i], {"units": "s"}),
+        "steps": ((), int(found.steps[i, 0]), {}),
+        "evaluations": ((), int(found.steps[i, 2]), {}),
+    }
+    coordinates = {
+        "time": ("time", times, {"units": "s"}),
+        "output": list(AXES),
+        "axis": list(TRANSLATIONS),
+        "body_axis": list(TRANSLATIONS),
+        "leg": list(LEGS),
+        "source": ["base", "wrench", "leg_command", "friction"],
+    }
+    return xr.Dataset(variables, coordinates)
+
+
+class _State(NamedTuple):
+    hexapod: Hexapod
+    platform: Motion
+    base: Motion
+    unstretched: Array
+    leg_force: Array
+
+
+def _motion(rows: Array) -> Motion:
+    pose = Pose(rows[:, :3], rows[:, 3:12].reshape(-1, 3, 3))
+    return Motion(pose, *(rows[:, i : i + 3] for i in (12, 15, 18, 21)))
+
+
+def _energies(state: _State, work: Array, joint: JointModel) -> dict[str, Any]:
+    e = energy(state.hexapod, state.platform, base=state.base, unstretched_length=state.unstretched, joint=joint)
+    kinetic, gravitational, elastic = (np.asarray(part) for part in (e.kinetic, e.gravitational, e.elastic))
+    total = kinetic + gravitational + elastic
+    error = total - total[0] - work.sum(axis=1)
+    scale = max(np.nanmax(kinetic), np.nanmax(np.abs(work)))
+    joules = {"units": "J"}
+    return {
+        "kinetic_energy": (("time",), kinetic, joules),
+        "gravitational_energy": (("time",), gravitational, joules),
+        "elastic_energy": (("time",), elastic, joules),
+        "work": (("time", "source"), work, joules),
+        "energy_error": (("time",), error, joules),
+        "energy_error_relative": ((), np.nanmax(np.abs(error)) / scale if scale > 0 else 0.0, {}),
+    }
+
+
+def _reactions(state: _State, joint: JointModel) -> dict[str, Any]:
+    found = joint_reactions(state.hexapod, state.platform, base=state.base, leg_force=state.leg_force, joint=joint)
+    return {
+        name: (
+            ("time", "axis") if name.startswith("base") else ("time", "leg", "axis"),
+            value,
+            {"units": "N" if name.endswith("force") else "N m"},
+        )
+        for name, value in found._asdict().items()
+    }
