@@ -12,9 +12,9 @@ from . import plots as plots
 from . import simulation as simulation
 from . import vibration as vibration
 from . import workspace as workspace
+from .design.design_file import packaged_designs as packaged_designs
 from .design.hexapod import Hexapod as Hexapod
 from .design.hexapod import load as load
-from .design.hexapod import packaged_designs as packaged_designs
 from .errors import ArgumentError as ArgumentError
 from .errors import DesignError as DesignError
 from .errors import FlexapodError as FlexapodError

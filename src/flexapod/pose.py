@@ -85,7 +85,7 @@ class Pose:
         except (TypeError, ValueError) as error:
             raise PoseError(f"x, y, z, roll, pitch and yaw must be numbers, or arrays that fit: {error}") from error
         six = vectors(np.stack(numbers, axis=-1), "pose", 6)
-        return cls(six[..., :3], rpy_matrix(six[..., 3:]))
+        return Pose(six[..., :3], rpy_matrix(six[..., 3:]))
 
     @property
     def rotation(self) -> Rotation:
@@ -109,6 +109,14 @@ class Pose:
     def shape(self) -> tuple[int, ...]:
         """Batch axes; () for one pose."""
         return self.position.shape[:-1]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Pose):
+            return NotImplemented
+        return np.array_equal(self.position, other.position) and np.array_equal(self.matrix, other.matrix)
+
+    def __hash__(self) -> int:
+        return hash((self.shape, (self.position + 0.0).tobytes(), (self.matrix + 0.0).tobytes()))  # -0.0 is 0.0
 
     def __getitem__(self, index: Any) -> Pose:
         return Pose(self.position[index], self.matrix[index])
@@ -225,6 +233,12 @@ class Motion:
         flat = self.pose.matrix.reshape(*self.shape, 9)
         rates = (self.velocity, self.angular_velocity, self.acceleration, self.angular_acceleration)
         return np.concatenate([self.pose.position, flat, *rates], axis=-1)
+
+    def __eq__(self, other: object) -> bool:
+        return np.array_equal(self.packed, other.packed) if isinstance(other, Motion) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash((self.shape, (self.packed + 0.0).tobytes()))
 
     def __repr__(self) -> str:
         return f"<Motion {self.shape}>" if self.shape else f"Motion({self.pose!r}, v={self.velocity}, ...)"

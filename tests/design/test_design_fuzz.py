@@ -12,7 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexapod.design import design_file
-from flexapod.design.hexapod import Hexapod, load, packaged_designs
+from flexapod.design.design_file import packaged_designs
+from flexapod.design.hexapod import Hexapod, load
 from flexapod.design.schema import KEYS, TABLES
 from flexapod.design.shorthands import expand
 from flexapod.design.units import ALL_UNITS

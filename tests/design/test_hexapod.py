@@ -12,19 +12,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from flexapod.design.hexapod import (
-    Damping,
-    Hexapod,
-    Home,
-    LegPart,
-    Legs,
-    Limits,
-    load,
-    packaged_designs,
-    parse_assignments,
-    template,
-)
+from flexapod.design.changes import parse_assignments
+from flexapod.design.design_file import packaged_designs, template
+from flexapod.design.hexapod import Hexapod, load
+from flexapod.design.parts import Damping, Home, LegPart, Legs, Limits
 from flexapod.errors import DesignError
+from flexapod.pose import Pose
 
 # Warnings that each packaged design must raise, by the key they start with.
 PACKAGED = {
@@ -525,3 +518,102 @@ def test_loading_a_design_imports_nothing_slow():
     )
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert result.stdout.strip() == "set() False"
+
+
+# ---- made in Python --------------------------------------------------------------------------------------------------
+
+
+def test_home_is_a_pose_that_keeps_its_angles():
+    machine = load("motion-base").replace({"home.orientation": [0.1, -0.2, 7 / 3]})
+    home = machine.home
+    assert isinstance(home, Pose)
+    assert home == Pose.from_rpy(*home.position, 0.1, -0.2, 7 / 3)
+    np.testing.assert_array_equal(home.rpy, [0.1, -0.2, 7 / 3])
+    position, rpy = home
+    assert position.tolist() == home.position.tolist()
+    assert rpy.tolist() == home.rpy.tolist()
+    assert pickle.loads(pickle.dumps(home)) == copy.deepcopy(home) == home
+
+
+def parts_of(machine: Hexapod, **changes) -> dict:
+    names = ("base_joints", "platform_joints", "platform_mass", "platform_mass_center", "platform_inertia", "legs")
+    return {name: getattr(machine, name) for name in names} | changes
+
+
+def test_a_home_may_be_any_pose():
+    machine = load("mukherjee-ii")
+    for home in ([0, 0, 0.1, 0.2, 0.1, -0.3], Pose.from_rpy(0, 0, 0.1, 0.2, 0.1, -0.3)):
+        made = Hexapod(**parts_of(machine, home=home))
+        np.testing.assert_allclose(made.home.rpy, [0.2, 0.1, -0.3], rtol=1e-15)
+        assert Hexapod.from_toml(made.to_toml()) == made
+    with pytest.raises(DesignError, match=r"home has batch axes \(2,\)"):
+        Hexapod(**parts_of(machine, home=Pose(np.zeros((2, 3)))))
+
+
+def test_axes_and_products_of_inertia_may_be_left_out():
+    small = Hexapod.from_toml(SMALL)
+    made = Hexapod(**parts_of(small, platform_inertia=[0.1, 0.2, 0.25]))
+    np.testing.assert_array_equal(made.universal_axes, small.universal_axes)
+    np.testing.assert_array_equal(made.platform_inertia, np.diag([0.1, 0.2, 0.25]))
+    assert small.replace({"platform.inertia_g_m2": [100, 200, 250]}).platform_inertia.tolist() == (
+        np.diag([0.1, 0.2, 0.25]).tolist()
+    )
+    assert LegPart(1.0, [0, 0, 0], [1, 2, 3]) == LegPart(1.0, [0, 0, 0], np.diag([1.0, 2, 3]))
+
+
+def test_from_circles_is_the_short_form_of_the_file():
+    file = Hexapod.from_toml(template("machine"))
+    made = Hexapod.from_circles(
+        0.5,
+        0.3,
+        0.5,
+        base_half_angle=10,
+        platform_half_angle=10,
+        degrees=True,
+        platform_mass=60.0,
+        platform_mass_center=[0, 0, 0.05],
+        platform_inertia=[1.95, 1.95, 3.675],
+        stiffness=20e6,
+        damping=Damping(200.0, 0.1, 0.1),
+        lower=file.legs.lower,
+        upper=LegPart.rod(1.0, 0.35, 0.015, upper=True),
+        limits=file.limits,
+        name=file.name,
+    )
+    assert made == file
+    radians = Hexapod.from_circles(
+        0.5,
+        0.3,
+        0.5,
+        base_angles=np.radians([50, 70, 170, 190, 290, 310]),
+        platform_half_angle=np.radians(10),
+        platform_mass=60.0,
+        platform_inertia=[1.95, 1.95, 3.675],
+        stiffness=20e6,
+        damping=200.0,
+    )
+    np.testing.assert_allclose(radians.base_joints, file.base_joints, atol=1e-15)
+    np.testing.assert_allclose(radians.platform_joints, file.platform_joints, atol=1e-15)
+    np.testing.assert_array_equal(radians.legs.damping.prismatic, 200.0)
+
+
+def test_circles_need_one_of_half_angle_and_angles():
+    given = {"platform_mass": 1.0, "platform_inertia": [1, 1, 1], "stiffness": 1e6, "platform_half_angle": 0.1}
+    with pytest.raises(DesignError, match="base_half_angle and base_angles are both missing"):
+        Hexapod.from_circles(0.5, 0.3, 0.5, **given)
+    with pytest.raises(DesignError, match=r"base.circle.radius is -0.5 m; it must be > 0"):
+        Hexapod.from_circles(-0.5, 0.3, 0.5, base_half_angle=0.1, **given)
+    with pytest.raises(DesignError, match=r"base_half_angle is 0 rad; it must be > 0"):
+        Hexapod.from_circles(0.5, 0.3, 0.5, base_half_angle=0, **given)
+
+
+def test_keys_by_keyword_and_fields_names():
+    machine = load("mukherjee-ii")
+    assert machine.replace(gravity=[0, 0, 0]).gravity.tolist() == [0, 0, 0]
+    for wrong in ({"platform_mass": 5.0}, {"platform_mass_g": 5000.0}):
+        with pytest.raises(DesignError, match=r"Did you mean platform\.mass"):
+            machine.replace(wrong)
+        with pytest.raises(DesignError, match=r"Did you mean platform\.mass"):
+            machine.replace(**wrong)
+    with pytest.raises(DesignError, match=r"legs\.lower is 3; it must be a LegPart"):
+        Legs(1e7, lower=3)

@@ -1,9 +1,9 @@
-from .hexapod import Damping as Damping
+from .design_file import packaged_designs as packaged_designs
+from .design_file import template as template
 from .hexapod import Hexapod as Hexapod
-from .hexapod import LegPart as LegPart
-from .hexapod import Legs as Legs
-from .hexapod import Limits as Limits
 from .hexapod import load as load
-from .hexapod import packaged_designs as packaged_designs
-from .hexapod import template as template
 from .joint_table import read_joints as read_joints
+from .parts import Damping as Damping
+from .parts import LegPart as LegPart
+from .parts import Legs as Legs
+from .parts import Limits as Limits

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from flexapod import _core
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.schema import KEYS, Key, resolve
+from flexapod.design.key_names import resolve
+from flexapod.design.schema import KEYS, Key
 from flexapod.design.units import to_si
 from flexapod.errors import ArgumentError, DesignError
 

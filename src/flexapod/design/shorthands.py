@@ -5,10 +5,14 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.conventions import TWO_PI, Array
 from flexapod.design.joint_table import read_joints
-from flexapod.design.schema import KEYS, FloatArray, check_value
+from flexapod.design.schema import KEYS, Key
+from flexapod.design.value_checks import check_value
 from flexapod.errors import DesignError
 from flexapod.pose import Pose, rpy_matrix
+
+_HALF_ANGLE = Key("angle between a joint and the middle of its pair", "angle", ((),), least=0.0, open_=True)
 
 Values = dict[str, Any]  # dotted key -> array in SI units, or text
 
@@ -31,7 +35,7 @@ def expand(values: Values, directory: Path | None = None) -> Values:
     return values
 
 
-def tangent_axes(base_joints: FloatArray) -> FloatArray:
+def tangent_axes(base_joints: Array) -> Array:
     """Unit vectors z x (b_i - centroid): the default axes of the universal joints, shape (6, 3)."""
     out = base_joints - base_joints.mean(axis=0)
     out = np.ldexp(out, -np.frexp(np.abs(out).max())[1])  # a power of two: exact, and squares do not vanish
@@ -46,12 +50,30 @@ def tangent_axes(base_joints: FloatArray) -> FloatArray:
     return np.asarray(axes / length + 0.0)
 
 
-def circle(radius: float, angles: FloatArray, height: float) -> FloatArray:
+def circle(radius: float, angles: Array, height: float) -> Array:
     """Six joints on a circle about z, shape (6, 3)."""
     return np.stack([radius * np.cos(angles), radius * np.sin(angles), np.full(6, height)], axis=1)
 
 
-def cubic(edge: float, middle: float) -> tuple[FloatArray, FloatArray]:
+def circle_table(plate: str, radius: float, half_angle: float | None, angles: Any, degrees: bool) -> Values:
+    """The table [base.circle] or [platform.circle] of a plate given by half angle or angles, in legs' order."""
+    if (half_angle is None) == (angles is None):
+        raise DesignError(
+            f"{plate}_half_angle and {plate}_angles are {'both missing' if angles is None else 'both given'}; give one "
+            "of them: half the angle between the joints of a pair, or the angles of all six joints."
+        )
+    unit = "deg" if degrees else "rad"
+    if angles is None:
+        check_value(f"{plate}_half_angle", half_angle, _HALF_ANGLE, unit)
+        first = 60.0 if plate == "base" else 0.0
+        middles = first + np.repeat([0.0, 120.0, 240.0], 2)
+        angles = (middles if degrees else np.radians(middles)) + np.tile([-1.0, 1.0], 3) * half_angle
+        if plate == "platform":  # legs 6 and 1 are its first pair
+            angles = np.append(angles[1:], angles[0] + (360.0 if degrees else TWO_PI))
+    return {"radius": radius, f"angles_{unit}": angles}
+
+
+def cubic(edge: float, middle: float) -> tuple[Array, Array]:
     """Lower and upper joints of the six legs about the cube's centre, each (6, 3).
 
     The cube stands on a corner. Its legs are the edges between the three corners next to the lowest one and the three
@@ -66,7 +88,7 @@ def cubic(edge: float, middle: float) -> tuple[FloatArray, FloatArray]:
     return center - middle * half, center + middle * half
 
 
-def rod(mass: FloatArray, length: FloatArray, radius: FloatArray, side: float) -> tuple[FloatArray, FloatArray]:
+def rod(mass: Array, length: Array, radius: Array, side: float) -> tuple[Array, Array]:
     """Mass centre (6, 3) and inertia (6, 3, 3) of a uniform round rod along the leg, from its joint (side 1 or -1)."""
     mass, length, radius = (np.broadcast_to(value, (6,)) for value in (mass, length, radius))
     along, across = mass * radius**2 / 2, mass * (3 * radius**2 + length**2) / 12

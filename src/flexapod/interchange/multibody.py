@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.conventions import Array
-from flexapod.design.hexapod import Hexapod, LegPart
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.parts import LegPart
 from flexapod.interchange.rigid_bodies import check_physical
 from flexapod.mechanics.inputs import single_pose
 from flexapod.mechanics.statics import hold

@@ -8,12 +8,12 @@ import numpy as np
 
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.inertia import inertia_flaw, second_moments
 from flexapod.errors import DesignError
 from flexapod.mechanics.inputs import as_hexapod
 
 LEAST_MASS = 1e-4  # of the platform's mass, in place of none
 LEAST_SPREAD = 1e-6  # of the largest second moment, or of mass times the machine's height squared
-FLAT = 1e-9  # of the largest second moment: less is rounding
 
 
 def nearest_physical(hexapod: Hexapod) -> Hexapod:
@@ -55,14 +55,14 @@ def nearest_physical(hexapod: Hexapod) -> Hexapod:
     as_hexapod(hexapod)
     changes: dict[str, Any] = {}
     reach = float(np.ptp(np.concatenate([hexapod.base_joints, hexapod.platform_joints]), axis=0).max())
-    if _flaw(hexapod.platform_mass, hexapod.platform_inertia):
+    if inertia_flaw(hexapod.platform_inertia, solid=True):
         changes["platform.inertia"] = _mended(hexapod.platform_mass, hexapod.platform_inertia, reach)
     for name in ("lower", "upper"):
         part = getattr(hexapod.legs, name)
         mass = np.where(part.mass > 0, part.mass, LEAST_MASS * hexapod.platform_mass)
         inertia = np.array(
             [
-                _mended(m, given, reach) if _flaw(m, given) else given
+                _mended(m, given, reach) if inertia_flaw(given, solid=True) else given
                 for m, given in zip(mass, part.inertia, strict=True)
             ]
         )
@@ -80,7 +80,7 @@ def check_physical(hexapod: Hexapod) -> None:
         part = getattr(hexapod.legs, name)
         bodies += [(f"legs.{name}", f" of leg {i + 1}", part.mass[i], part.inertia[i]) for i in range(6)]
     for key, leg, mass, inertia in bodies:
-        flaw = "its mass is 0" if mass == 0 else _flaw(mass, inertia)
+        flaw = "its mass is 0" if mass == 0 else inertia_flaw(inertia, solid=True)
         if flaw:
             raise DesignError(
                 f"{key}{leg} is a body that rigid-body programs refuse: {flaw}. Give {key} a mass and an inertia that "
@@ -89,26 +89,8 @@ def check_physical(hexapod: Hexapod) -> None:
             )
 
 
-def _second_moments(inertia: Array) -> Array:
-    return np.asarray(np.trace(inertia) / 2 * np.eye(3) - inertia)
-
-
-def _flaw(mass: float, inertia: Array) -> str:
-    """Why no solid body has this inertia; "" where one has."""
-    moments = np.linalg.eigvalsh(_second_moments(inertia))
-    if moments[0] > FLAT * moments[2]:
-        return ""
-    principal = np.linalg.eigvalsh(inertia)
-    if principal[0] < -FLAT * np.abs(principal).max():
-        return f"its smallest principal moment of inertia is {principal[0]:.3g} kg m2"
-    return (
-        f"its largest principal moment of inertia is {principal[2]:.6g} kg m2 and the other two are together "
-        f"{principal[0] + principal[1]:.6g}, as of nothing that has an extent in all directions"
-    )
-
-
 def _mended(mass: float, inertia: Array, reach: float) -> Array:
-    moments, axes = np.linalg.eigh(_second_moments(inertia))
+    moments, axes = np.linalg.eigh(second_moments(inertia))
     least = LEAST_SPREAD * max(moments[2], mass * reach**2 * LEAST_SPREAD)
     spread = (axes * np.maximum(moments, least)) @ axes.T
     spread = (spread + spread.T) / 2

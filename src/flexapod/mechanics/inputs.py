@@ -11,7 +11,7 @@ from flexapod import _core
 from flexapod.conventions import JOINT_MODELS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, DesignError, PoseError, shown
-from flexapod.pose import Motion, MotionLike, Pose, PoseLike, as_pose, rpy_matrix, vectors
+from flexapod.pose import Motion, MotionLike, Pose, PoseLike, as_pose, vectors
 
 LEAST_SINE = 1e-7  # of the angle between a leg and its universal joint's axis
 ZERO = (0.0, 0.0, 0.0)
@@ -47,8 +47,7 @@ def pose_or_home(hexapod: Hexapod, pose: PoseLike | None, name: str = "pose") ->
         raise PoseError(
             f"{name} is not given, and {hexapod.name!r} names no home pose. Give a pose, or add [home] to the design."
         )
-    position, rpy = home
-    return Pose(position, rpy_matrix(rpy))
+    return home
 
 
 def single_pose(hexapod: Hexapod, pose: PoseLike | None, name: str = "pose") -> Pose:

@@ -117,11 +117,7 @@ def home_pose(hexapod: Hexapod) -> Pose | None:
     Raises: nothing of its own.
     Source: own.
     """
-    home = as_hexapod(hexapod).home
-    if home is None:
-        return None
-    position, rpy = home
-    return Pose(position, rpy_matrix(rpy))
+    return as_hexapod(hexapod).home
 
 
 def forward_kinematics(hexapod: Hexapod, lengths: ArrayLike, *, start: PoseLike | None = None) -> Pose:

@@ -13,8 +13,8 @@ from flexapod.web.parameters import mean_radius
 def home(hexapod: Hexapod) -> list[float]:
     """The home pose in m and degrees; if the design has none, the platform over the base at a usual height."""
     if hexapod.home is not None:
-        position, rpy = hexapod.home
-        return [*position.tolist(), *np.round(np.degrees(rpy), 12).tolist()]
+        home = hexapod.home
+        return [*home.position.tolist(), *np.round(np.degrees(home.rpy), 12).tolist()]
     base, platform = hexapod.base_joints, hexapod.platform_joints
     centre = base.mean(axis=0) - platform.mean(axis=0)
     height = 1.2 * mean_radius(base)

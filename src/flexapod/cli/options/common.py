@@ -130,7 +130,8 @@ def machine(design: str, changes: Iterable[str], pose: tuple[float, ...] | None)
 
 def load_design(design: str, changes: Iterable[str] = ()) -> Hexapod:
     """The design of a name or path, with the changes of `--set`. Raises DesignError."""
-    from flexapod.design.hexapod import load, parse_assignments
+    from flexapod.design.changes import parse_assignments
+    from flexapod.design.hexapod import load
 
     hexapod = load(design)
     assignments = parse_assignments(changes)

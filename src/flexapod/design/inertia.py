@@ -1,0 +1,39 @@
+"""Which inertias a rigid body can have, and their six numbers."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod.conventions import Array
+
+ROUNDING = 1e-9  # of the largest moment: what printing with nine digits changes
+
+
+def six_of(inertia: ArrayLike) -> Array:
+    """Entries xx yy zz xy xz yz of symmetric matrices (..., 3, 3)."""
+    matrix = np.asarray(inertia, dtype=np.float64)
+    return matrix[..., [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+
+
+def second_moments(inertia: Array) -> Array:
+    """Second moments of mass, trace(I)/2 E - I, kg m2: positive semidefinite for every rigid body."""
+    return np.asarray(np.trace(inertia) / 2 * np.eye(3) - inertia)
+
+
+def inertia_flaw(inertia: Array, *, solid: bool = False) -> str:
+    """Why no rigid body has this inertia; "" where one has. `solid`: nor may it be flat or a line."""
+    moments = np.linalg.eigvalsh(second_moments(inertia))
+    slack = ROUNDING * np.abs(moments).max()
+    if moments[0] > slack or (not solid and moments[0] >= -slack):
+        return ""
+    principal = np.linalg.eigvalsh(inertia)
+    if principal[0] < -ROUNDING * np.abs(principal).max():
+        return f"its smallest principal moment is {principal[0]:.3g} kg m2, below zero"
+    largest, others = principal[2], principal[0] + principal[1]
+    if solid:
+        return (
+            f"its largest principal moment is {largest:.6g} kg m2 and the other two are together {others:.6g}, as of "
+            "nothing that has an extent in all directions"
+        )
+    return f"its largest principal moment {largest:.6g} kg m2 exceeds the sum of the other two, {others:.6g}"

@@ -1,0 +1,88 @@
+"""Nested tables of a design to checked values under dotted keys, and what is filled in or missing."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from flexapod.design.key_names import resolve
+from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS
+from flexapod.design.shorthands import Values
+from flexapod.design.units import printed, si_unit
+from flexapod.design.value_checks import check_value
+from flexapod.errors import DesignError, shown
+
+_REQUIRED = ("base.joints", "platform.joints", "platform.mass", "platform.mass_center", "platform.inertia")
+_SHORT_FORMS = {
+    "base.joints": "[base.circle], [cubic] or [joints] with csv",
+    "platform.joints": "[platform.circle], [cubic] or [joints] with csv",
+}
+DEFAULT_GRAVITY = np.array([0.0, 0.0, -9.81])
+START = "`flexapod new my-machine.toml` writes a design to start from."
+
+
+def flatten(tables: Mapping[str, Any], table: str = "") -> Values:
+    """Nested tables to checked values under dotted keys without units."""
+    values: Values = {}
+    written: dict[str, str] = {}
+    for key, value in tables.items():
+        full = f"{table}.{key}" if table else key
+        if full in TABLES:
+            values |= flatten(table_of(value, full), full)
+            continue
+        canonical, unit = resolve(table, key)
+        if canonical in written:
+            raise DesignError(f"{written[canonical]} and {full} both give {canonical}. Leave one of them out.")
+        written[canonical] = full
+        values[canonical] = _check(full, canonical, value, unit)
+    return values
+
+
+def _check(name: str, canonical: str, value: Any, unit: str) -> Any:
+    if canonical not in TEXT_KEYS:
+        return check_value(name, value, KEYS[canonical], unit)
+    if not isinstance(value, str) or not value.strip():
+        example = "my hexapod" if canonical == "name" else "joints.csv"
+        raise DesignError(f'{name} is {shown(value)}; it must be text. Write {name} = "{example}".')
+    return value
+
+
+def table_of(value: Any, name: str) -> Any:
+    """The value, which must be a table."""
+    if not isinstance(value, Mapping):
+        raise DesignError(f"{name} is {shown(value)}; it must be a table. Write [{name}] and its keys below it.")
+    return value
+
+
+def complete(values: Values) -> Values:
+    """Values with the defaults filled in. Raises DesignError that lists every key that is missing."""
+    missing = [key for key in (*_REQUIRED, "legs.stiffness") if key not in values]
+    parts = [part for part in ("legs.lower", "legs.upper") if any(key.startswith(f"{part}.") for key in values)]
+    for part in parts:
+        missing += [f"{part}.{key}" for key in ("mass", "mass_center", "inertia") if f"{part}.{key}" not in values]
+    if len(parts) == 1:
+        other = "legs.upper" if parts == ["legs.lower"] else "legs.lower"
+        raise DesignError(
+            f"[{other}] is missing while [{parts[0]}] is given. Give both parts (one may have mass 0), "
+            "or leave both out for massless legs."
+        )
+    if "home.orientation" in values and "home.position" not in values:
+        missing.append("home.position")
+    if missing:
+        lines = "; ".join(f"{key} ({_how_to_give(key)})" for key in missing)
+        raise DesignError(f"missing: {lines}. Add {'it' if len(missing) == 1 else 'them'} to the design. {START}")
+    zero = np.zeros(())
+    defaults: Values = {"gravity": DEFAULT_GRAVITY}
+    defaults |= {f"legs.damping.{joint}": zero for joint in ("prismatic", "universal", "spherical")}
+    for part in ("legs.lower", "legs.upper"):
+        defaults |= {f"{part}.mass": zero, f"{part}.mass_center": np.zeros(3), f"{part}.inertia": np.zeros((3, 3))}
+    if "home.position" in values:
+        defaults["home.orientation"] = np.zeros(3)
+    return defaults | values
+
+
+def _how_to_give(key: str) -> str:
+    rule = KEYS[key]
+    unit = printed(si_unit(rule.dimension))
+    short = f", or {_SHORT_FORMS[key]}" if key in _SHORT_FORMS else ""
+    return f"{rule.meaning}: {rule.shape_text}, {unit}{short}"
