@@ -54,7 +54,7 @@ def contests(plan: Plan) -> list[Contest]:
     start = p.map.from_values({})
     hexapod = p.map.hexapod_at(start)
     rows = fx.workspace.low_discrepancy(p.box(hexapod), poses).rows(0, max(poses // SHARE, 100))
-    ours = float(fx.sweep(hexapod, rows, "omega_1").omega_1.values.min())
+    ours = float(fx.sweep(hexapod, rows, quantities="omega_1").omega_1.values.min())
     error = abs(numpy_index(hexapod, rows) / ours - 1)
     trial = cpu_seconds(lambda: p.assess_at(start, poses), poses / 1e6)
     theirs = cpu_seconds(lambda: numpy_index(hexapod, rows), len(rows) / 1e6)
@@ -72,7 +72,7 @@ def main() -> None:
     box = p.box(hexapod)
     rows = fx.workspace.low_discrepancy(box, POSES).rows(0, POSES)
     few = rows[: POSES // SHARE]
-    assert abs(numpy_index(hexapod, few) / fx.sweep(hexapod, few, "omega_1").omega_1.values.min() - 1) < 1e-6
+    assert abs(numpy_index(hexapod, few) / fx.sweep(hexapod, few, quantities="omega_1").omega_1.values.min() - 1) < 1e-6
     rounds = [(timed(lambda: p.assess_at(start, POSES)), timed(lambda: numpy_index(hexapod, few))) for _ in range(3)]
     ours, theirs = (min(times) for times in zip(*rounds, strict=True))
     print(f"one evaluation ({POSES} poses, descent, stroke): {ours:.3f} s, {1 / ours:.3g} evaluations/s")

@@ -119,7 +119,7 @@ def contests(plan: Plan) -> list[Contest]:
             OURS,
             "flexapod",
             f"fx.sweep, {len(poses)} poses, {isa}",
-            cpu_seconds(lambda: fx.sweep(hexapod, poses, quantities, threads=1), len(poses)),
+            cpu_seconds(lambda: fx.sweep(hexapod, poses, quantities=quantities, threads=1), len(poses)),
         ),
         _batched(plan, hexapod, "NumPy + LAPACK", "numpy", lambda poses: array_modes(np, hexapod, poses)),
     ]
@@ -154,7 +154,7 @@ def _batched(plan: Plan, hexapod, tool: str, package: str, modes: Callable) -> C
 
 
 def _error(hexapod, poses, omega, cond_H) -> float:
-    ours = fx.sweep(hexapod, poses, ("omega_1", "cond_H"))
+    ours = fx.sweep(hexapod, poses, quantities=("omega_1", "cond_H"))
     pairs = ((np.asarray(omega)[:, 0], ours.omega_1.values), (np.asarray(cond_H), ours.cond_H.values))
     return max(float(np.abs(theirs / own - 1).max()) for theirs, own in pairs)
 

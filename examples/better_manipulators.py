@@ -39,7 +39,7 @@ def main(trials: int = 0, points: int = 2**12, verify: int = 2**17) -> dict[str,
             "best conditioned": fx.worst_pose(dexterous.hexapod, box).omega_1,
             "cond(H) as printed": 1 / dexterous.start_index,
             "cond(H) best": float(
-                fx.sweep(best.hexapod, fx.workspace.low_discrepancy(box, points), "cond_H").cond_H.max()
+                fx.sweep(best.hexapod, fx.workspace.low_discrepancy(box, points), quantities="cond_H").cond_H.max()
             ),
             "cond(H) best conditioned": 1 / dexterous.index,
         }

@@ -16,14 +16,14 @@ def main() -> float:
     machine = fx.load("cubic-isolator")
     home = fx.home_pose(machine)
     box = fx.Box.about(home, 0.002, np.radians(1))  # +-2 mm and +-1 degree in all six coordinates
-    sweep = fx.sweep(machine, fx.workspace.low_discrepancy(box, 2**12), ("omega_1", "cond_H", "within_limits"))
+    sweep = fx.sweep(machine, box, quantities=("omega_1", "cond_H", "within_limits"), samples=2**12)
     summary = fx.summarise(sweep, at_least=WANTED)
     print(f"at home the index is {fx.stability_index(machine, home):.2f} rad/s")
     print(f"over {summary.poses} poses: {summary.worst.omega_1:.2f} to {summary.best.omega_1:.2f} rad/s")
     print(f"{summary.above.fraction:.1%} of the workspace has at least {WANTED} rad/s")
     print(f"{float(sweep.within_limits.mean()):.1%} of it is within the limits of legs and joints")
 
-    worst = fx.worst_pose(machine, box, points=2**10)
+    worst = fx.worst_pose(machine, box, samples=2**10)
     print(f"the least is {worst.omega_1:.3f} rad/s at {fx.Pose.from_rpy(*worst.pose)}")
     print(f"found by {worst.agreed} of {worst.starts} searches; on the bounds of {', '.join(worst.at_bounds)}")
     print("answer:", "there is a singular pose in it" if worst.singular else "stable everywhere")

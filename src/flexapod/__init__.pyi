@@ -67,10 +67,10 @@ from .simulation.time_simulation import simulate as simulate
 from .vibration.frequency_response import random_response as random_response
 from .vibration.frequency_response import transmissibility as transmissibility
 from .vibration.stepped import stepped_sine as stepped_sine
-from .workspace.pose_sets import Box as Box
+from .workspace.box import Box as Box
+from .workspace.box import Workspace as Workspace
 from .workspace.pose_sets import pose_grid as pose_grid
 from .workspace.pose_sets import random_poses as random_poses
-from .workspace.region import Workspace as Workspace
 from .workspace.store.store import open_sweep as open_sweep
 from .workspace.summary import summarise as summarise
 from .workspace.sweeping import sweep as sweep

@@ -32,7 +32,7 @@ def test_summary_in_words_and_in_json(capsys):
     assert code == 0
     found = json.loads(text)
     box = fx.Box.about(fx.home_pose(I), 0.05, np.radians(10))
-    expected = fx.summarise(fx.sweep(I, fx.random_poses(box, 2000, 3)), 200.0)
+    expected = fx.summarise(fx.sweep(I, fx.random_poses(box, 2000, seed=3)), 200.0)
     assert found["summary"]["worst"]["omega_1"] == expected.worst.omega_1
     assert found["summary"]["worst"]["pose"]["yaw"] == expected.worst.pose[5]
     assert found["summary"]["above"]["fraction"] == expected.above.fraction

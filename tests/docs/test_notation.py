@@ -67,7 +67,7 @@ def samples() -> dict[str, object]:
         "controlled_transmissibility": fx.control.controlled_transmissibility(h, home, law, omega),
         "simulate": fx.simulate(h, home, duration=0.01, samples=5),
         "sweep": fx.sweep(h, two),
-        "worst_pose": fx.worst_pose(h, box, points=64, starts=2),
+        "worst_pose": fx.worst_pose(h, box, samples=64, starts=2),
         "closed_loop": fx.control.closed_loop(h, home, law, nearness=0.0),
         "sampling_time": fx.control.sampling_time(h, home),
     }

@@ -37,7 +37,7 @@ def check_sweep() -> None:
     """Poses in lanes against poses one by one."""
     machine = fx.load("precision-positioner")
     poses = fx.random_poses(fx.Box.about(fx.home_pose(machine), 0.01, 0.05), 500, seed=1)
-    swept = fx.sweep(machine, poses, ["omega_1"])
+    swept = fx.sweep(machine, poses, quantities=["omega_1"])
     single = fx.natural_modes(machine, fx.Pose.from_rpy(*poses.rows(0, 500).T)).omega[:, 0]
     np.testing.assert_allclose(swept["omega_1"].values, single, rtol=1e-9)
 

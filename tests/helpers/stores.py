@@ -18,6 +18,6 @@ def content(path):
 
 def stored(path, poses=POSES, quantities=("omega_1", "cond_H"), **options):
     """A complete store, computed by threads."""
-    store = fx.workspace.SweepStore.create(path, I, poses, quantities, **options)
+    store = fx.workspace.SweepStore.create(path, I, poses, quantities=quantities, **options)
     store.run()
     return store

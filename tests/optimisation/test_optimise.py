@@ -290,7 +290,9 @@ def test_a_better_design_is_better_on_a_sweep_of_our_own():
     def own(hexapod):
         home = fx.home_pose(hexapod).position
         box = fx.Box(*[(h - 0.004, h + 0.004) for h in home], *[(-RADIANS(4), RADIANS(4))] * 3)
-        return fx.sweep(hexapod, fx.random_poses(box, 100_000, seed=123), ("omega_1", "leg_length", "cond_H"))
+        return fx.sweep(
+            hexapod, fx.random_poses(box, 100_000, seed=123), quantities=("omega_1", "leg_length", "cond_H")
+        )
 
     before, after = own(start), own(found.hexapod)
     assert found.gain > 0.2

@@ -108,7 +108,9 @@ def test_worst_case_is_below_every_sample_and_at_a_corner():
     assert found.worst_at["platform.mass_center_mm[2]"] == pytest.approx(0.11807, rel=1e-6)  # higher is worse
     changed = machine.replace({"legs.stiffness": 0.9 * 5e7, "platform.mass_center_mm": [0, 0, 118.07]})
     home = np.concatenate([machine.home.position, machine.home.rpy])
-    assert found.worst == pytest.approx(float(fx.sweep(changed, box.rows(home, 32), "omega_1").omega_1.min()), rel=1e-9)
+    assert found.worst == pytest.approx(
+        float(fx.sweep(changed, box.rows(home, 32), quantities="omega_1").omega_1.min()), rel=1e-9
+    )
 
 
 def test_sobol_indices_of_a_sum_of_known_parts(measured):

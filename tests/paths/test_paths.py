@@ -206,11 +206,11 @@ def test_sampling_time_over_poses_paths_and_boxes(machine):
     expected = 2 * np.pi / (20 * fx.natural_modes(machine, batch).omega[:, 5].max())
     assert fx.control.sampling_time(machine, batch) == pytest.approx(expected)
     box = fx.Box(x=(-0.1, 0.1), y=(-0.1, 0.1), z=(0.8, 1.0), yaw=(-0.2, 0.2))
-    dense = fx.sweep(machine, fx.random_poses(box, 200_000, seed=5), ["omega"]).omega.values[:, 5].max()
+    dense = fx.sweep(machine, fx.random_poses(box, 200_000, seed=5), quantities=["omega"]).omega.values[:, 5].max()
     found = 2 * np.pi / (20 * fx.control.sampling_time(machine, box))
     assert found >= dense * (1 - 1e-9)  # as high as an independent dense sweep shows
     assert found == pytest.approx(dense, rel=2e-2)
-    with pytest.raises(fx.ArgumentError, match="give a Pose, a Trajectory or a Box"):
-        fx.control.sampling_time(machine)
+    with pytest.raises(fx.PoseError, match="give a Workspace, a Box, a PoseSet, a Pose, a Trajectory"):
+        fx.control.sampling_time(machine, "everywhere")
     with pytest.raises(fx.ArgumentError, match="must be finite and > 0"):
         fx.control.sampling_time(-1.0)

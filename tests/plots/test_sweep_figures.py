@@ -10,7 +10,7 @@ from flexapod.plots import sweep as plots_sweep
 FEW = fx.sweep(I, fx.random_poses(BOX, 300))
 MANY = fx.sweep(I, fx.random_poses(BOX, 30_000))
 GRID = fx.pose_grid(x=np.linspace(-0.1, 0.3, 9), y=np.linspace(0, 0.4, 8), z=np.linspace(0.6, 1, 7))
-CUBE = fx.sweep(I, GRID, ("omega_1", "within_limits"))
+CUBE = fx.sweep(I, GRID, quantities=("omega_1", "within_limits"))
 
 
 def test_few_poses_are_dots():
@@ -64,7 +64,7 @@ def test_poses_outside_the_limits_are_hatched():
     found = fx.sweep(
         limited,
         fx.pose_grid(x=np.linspace(-0.1, 0.3, 9), y=np.linspace(0, 0.4, 8), z=0.8),
-        ("omega_1", "within_limits"),
+        quantities=("omega_1", "within_limits"),
     )
     assert 0 < int(found.within_limits.sum()) < 72
     ax = plots_sweep.index_map(found)

@@ -30,7 +30,7 @@ def isolator():
 
 def small_sweep(axes=("x",)):
     hexapod = fx.load("motion-base")
-    return fx.sweep(hexapod, fx.pose_grid(z=2.4, **{name: [0.0, 0.1] for name in axes}), ["omega_1"])
+    return fx.sweep(hexapod, fx.pose_grid(z=2.4, **{name: [0.0, 0.1] for name in axes}), quantities=["omega_1"])
 
 
 def plan():

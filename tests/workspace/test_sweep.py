@@ -56,7 +56,7 @@ def test_every_quantity_is_that_of_the_single_pose_function(name, joint):
 
 
 def test_dataset_tells_units_and_provenance():
-    found = fx.sweep(I, fx.random_poses(BOX, 5, seed=3), ("omega", "leg_force"), joint="spin_free")
+    found = fx.sweep(I, fx.random_poses(BOX, 5, seed=3), quantities=("omega", "leg_force"), joint="spin_free")
     assert found.omega.dims == ("pose", "mode")
     assert found.omega.attrs["units"] == "rad s-1"
     assert found.leg_force.attrs["units"] == "N"
@@ -88,7 +88,7 @@ def test_a_batch_of_poses_keeps_its_axes():
 
 def test_threads_change_nothing():
     poses = fx.random_poses(BOX, 10_001)
-    one, three = (fx.sweep(I, poses, ("omega", "cond_H"), threads=n) for n in (1, 3))
+    one, three = (fx.sweep(I, poses, quantities=("omega", "cond_H"), threads=n) for n in (1, 3))
     assert one.identical(three)
 
 
@@ -109,17 +109,20 @@ def test_a_bad_pose_is_data():
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ({"poses": np.full((3, 6), np.nan)}, "all 3 poses hold NaN"),
-        ({"poses": np.zeros((0, 6))}, "empty"),
-        ({"quantities": ("omega_2",)}, "there is no quantity 'omega_2'"),
+        ({"region": np.full((3, 6), np.nan)}, "all 3 poses hold NaN"),
+        ({"region": np.zeros((0, 6))}, "empty"),
+        ({"quantities": ("omega_2",)}, "quantity is 'omega_2'; it must be one of 'omega_1'"),
+        ({"quantities": "condition_number"}, "no quantity 'condition_number'. Did you mean 'cond_H'?"),
+        ({"region": BOX, "samples": 0}, "samples is 0"),
         ({"quantities": ()}, "no quantity"),
         ({"joint": "loose"}, "joint is 'loose'"),
         ({"threads": 0}, "threads is 0"),
     ],
 )
 def test_bad_arguments_are_told(arguments, words):
-    with pytest.raises(fx.ArgumentError if {"joint", "threads"} & set(arguments) else fx.PoseError) as caught:
-        fx.sweep(I, **{"poses": fx.random_poses(BOX, 5), **arguments})
+    wrong_poses = not isinstance(arguments.get("region", BOX), fx.Box)
+    with pytest.raises(fx.PoseError if wrong_poses else fx.ArgumentError) as caught:
+        fx.sweep(I, **{"region": fx.random_poses(BOX, 5), **arguments})
     assert words in str(caught.value)
 
 
@@ -139,7 +142,10 @@ def test_moving_the_world_changes_nothing():
     poses = fx.Pose.from_rpy(*rows.T)
     turn = fx.Pose.from_rpy(0, 0, 0, 0.7, -0.4, 1.1).matrix
     names = ("omega", "cond_H", "leg_length", "leg_force", "lowest_stiffness", "leg_distance")
-    here, there = fx.sweep(I, poses, names), fx.sweep(*moved(I, poses, turn, np.array([0.3, -0.2, 0.5])), names)
+    here, there = (
+        fx.sweep(I, poses, quantities=names),
+        fx.sweep(*moved(I, poses, turn, np.array([0.3, -0.2, 0.5])), quantities=names),
+    )
     for name in names:  # coordinates of about 1 m are rounded anew: eps times cond(H), with room
         assert np.allclose(here[name], there[name], rtol=1e-10, atol=0), name
 
@@ -153,7 +159,7 @@ def test_renumbering_the_legs_changes_nothing():
     }
     poses = fx.random_poses(BOX, 50)
     names = ("omega", "cond_H", "leg_length", "leg_force")
-    one, other = fx.sweep(I, poses, names), fx.sweep(I.replace(changes), poses, names)
+    one, other = fx.sweep(I, poses, quantities=names), fx.sweep(I.replace(changes), poses, quantities=names)
     assert np.array_equal(one.leg_length.values[:, order], other.leg_length.values)
     for name in ("omega", "cond_H", "leg_force"):
         assert np.allclose(one[name], other[name], rtol=1e-10, atol=0), name
@@ -167,7 +173,10 @@ def test_a_symmetric_machine_has_a_symmetric_map():
         assert gaps.min(axis=1).max() < 1e-12
     rows = fx.random_poses(fx.Box.about(fx.home_pose(BASE), 0.2, 0.2), 200).rows(0, 200)
     mirrored = rows * [1, -1, 1, -1, 1, -1]
-    one, other = fx.sweep(BASE, rows, ("omega", "cond_H")), fx.sweep(BASE, mirrored, ("omega", "cond_H"))
+    one, other = (
+        fx.sweep(BASE, rows, quantities=("omega", "cond_H")),
+        fx.sweep(BASE, mirrored, quantities=("omega", "cond_H")),
+    )
     assert np.allclose(one.omega, other.omega, rtol=1e-10, atol=0)
     assert np.allclose(one.cond_H, other.cond_H, rtol=1e-10, atol=0)
 
@@ -186,7 +195,9 @@ def test_massless_legs_leave_the_platform_on_springs():
     H = fx.force_transformation(design, pose)
     square = np.linalg.eigvals(np.linalg.solve(J, (H * design.legs.stiffness) @ np.swapaxes(H, 1, 2)))
     expected = np.sqrt(np.sort(square.real, axis=1))
-    assert np.allclose(fx.sweep(design, rows, ("omega",)).omega, expected, rtol=1e-8, atol=0)  # eigenvalues: eps cond^2
+    assert np.allclose(
+        fx.sweep(design, rows, quantities=("omega",)).omega, expected, rtol=1e-8, atol=0
+    )  # eigenvalues: eps cond^2
 
 
 def test_the_public_call_costs_little_more_than_the_kernel():
@@ -213,7 +224,7 @@ def test_coordinates_of_an_array_are_not_copied():
 def test_files_hold_the_numbers_and_where_they_come_from(tmp_path, ending):
     from flexapod.workspace.store.file_formats import save
 
-    found = fx.sweep(I, fx.pose_grid(x=[0.0, 0.1], z=[0.8, 0.9, 1.0]), ("omega_1", "omega", "within_limits"))
+    found = fx.sweep(I, fx.pose_grid(x=[0.0, 0.1], z=[0.8, 0.9, 1.0]), quantities=("omega_1", "omega", "within_limits"))
     path = tmp_path / f"sweep{ending}"
     save(found, path)
     assert [file.name for file in tmp_path.iterdir()] == [path.name]

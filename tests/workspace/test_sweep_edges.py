@@ -39,7 +39,7 @@ def test_a_sweep_without_an_index_is_not_summed_up():
 def test_bins_of_the_index_alone_and_over_decades(monkeypatch):
     """Where the index spans decades, the bins are even in its logarithm."""
     box = fx.Box(x=0, y=0, z=0.89, roll=0, pitch=(-0.57, 0.78), yaw=(-0.18, 0.92))
-    found = fx.sweep(I, fx.random_poses(box, 3000, seed=2), ["omega_1"])
+    found = fx.sweep(I, fx.random_poses(box, 3000, seed=2), quantities=["omega_1"])
     values = found.omega_1.values
     assert values.max() > 4 * values.min() > 0
     exact = fx.summarise(found)
@@ -56,7 +56,7 @@ def test_bins_of_the_index_alone_and_over_decades(monkeypatch):
 def test_more_descents_than_poses_that_are_apart():
     """Few poses near one another: the distance asked for is halved until there are enough."""
     box = fx.Box(x=(0, 0.01), y=0, z=0.89, roll=0, pitch=0, yaw=0)
-    found = fx.worst_pose(I, box, points=40, starts=30)
+    found = fx.worst_pose(I, box, samples=40, starts=30)
     assert found.starts == 30
     assert found.omega_1 <= fx.stability_index(I, fx.Pose.from_rpy(np.linspace(0, 0.01, 50), 0, 0.89)).min()
 
@@ -126,14 +126,14 @@ def test_a_block_that_kills_its_workers_is_told(monkeypatch):
 
 
 def test_a_place_that_cannot_be_written_is_told(tmp_path):
-    small = fx.sweep(I, fx.pose_grid(z=[0.9, 0.95]), ["omega_1"])
+    small = fx.sweep(I, fx.pose_grid(z=[0.9, 0.95]), quantities=["omega_1"])
     with pytest.raises(fx.errors.OutputError, match=r"sweep\.csv cannot be written: No such file or directory"):
         file_formats.save(small, tmp_path / "none" / "sweep.csv")
 
 
 def test_systems_without_locks_and_directory_handles_still_write(tmp_path, monkeypatch):
     """As Windows."""
-    store = fx.workspace.SweepStore.create(tmp_path / "s.zarr", I, fx.pose_grid(z=[0.9, 0.95]), ["omega_1"])
+    store = fx.workspace.SweepStore.create(tmp_path / "s.zarr", I, fx.pose_grid(z=[0.9, 0.95]), quantities=["omega_1"])
     monkeypatch.setitem(sys.modules, "fcntl", None)
     real = os.open
 
@@ -149,7 +149,7 @@ def test_systems_without_locks_and_directory_handles_still_write(tmp_path, monke
 
 
 def test_a_store_of_another_format_is_told(tmp_path):
-    fx.workspace.SweepStore.create(tmp_path / "s.zarr", I, fx.pose_grid(z=[0.9, 0.95]), ["omega_1"])
+    fx.workspace.SweepStore.create(tmp_path / "s.zarr", I, fx.pose_grid(z=[0.9, 0.95]), quantities=["omega_1"])
     file = tmp_path / "s.zarr" / "zarr.json"
     document = json.loads(file.read_text())
     document["attributes"]["format"] = "flexapod-sweep-99"
@@ -170,7 +170,7 @@ def test_scatter_reads_block_by_block_and_skips_those_without_an_index():
 
 def test_a_map_of_angles_and_of_wide_lengths_is_in_degrees_and_metres():
     base = fx.load("motion-base")
-    found = fx.sweep(base, fx.pose_grid(z=np.linspace(2.2, 2.8, 3), roll=[-0.1, 0.0, 0.1]), ["omega_1"])
+    found = fx.sweep(base, fx.pose_grid(z=np.linspace(2.2, 2.8, 3), roll=[-0.1, 0.0, 0.1]), quantities=["omega_1"])
     ax = sweep.index_map(found)
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("z (m)", "roll (°)")
     assert ax.get_ylim() == pytest.approx(np.degrees([-0.15, 0.15]))  # half a cell around the outer poses
@@ -190,7 +190,7 @@ def test_grids_that_no_map_can_show_are_scattered(monkeypatch):
 
 
 def test_a_map_of_one_value_has_no_contours_and_no_worst_pose():
-    found = fx.sweep(I, fx.pose_grid(x=[0.0, 0.1], z=[0.9, 1.0]), ["omega_1"])
+    found = fx.sweep(I, fx.pose_grid(x=[0.0, 0.1], z=[0.9, 1.0]), quantities=["omega_1"])
     found["omega_1"][:] = 100.0
     ax = sweep.index_map(found)
     assert len(ax.lines) == 0
@@ -198,7 +198,7 @@ def test_a_map_of_one_value_has_no_contours_and_no_worst_pose():
 
 
 def test_a_figure_of_an_unknown_kind_and_a_fault_of_matplotlib(tmp_path, monkeypatch):
-    ax = sweep.index_line(fx.sweep(I, fx.pose_grid(z=[0.9, 1.0]), ["omega_1"]))
+    ax = sweep.index_line(fx.sweep(I, fx.pose_grid(z=[0.9, 1.0]), quantities=["omega_1"]))
     with pytest.raises(fx.errors.OutputError, match=r"Choose \.png, \.pdf or \.svg"):
         sweep.save(ax, tmp_path / "map.docx")
 

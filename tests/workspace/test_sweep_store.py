@@ -55,7 +55,7 @@ def test_blocks_of_a_huge_array_are_found_at_once():
 def test_a_store_holds_what_a_sweep_gives(tmp_path, poses):
     names = ("omega_1", "omega", "cond_H", "within_limits")
     stored(tmp_path / "map.zarr", poses, names, chunk=270)
-    found, expected = fx.open_sweep(tmp_path / "map.zarr"), fx.sweep(I, poses, names)
+    found, expected = fx.open_sweep(tmp_path / "map.zarr"), fx.sweep(I, poses, quantities=names)
     assert found.omega_1.dims == expected.omega_1.dims
     for name in (*names, "status", "x", "z", "pitch", "yaw"):
         assert np.array_equal(found[name].values, expected[name].values), name
@@ -167,9 +167,12 @@ def test_what_a_killed_worker_left_is_taken_away(tmp_path):
     ("change", "words"),
     [
         ({"hexapod": I.replace({"platform.mass": 41.0})}, ("another design", I.digest)),
-        ({"poses": fx.random_poses(fx.Box.about(fx.home_pose(I), 0.09, 0.15), 10_000, 5)}, ("another poses", '"box"')),
-        ({"poses": fx.random_poses(BOX, 10_000, 6)}, ('"seed": 5', '"seed": 6')),
-        ({"poses": fx.random_poses(BOX, 10_001, 5)}, ('"count": 10000', '"count": 10001')),
+        (
+            {"region": fx.random_poses(fx.Box.about(fx.home_pose(I), 0.09, 0.15), 10_000, seed=5)},
+            ("another poses", '"box"'),
+        ),
+        ({"region": fx.random_poses(BOX, 10_000, seed=6)}, ('"seed": 5', '"seed": 6')),
+        ({"region": fx.random_poses(BOX, 10_001, seed=5)}, ('"count": 10000', '"count": 10001')),
         ({"quantities": ("omega_1",)}, ("omega_1 cond_H", "now it is omega_1")),
         ({"joint": "spin_free"}, ("another joint model", "universal", "spin_free")),
         ({"chunk": 123}, ("blocks of 4000 poses, not 123",)),
@@ -178,7 +181,7 @@ def test_what_a_killed_worker_left_is_taken_away(tmp_path):
 def test_a_changed_sweep_is_not_resumed(tmp_path, change, words):
     path = tmp_path / "map.zarr"
     fx.workspace.SweepStore.create(path, I, POSES, chunk=4000)
-    given = {"hexapod": I, "poses": POSES, "quantities": ("omega_1", "cond_H"), **change}
+    given = {"hexapod": I, "region": POSES, "quantities": ("omega_1", "cond_H"), **change}
     with pytest.raises(fx.errors.OutputError) as caught:
         fx.workspace.SweepStore.resume(path, **given)
     for word in words:
@@ -250,7 +253,7 @@ def test_another_instruction_set_is_refused(tmp_path):
     code = f"""
 import flexapod as fx
 design = fx.load("mukherjee-i")
-poses = fx.random_poses(fx.Box.about(fx.home_pose(design), 0.08, 0.15), 10_000, 5)
+poses = fx.random_poses(fx.Box.about(fx.home_pose(design), 0.08, 0.15), 10_000, seed=5)
 fx.workspace.SweepStore.create({str(path)!r}, design, poses)
 """
     from flexapod import _core

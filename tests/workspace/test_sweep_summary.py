@@ -10,6 +10,7 @@ import flexapod as fx
 from flexapod.conventions import AXES
 from flexapod.workspace import summary as module
 from flexapod.workspace import worst as worst_module
+from flexapod.workspace.box_minimum import smooth_minimum
 
 POSES = fx.random_poses(BOX, 20_000, seed=1)
 FOUND = fx.sweep(I, POSES)
@@ -37,7 +38,7 @@ def test_summary_is_what_numpy_and_scipy_find():
 def test_standard_error_is_that_of_repeated_draws():
     fractions = []
     for seed in range(30):
-        found = fx.summarise(fx.sweep(I, fx.random_poses(BOX, 500, seed), ("omega_1",)), at_least=200.0)
+        found = fx.summarise(fx.sweep(I, fx.random_poses(BOX, 500, seed=seed), quantities=("omega_1",)), at_least=200.0)
         fractions.append(found.above.fraction)
     assert 0.6 < np.std(fractions) / found.above.standard_error < 1.5  # 30 draws: their spread is known to 13 %
 
@@ -83,7 +84,7 @@ def test_bad_poses_are_counted_and_left_out():
 
 
 def test_a_grid_names_its_worst_pose():
-    found = fx.sweep(I, fx.pose_grid(x=[0.0, 0.1, 0.2], y=0.2, z=[0.7, 0.8]), ("omega_1",))
+    found = fx.sweep(I, fx.pose_grid(x=[0.0, 0.1, 0.2], y=0.2, z=[0.7, 0.8]), quantities=("omega_1",))
     at = fx.summarise(found).worst
     place = np.unravel_index(found.omega_1.values.argmin(), (3, 2))
     assert at.pose.tolist() == [[0.0, 0.1, 0.2][place[0]], 0.2, [0.7, 0.8][place[1]], 0, 0, 0]
@@ -92,16 +93,16 @@ def test_a_grid_names_its_worst_pose():
 
 def test_a_summary_needs_the_index():
     with pytest.raises(fx.PoseError, match="needs the quantity omega_1"):
-        fx.summarise(fx.sweep(I, POSES.rows(0, 10), ("cond_H",)))
+        fx.summarise(fx.sweep(I, POSES.rows(0, 10), quantities=("cond_H",)))
 
 
 @pytest.mark.parametrize("joint", ["universal", "spin_free"])
 def test_derivatives_by_the_coordinates_are_exact(joint):
-    search = worst_module._Search(I, joint == "universal", BOX, np.ones(6, bool))
+    square = worst_module.SquaredFrequency(I, joint, mode=1)
     six = POSES.rows(4, 5)[0]
-    value, slope = search._square(six)
+    value, slope = square(six)
     for k, step in enumerate(np.full(6, 1e-5)):
-        ends = [search._square(six + sign * step * np.eye(6)[k])[0] for sign in (1, -1)]
+        ends = [square(six + sign * step * np.eye(6)[k])[0] for sign in (1, -1)]
         # central differences: error of the order of step^2 and eps / step, both below 1e-7 of the value
         assert slope[k] == pytest.approx((ends[0] - ends[1]) / (2 * step), abs=1e-6 * value)
 
@@ -115,8 +116,8 @@ def test_worst_pose_is_a_local_minimum_below_the_sweep(name, measured):
     design = fx.load(name)
     reach = np.ptp(design.base_joints, axis=0).max()
     box = fx.Box.about(fx.home_pose(design), 0.05 * reach, 0.1)
-    worst = fx.worst_pose(design, box, points=4096)
-    dense = fx.sweep(design, fx.workspace.low_discrepancy(box, 2**17, seed=9), ("omega_1",))
+    worst = fx.worst_pose(design, box, samples=4096)
+    dense = fx.sweep(design, fx.workspace.low_discrepancy(box, 2**17, seed=9), quantities=("omega_1",))
     measured("sweeps/worst", worst.omega_1 / float(dense.omega_1.min()), 1)
     assert worst.omega_1 < worst.sampled
     assert worst.omega_1 == pytest.approx(_index(design, worst.pose), rel=1e-12)
@@ -135,7 +136,7 @@ def test_worst_pose_is_a_local_minimum_below_the_sweep(name, measured):
 
 def test_worst_pose_is_the_one_that_a_global_search_finds(measured):
     box = fx.Box(x=(0.0, 0.2), y=(0.1, 0.3), z=0.8, yaw=(-0.3, 0.3))
-    worst = fx.worst_pose(I, box, points=2048)
+    worst = fx.worst_pose(I, box, samples=2048)
 
     def index(u):
         return _index(I, [u[0], u[1], 0.8, 0, 0, u[2]])
@@ -146,7 +147,7 @@ def test_worst_pose_is_the_one_that_a_global_search_finds(measured):
 
 
 def test_a_singular_pose_in_the_box_is_found():
-    worst = fx.worst_pose(I, fx.Box.about(fx.home_pose(I), 0.12, np.radians(25)), points=4096)
+    worst = fx.worst_pose(I, fx.Box.about(fx.home_pose(I), 0.12, np.radians(25)), samples=4096)
     assert worst.singular
     assert worst.sampled > 0.01
     # 1e-9 of the largest frequency is what the descent calls zero
@@ -157,10 +158,10 @@ def test_a_singular_pose_in_the_box_is_found():
 def test_an_interior_minimum_is_found_to_rounding():
     """In this box of cubic-isolator the index is least at the bounds of five coordinates and inside that of yaw."""
     design = fx.load("cubic-isolator")
-    worst = fx.worst_pose(design, fx.Box.about(fx.home_pose(design), 0.02, 0.15), points=2**13)
+    worst = fx.worst_pose(design, fx.Box.about(fx.home_pose(design), 0.02, 0.15), samples=2**13)
     assert worst.at_bounds == ("x", "y", "z", "roll", "pitch")
     yaw = worst.pose[5] + np.linspace(-1e-3, 1e-3, 41)
-    line = fx.sweep(design, fx.pose_grid(*worst.pose[:5], yaw=yaw), ("omega_1",)).omega_1.values
+    line = fx.sweep(design, fx.pose_grid(*worst.pose[:5], yaw=yaw), quantities=("omega_1",)).omega_1.values
     curve = np.polynomial.Polynomial.fit(yaw, line, 2).convert()
     assert curve.coef[2] > 0
     # a parabola through an interval of 1e-3 has its least point to about the square of that
@@ -172,24 +173,40 @@ def test_descent_passes_repeated_lowest_modes():
     omega = fx.natural_modes(BASE := fx.load("motion-base"), fx.home_pose(BASE)).omega
     assert omega[1] - omega[0] < 0.2 * omega[1]
     box = fx.Box.about(fx.home_pose(BASE), 0.1, 0.1)
-    search = worst_module._Search(BASE, True, box, np.ones(6, bool))
+    square = worst_module.SquaredFrequency(BASE, "universal", mode=1)
     home = (box.low + box.high) / 2
-    index, pose = search.descend(home)
+    pose = smooth_minimum(square, home, box.low, box.high)
+    index = square.root(pose)
     assert index < 0.999 * _index(BASE, home)
     corner = np.isclose(pose, box.low) | np.isclose(pose, box.high)
-    gradient = search.gradient(pose)
+    gradient = square.gradient(pose)
     assert np.abs(gradient[~corner] * (box.high - box.low)[~corner]).max(initial=0) < 1e-4 * index
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        ({"box": fx.Box(z=0.8)}, "is one pose"),
         ({"starts": 0}, "starts is 0"),
-        ({"points": 0}, "points is 0"),
+        ({"samples": 0}, "samples is 0"),
         ({"joint": "loose"}, "joint is 'loose'"),
     ],
 )
 def test_bad_arguments_are_told(arguments, words):
-    with pytest.raises(fx.ArgumentError if {"joint", "threads"} & set(arguments) else fx.PoseError, match=words):
-        fx.worst_pose(I, **{"box": BOX, **arguments})
+    with pytest.raises(fx.ArgumentError, match=words):
+        fx.worst_pose(I, BOX, **arguments)
+
+
+def test_the_worst_of_poses_is_one_of_them():
+    """A region that lists its poses, or that is one: none lies between them."""
+    home = fx.home_pose(BASE := fx.load("motion-base"))
+    index = fx.stability_index(BASE, home)
+    six = np.concatenate([home.position, home.rpy])
+    for region in (None, home, six, fx.Box(*six)):
+        assert fx.worst_pose(BASE, region).omega_1 == pytest.approx(index, rel=1e-12)
+    poses = fx.random_poses(fx.Box.about(home, 0.1, 0.1), 100)
+    worst = fx.worst_pose(BASE, poses)
+    found = fx.sweep(BASE, poses)
+    assert np.array_equal(worst.pose, poses.rows(0, 100)[found.omega_1.values.argmin()])
+    assert worst.omega_1 == pytest.approx(float(found.omega_1.min()), rel=1e-12)
+    fixed, moving = fx.Box.about(home, 0.1, 0.1), fx.Workspace.about_home(0.1, 0.1)
+    assert fx.worst_pose(BASE, moving, samples=64).omega_1 == fx.worst_pose(BASE, fixed, samples=64).omega_1

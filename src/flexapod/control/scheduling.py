@@ -13,12 +13,13 @@ from scipy.optimize import brentq
 from flexapod.control.closed_loop_poles import least_damping
 from flexapod.control.controllers import GAIN_UNIT, best_gain, default_gains, make
 from flexapod.control.plant import Law, Plant, poles
-from flexapod.conventions import AXES, Array
+from flexapod.conventions import AXES, Array, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError, SingularPoseError
 from flexapod.mechanics.linearisation import RestOptions, linearise
 from flexapod.pose import Pose, rpy_matrix
-from flexapod.workspace.pose_sets import UNITS, GridPoses, PoseSet, pose_set
+from flexapod.workspace.pose_sets import GridPoses, PoseSet
+from flexapod.workspace.region import RegionLike, poses_of
 
 STATUS = ("ok", "no_rest", "no_gain")
 Rule = str | Callable[[float], Law]
@@ -26,17 +27,20 @@ Rule = str | Callable[[float], Law]
 
 def gain_schedule(
     hexapod: Hexapod,
-    poses: PoseSet | Pose | ArrayLike,
+    region: RegionLike = None,
     law: Rule = "force",
     *,
+    samples: int = 64,
+    seed: int = 0,
     gains: ArrayLike | None = None,
     damping: float | None = None,
     leak: float = 0.0,
     progress: Callable[[float], Any] | None = None,
     **rest: Unpack[RestOptions],
 ) -> xr.Dataset:
-    """The gain of a feedback at every pose of a set, such as `pose_grid(x=..., yaw=...)`.
+    """The gain of a feedback at every pose of a region, such as `pose_grid(x=..., yaw=...)`.
 
+    region: poses, or a Box, Workspace or Trajectory, of which `samples` poses are taken (seed: of a box).
     law: "force" or "velocity" (decentralised damping, gain in rad/s or N s/m), or a function from a gain to a law, as
     `lambda g: PID(kp=1e5, kd=g)`; gains: ascending row to search, needed for a function. damping: the least gain that
     gives every mode this damping ratio; None: the gain with the most damping. leak: rad/s, of "force".
@@ -50,7 +54,7 @@ def gain_schedule(
     empty set of poses.
     Source: own; A. Preumont (2011) for the laws.
     """
-    points = pose_set(poses)
+    points = poses_of(hexapod, region, samples, seed)
     if damping is not None and not 0 < damping < 1:
         raise ArgumentError(f"damping is {damping}; a damping ratio between 0 and 1 is needed")
     if callable(law) and gains is None:
@@ -151,11 +155,11 @@ def _dataset(points: PoseSet, rows: Array, found: _Found) -> xr.Dataset:
     variables["status"] = (points.dims, found.status.reshape(points.shape))
     coordinates: dict[str, Any] = {}
     if isinstance(points, GridPoses):
-        for name, unit in zip(AXES, UNITS, strict=True):
+        for name in AXES:
             axis = points.axes[name]
             value = (name, axis) if name in points.dims else ((), axis[0])
-            coordinates[name] = (*value, {"units": unit})
+            coordinates[name] = (*value, {"units": unit_of(name)})
     elif rows.shape[1] == 6:
-        for k, (name, unit) in enumerate(zip(AXES, UNITS, strict=True)):
-            coordinates[name] = (points.dims, rows[:, k].reshape(points.shape), {"units": unit})
+        for k, name in enumerate(AXES):
+            coordinates[name] = (points.dims, rows[:, k].reshape(points.shape), {"units": unit_of(name)})
     return xr.Dataset(variables, coordinates)

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
@@ -15,11 +14,9 @@ from flexapod.errors import ArgumentError
 from flexapod.optimisation import constraint_quantities
 from flexapod.optimisation.constraint_quantities import Kind, Side, Values
 from flexapod.optimisation.derivatives import Slopes
-from flexapod.pose import Pose
-from flexapod.workspace.pose_sets import Box
-from flexapod.workspace.region import Places, places
+from flexapod.workspace.region import Region, RegionLike, as_region
 
-Where = Places | Box | Pose | ArrayLike | None
+Where = RegionLike
 Plate = Literal["base", "platform"]
 
 
@@ -31,7 +28,7 @@ class Requirement:
     kind: Kind
     side: Side
     bound: Array
-    over: Places | None
+    over: Region | None
 
     def margins(self, value: Array, column: Array | None = None) -> Array:
         """Relative margins, >= 0 where the bound is kept."""
@@ -67,16 +64,16 @@ class Requirement:
 class Constraint:
     """Something bounded; a subclass says what in `requirements`."""
 
-    def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+    def requirements(self, hexapod: Hexapod, over: Region, measure: Measure) -> list[Requirement]:
         """over: the objective's places, for constraints that name none. measure: what the design has itself."""
         raise NotImplementedError
 
 
-Measure = Callable[[Kind, Side, Places | None], Array]
+Measure = Callable[[Kind, Side, Region | None], Array]
 
 
 def _one(
-    name: str, kind: Kind, side: Side, bound: float | None, over: Places | None, measure: Measure
+    name: str, kind: Kind, side: Side, bound: float | None, over: Region | None, measure: Measure
 ) -> list[Requirement]:
     if bound is None:
         values = measure(kind, side, over)
@@ -98,7 +95,7 @@ class Footprint(Constraint):
     most: float | None = None
     plate: Plate = "base"
 
-    def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+    def requirements(self, hexapod: Hexapod, over: Region, measure: Measure) -> list[Requirement]:
         """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
 
         Raises: ArgumentError for a plate that is none and a bound that none can keep.
@@ -122,7 +119,7 @@ class TotalMass(Constraint):
 
     most: float | None = None
 
-    def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+    def requirements(self, hexapod: Hexapod, over: Region, measure: Measure) -> list[Requirement]:
         """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
 
         Raises: ArgumentError for a bound that none can keep.
@@ -134,8 +131,8 @@ class TotalMass(Constraint):
 class _Everywhere(Constraint):
     over: Where = field(default=None, kw_only=True)
 
-    def _over(self, default: Places) -> Places:
-        return default if self.over is None else places(self.over)
+    def _over(self, default: Region) -> Region:
+        return default if self.over is None else as_region(self.over)
 
 
 @dataclass(frozen=True)
@@ -149,7 +146,7 @@ class Stroke(_Everywhere):
 
     most: float | None = None
 
-    def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+    def requirements(self, hexapod: Hexapod, over: Region, measure: Measure) -> list[Requirement]:
         """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
 
         Raises: ArgumentError for a bound that none can keep.
@@ -169,7 +166,7 @@ class LegLength(_Everywhere):
     least: float | None = None
     most: float | None = None
 
-    def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+    def requirements(self, hexapod: Hexapod, over: Region, measure: Measure) -> list[Requirement]:
         """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
 
         Raises: ArgumentError for a bound that none can keep.
@@ -202,7 +199,7 @@ class JointAngle(_Everywhere):
     joint: Literal["universal", "spherical"]
     most: float | None = None
 
-    def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+    def requirements(self, hexapod: Hexapod, over: Region, measure: Measure) -> list[Requirement]:
         """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
 
         Raises: ArgumentError for a bound that none can keep.
@@ -228,7 +225,7 @@ class LegClearance(_Everywhere):
 
     least: float | None = None
 
-    def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+    def requirements(self, hexapod: Hexapod, over: Region, measure: Measure) -> list[Requirement]:
         """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
 
         Raises: ArgumentError for a bound that none can keep.
@@ -249,7 +246,7 @@ class ConditionNumber(_Everywhere):
 
     most: float | None = None
 
-    def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+    def requirements(self, hexapod: Hexapod, over: Region, measure: Measure) -> list[Requirement]:
         """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
 
         Raises: ArgumentError for a bound that none can keep.
@@ -274,7 +271,7 @@ class Deflection(_Everywhere):
     most: float | None = None
     force: float | None = None
 
-    def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+    def requirements(self, hexapod: Hexapod, over: Region, measure: Measure) -> list[Requirement]:
         """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
 
         Raises: ArgumentError for a bound that none can keep.
@@ -297,7 +294,7 @@ class DesignLimits(_Everywhere):
     Source: own.
     """
 
-    def requirements(self, hexapod: Hexapod, over: Places, measure: Measure) -> list[Requirement]:
+    def requirements(self, hexapod: Hexapod, over: Region, measure: Measure) -> list[Requirement]:
         """What a design has to keep. over: the objective's poses. measure: gives what the design has itself.
 
         Raises: ArgumentError for a design without limits.

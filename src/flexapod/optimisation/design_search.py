@@ -243,7 +243,7 @@ def verify(problem: Problem, hexapod: Hexapod, points: int) -> Verification:
     index, pose = found.index, None
     box = problem.box(hexapod)
     if box is not None and index > 0:
-        worst = worst_pose(hexapod, box, problem.joint, points=points, seed=_SEED + 2, threads=problem.threads)
+        worst = worst_pose(hexapod, box, joint=problem.joint, samples=points, seed=_SEED + 2, threads=problem.threads)
         index, pose = min(index, worst.omega_1), worst.pose
     elif not isinstance(problem.objective, MeanIndex):
         rows, swept = problem.sweep(hexapod, 0, points, 0)

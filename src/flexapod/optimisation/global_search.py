@@ -21,6 +21,7 @@ from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, OutputError
 from flexapod.optimisation.problem import Assessment, Problem
 from flexapod.optional import needed
+from flexapod.workspace.sobol import Sobol
 
 Progress = Callable[[int, int, float], None]  # trials finished, trials wanted, best index so far (NaN for none)
 Stop = Callable[[], bool]
@@ -231,7 +232,7 @@ def _sampler(problem: Problem, space: Mapping[str, Any], seed: int, kind: str) -
     """Number 0 is the start, then twice as many Sobol points as variables (at least 10), then the sampler proper,
     made anew for each trial from the seed and the trial's number: two processes never try the same."""
     optuna = _optuna()
-    scrambled = _Sobol(len(space), seed)
+    sequence = Sobol(len(space), seed)
     even = max(10, 2 * len(space))
     start = np.clip(problem.map.own(), problem.map.low, problem.map.high)
 
@@ -253,7 +254,8 @@ def _sampler(problem: Problem, space: Mapping[str, Any], seed: int, kind: str) -
                 found = self._proper(trial.number).sample_relative(study, trial, search_space)
             if found:
                 return found
-            x = start if trial.number == 0 else problem.map.from_unit(scrambled(trial.number))[0]
+            number = trial.number
+            x = start if number == 0 else problem.map.from_unit(sequence.points(number, number + 1)[0])[0]
             return dict(zip(space, x.tolist(), strict=True))
 
         def sample_independent(self, study: Any, trial: Any, name: str, distribution: Any) -> Any:
@@ -266,17 +268,3 @@ def _sampler(problem: Problem, space: Mapping[str, Any], seed: int, kind: str) -
                 self._proper(trial.number).after_trial(study, trial, state, values)
 
     return Numbered()
-
-
-class _Sobol:
-    """Point i >= 1 of a scrambled sequence of any dimension."""
-
-    def __init__(self, dimensions: int, seed: int) -> None:
-        self._dimensions, self._seed = dimensions, seed
-
-    def __call__(self, number: int) -> Array:
-        from scipy.stats import qmc
-
-        sequence = qmc.Sobol(self._dimensions, scramble=True, rng=self._seed)
-        sequence.fast_forward(number)
-        return np.asarray(sequence.random(1)[0])

@@ -88,7 +88,7 @@ def least_index(problem: Problem, hexapod: Hexapod, index: float, points: int, s
     box = problem.box(hexapod)
     if box is None:
         return index
-    worst = worst_pose(hexapod, box, problem.joint, points=points, starts=6, seed=seed, threads=problem.threads)
+    worst = worst_pose(hexapod, box, joint=problem.joint, samples=points, starts=6, seed=seed, threads=problem.threads)
     return min(index, worst.omega_1)
 
 
@@ -107,7 +107,9 @@ def _hold(problem: Problem, x: Array, held: list[_Held], points: int, seed: int)
             box = problem.box(hexapod)
             if box is not None:
                 try:
-                    worst = worst_pose(hexapod, box, problem.joint, points=points, starts=6, seed=seed, threads=1)
+                    worst = worst_pose(
+                        hexapod, box, joint=problem.joint, samples=points, starts=6, seed=seed, threads=1
+                    )
                     chosen = np.concatenate([[pose for _, pose in worst.minima], chosen])
                 except PoseError:
                     pass  # the sweep's own worst poses are held

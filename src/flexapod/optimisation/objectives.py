@@ -13,8 +13,7 @@ from flexapod.errors import ArgumentError
 from flexapod.optimisation.constraint_quantities import Conditioning
 from flexapod.optimisation.derivatives import Slopes, index_slopes
 from flexapod.pose import Pose
-from flexapod.workspace.pose_sets import Box
-from flexapod.workspace.region import Places, PoseList, places
+from flexapod.workspace.region import PoseList, Region, RegionLike, as_region
 
 Numbers = NDArray[np.int64]
 _HELD = 16  # lowest poses of a sweep that the finish holds up
@@ -28,7 +27,7 @@ class Objective(Protocol):
     label: str
 
     @property
-    def over(self) -> Places: ...
+    def over(self) -> Region: ...
 
     def index(self, found: Array) -> float:
         """From the quantity at every pose swept; 0 where a pose has none."""
@@ -58,8 +57,8 @@ class LeastIndex(_Index):
     Source: conclusion 1.
     """
 
-    def __init__(self, over: Places | Box | Pose | ArrayLike | None = None) -> None:
-        self.over = places(over)
+    def __init__(self, over: RegionLike = None) -> None:
+        self.over = as_region(over)
 
     def index(self, found: Array) -> float:
         """The objective from the quantity at every pose swept, (n,); 0 where a pose has none."""
@@ -91,7 +90,7 @@ class MeanIndex(_Index):
     """
 
     def __init__(self, poses: Pose | ArrayLike, weights: ArrayLike | None = None) -> None:
-        over = places(poses)
+        over = as_region(poses)
         if not isinstance(over, PoseList):
             raise ArgumentError("a mean is taken over poses one by one, not over a box. Give a batch of poses.")
         self.over = over
@@ -138,8 +137,8 @@ class Dexterity:
     unit = ""
     label = "1/cond(H)"
 
-    def __init__(self, over: Places | Box | Pose | ArrayLike | None = None) -> None:
-        self.over = places(over)
+    def __init__(self, over: RegionLike = None) -> None:
+        self.over = as_region(over)
 
     def index(self, found: Array) -> float:
         """The objective from the quantity at every pose swept, (n,); 0 where a pose has none."""

@@ -19,13 +19,14 @@ from flexapod.optimisation.constraint_quantities import Kind, Side
 from flexapod.optimisation.constraints import Constraint, Requirement
 from flexapod.optimisation.objectives import Objective
 from flexapod.optimisation.variables import DesignMap, JointCircle, Variable
-from flexapod.workspace.box_minimum import descend
-from flexapod.workspace.pose_sets import Box
-from flexapod.workspace.quantities import evaluate
-from flexapod.workspace.region import Places
+from flexapod.workspace.box import Box
+from flexapod.workspace.box_minimum import quick_minimum
+from flexapod.workspace.quantities import evaluate, index_and_gradient
+from flexapod.workspace.region import Region
 
 FEASIBLE = 1e-6  # relative amount by which a bound may be passed, for rounding of the search that ends on it
 _HOPELESS = -1e3  # margin where a quantity has no value
+_STARTS = 16  # of a descent
 _MEASURED = 2**14  # poses swept for bounds that are what the design has itself
 
 
@@ -79,7 +80,7 @@ class Problem:
         self._check_home([r.over for r in self.requirements if r.over is not None])
         self._check_bounds()
 
-    def _check_home(self, all_places: Sequence[Places]) -> None:
+    def _check_home(self, all_places: Sequence[Region]) -> None:
         if self.hexapod.home is None and any(place.from_home for place in all_places):
             raise ArgumentError(
                 f"the objective or a constraint is measured at home, but {self.hexapod.name!r} names no home pose. "
@@ -97,7 +98,7 @@ class Problem:
                         f"{high.bound.min():.6g} {high.kind.unit}: no design can keep both."
                     )
 
-    def _measure(self, kind: Kind, side: Side, over: Places | None) -> Array:
+    def _measure(self, kind: Kind, side: Side, over: Region | None) -> Array:
         own = numbers(self.hexapod)
         found: dict[str, Any] = {}
         if over is not None:
@@ -106,9 +107,9 @@ class Problem:
             found = evaluate(self.hexapod, rows, kind.quantities, self.joint, self.threads)
         return kind.measure(found, own, side)
 
-    def groups(self) -> list[tuple[Places, list[Requirement]]]:
-        """Places with the requirements that hold there; the objective's come first."""
-        found: dict[str, tuple[Places, list[Requirement]]] = {}
+    def groups(self) -> list[tuple[Region, list[Requirement]]]:
+        """Region with the requirements that hold there; the objective's come first."""
+        found: dict[str, tuple[Region, list[Requirement]]] = {}
         found[json.dumps(self.objective.over.describe())] = (self.objective.over, [])
         for requirement in self.requirements:
             if requirement.over is not None:
@@ -139,7 +140,9 @@ class Problem:
                 index = self.objective.index(found[self.objective.quantity])
                 box = self.box(hexapod)
                 if box is not None and index > 0:
-                    index = min(index, descend(hexapod, self.universal, box, rows, found["omega_1"]))
+                    starts = rows[np.argsort(found["omega_1"])[:_STARTS]]
+                    least = quick_minimum(index_and_gradient(hexapod, self.joint), starts, box.low, box.high)
+                    index = min(index, least)
             values |= {id(r): r.kind.measure(found, own, r.side) for r in requirements}
         margins, extremes = [], []
         for r in self.requirements:

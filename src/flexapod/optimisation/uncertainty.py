@@ -21,14 +21,16 @@ from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import is_universal
 from flexapod.optional import needed
 from flexapod.pose import Pose
-from flexapod.workspace.pose_sets import Box
-from flexapod.workspace.region import Places, places
+from flexapod.workspace.box_minimum import pattern_minimum
+from flexapod.workspace.region import Region, RegionLike, as_region
+from flexapod.workspace.sobol import Sobol
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Distribution = Literal["uniform", "normal", "triangular", "lognormal"]
 _BLOCK = 2**20  # designs times poses computed at once
+_STARTS = 8  # worst samples from which the worst case is searched
 _QUANTILES = (0.001, 0.01, 0.05, 0.5, 0.95, 0.99)
 
 
@@ -238,7 +240,7 @@ def _load(designs: Array, mass: Array, at: Array) -> None:
 def robustness(
     hexapod: Hexapod,
     uncertain: Sequence[Uncertain | Payload],
-    over: Places | Box | Pose | ArrayLike | None = None,
+    over: RegionLike = None,
     *,
     samples: int = 2**14,
     poses: int = 256,
@@ -261,16 +263,13 @@ def robustness(
     ensemble = Ensemble(hexapod, uncertain)
     if samples < 2:
         raise ArgumentError(f"samples is {samples}; at least 2 designs must be drawn.")
-    rows = _rows(hexapod, places(over), poses)
+    rows = _rows(hexapod, as_region(over), poses)
     index = _Index(ensemble, rows, settings)
     nominal = index.nominal(hexapod.name)
-    from scipy.stats import qmc
-
-    u = qmc.Sobol(len(ensemble.names), scramble=True, rng=settings.seed).random_base2((samples - 1).bit_length())[
-        :samples
-    ]
+    u = Sobol(len(ensemble.names), settings.seed).points(0, samples)
     values = index(u, "samples")
-    worst, worst_u = _worst(index, u, values)
+    # The index is monotonic in stiffness and, mostly, in mass: the worst case is then a corner of the ranges.
+    worst, worst_u = pattern_minimum(index, u[np.argsort(values)[:_STARTS]])
     return Robustness(
         samples=_samples(ensemble, u, values, hexapod, {"joint": settings.joint, "poses": len(rows)}),
         nominal=nominal,
@@ -283,7 +282,7 @@ def robustness(
     )
 
 
-def _rows(hexapod: Hexapod, where: Places, poses: int) -> Array:
+def _rows(hexapod: Hexapod, where: Region, poses: int) -> Array:
     if where.from_home and hexapod.home is None:
         raise ArgumentError(f"{hexapod.name!r} names no home pose. Give a pose or a box.")
     return where.rows(numbers(hexapod)[HOME], poses)
@@ -325,38 +324,6 @@ class _Index:
             if self.progress is not None and stage:
                 self.progress(stage, min(1.0, (first + size) / len(u)))
         return found
-
-
-def _worst(index: _Index, u: Array, values: Array) -> tuple[float, Array]:
-    """Pattern search from the worst samples: all steps of all starts in one call of the kernel.
-
-    The index is monotonic in stiffness and, mostly, in mass: the worst case is then a corner, which steps that are cut
-    off at the faces of the cube reach exactly.
-    """
-    starts = u[np.argsort(values)[:8]].copy()
-    best = index(starts)
-    p = u.shape[1]
-    reach = np.full(len(starts), 0.5)
-    directions = np.concatenate([np.eye(p), -np.eye(p)])
-    for _ in range(60):
-        trial = np.clip(starts[:, None] + reach[:, None, None] * directions, 0.0, 1.0)
-        found = index(trial.reshape(-1, p)).reshape(len(starts), 2 * p)
-        # Every coordinate's better side at once, where that is better still.
-        side = np.where(found[:, :p] < found[:, p:], 1.0, -1.0) * (
-            np.minimum(found[:, :p], found[:, p:]) < best[:, None]
-        )
-        together = np.clip(starts + reach[:, None] * side, 0.0, 1.0)
-        all_found = np.concatenate([found, index(together)[:, None]], axis=1)
-        all_trial = np.concatenate([trial, together[:, None]], axis=1)
-        k = np.argmin(all_found, axis=1)
-        least = all_found[np.arange(len(starts)), k]
-        better = least < best
-        starts[better], best[better] = all_trial[better, k[better]], least[better]
-        reach = np.where(better, reach, reach / 2)
-        if reach.max() < 1e-4:
-            break
-    first = int(np.argmin(best))
-    return float(best[first]), starts[first]
 
 
 def _sobol(ensemble: Ensemble, index: _Index, base: int, seed: int) -> xr.Dataset:

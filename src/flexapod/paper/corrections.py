@@ -209,8 +209,8 @@ def _spin() -> Row:
 
 def _over_the_workspace() -> float:
     """B: the largest relative change of a natural frequency of manipulator I over well-conditioned poses."""
-    hexapod, poses = load("mukherjee-i"), random_poses(CASES[2].box(), _POSES)
-    exact, free = (sweep(hexapod, poses, ("omega", "cond_H"), joint=joint) for joint in ("universal", "spin_free"))
+    hexapod, poses, names = load("mukherjee-i"), random_poses(CASES[2].box(), _POSES), ("omega", "cond_H")
+    exact, free = (sweep(hexapod, poses, quantities=names, joint=joint) for joint in ("universal", "spin_free"))
     good = exact.cond_H.values < _WELL_CONDITIONED
     return float(np.nanmax(np.abs(free.omega.values[good] / exact.omega.values[good] - 1)))
 

@@ -15,7 +15,8 @@ from flexapod.design.hexapod import Hexapod, load
 from flexapod.mechanics.kinematics import home_pose
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.plots import sweep as plots_sweep
-from flexapod.workspace.pose_sets import Box, random_poses
+from flexapod.workspace.box import Box
+from flexapod.workspace.pose_sets import random_poses
 from flexapod.workspace.summary import SweepSummary, summarise
 from flexapod.workspace.sweeping import sweep
 
@@ -59,7 +60,7 @@ def draw(name: str, settings: Settings) -> Part:
     """One of Figures 2-5, with the numbers behind what the paper says of it."""
     figure = int(name.removeprefix("figure-"))
     case = CASES[figure]
-    poses = random_poses(case.box(), settings.points or POINTS, settings.seed)
+    poses = random_poses(case.box(), settings.points or POINTS, seed=settings.seed)
     own, other = (
         sweep(case.hexapod(mass), poses, joint=settings.joint, threads=settings.threads)
         for mass in (case.mass, case.other_mass)

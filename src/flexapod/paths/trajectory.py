@@ -139,6 +139,10 @@ class Trajectory:
         pieces = zip(self.times[:-1], self.times[1:], counts, strict=True)
         return np.concatenate([*(np.linspace(a, b, n, endpoint=False) for a, b, n in pieces), self.times[-1:]])
 
+    def poses(self, samples: int) -> Pose:
+        """At least `samples` poses of the path, with every waypoint among them: the path as a region."""
+        return self(self.grid(samples)).pose
+
     def length(self, characteristic_length: float = 1.0) -> float:
         """Integral of the speed, m; one radian of rotation counts as `characteristic_length`, m."""
         nodes, weights = np.polynomial.legendre.leggauss(12)

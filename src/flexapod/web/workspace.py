@@ -13,7 +13,8 @@ from flexapod.conventions import AXES, Array
 from flexapod.web import requests
 from flexapod.web.answers import Message, Progress
 from flexapod.web.encode import float32
-from flexapod.workspace.pose_sets import Box, random_poses
+from flexapod.workspace.box import Box
+from flexapod.workspace.pose_sets import random_poses
 from flexapod.workspace.quantities import evaluate
 
 CHUNK = 50_000  #: poses between two messages: about 0.01 s
@@ -26,7 +27,7 @@ def cloud(spec: dict[str, Any]) -> Iterator[Message]:
     A pose is rounded to float32 before the computation, so that its numbers belong to the pose that the page gets.
     """
     question, count = requests.question(spec), int(requests.number(spec, "points", 100_000, 1, MOST_POINTS))
-    poses = random_poses(_box(spec), count, int(requests.number(spec, "seed", 0, 0, 2**31)))
+    poses = random_poses(_box(spec), count, seed=int(requests.number(spec, "seed", 0, 0, 2**31)))
     began = time.perf_counter()
     for start in range(0, count, CHUNK):
         stop = min(start + CHUNK, count)
@@ -61,7 +62,7 @@ def worst(spec: dict[str, Any]) -> Iterator[Message]:
     from flexapod.workspace.worst import worst_pose
 
     question = requests.question(spec)
-    found = worst_pose(question.hexapod, _box(spec), question.joint)
+    found = worst_pose(question.hexapod, _box(spec), joint=question.joint)
     pose = [*found.pose[:3].tolist(), *np.round(np.degrees(found.pose[3:]), 12).tolist()]
     what = "singular poses lie in the box; here the index is" if found.singular else "least index"
     edge = f"; on the box's edge in {', '.join(found.at_bounds)}" if found.at_bounds else ""

@@ -1,41 +1,101 @@
-"""The least index over a box, quickly: from the lowest poses of a sweep downhill, all of them at once."""
+"""The least value of a function over a box from given starts: exactly, or quickly from many starts at once.
+
+Coordinates whose range is one number are held.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
-from flexapod import _core
 from flexapod.conventions import Array
-from flexapod.design.hexapod import Hexapod
-from flexapod.workspace.pose_sets import Box
 
-_STARTS = 16
-_STEPS = 14
-_LIMITS = np.concatenate([np.zeros(36), np.tile([-np.inf, np.inf], 6), [np.inf, np.inf, -np.inf]])
+_RESTARTS = 3
 
 
-def descend(hexapod: Hexapod, universal: bool, box: Box, rows: Array, omega_1: Array) -> float:
-    """The lowest frequency found, rad/s, by projected steps along exact gradients from the lowest poses of a sweep.
+def smooth_minimum(function: Callable[[Array], tuple[float, Array]], start: Array, low: Array, high: Array) -> Array:
+    """Where a descent from `start` ends: L-BFGS-B on a smooth function that gives its value and gradient."""
+    from scipy.optimize import minimize
 
-    Good to a few parts in a thousand where `worst_pose` is exact: for comparing designs, not for vouching for one.
+    free, width = high > low, high - low
+    if not free.any():
+        return low
+    unit = max(abs(function(start)[0]), np.finfo(float).tiny)
+
+    def place(u: Array) -> Array:
+        """The point at shares u of the free ranges, with both ends exact."""
+        spread = np.zeros(len(low))
+        spread[free] = u
+        point = low.copy()
+        point[free] = np.clip(low + spread * width, low, high)[free]
+        point[spread >= 1.0] = high[spread >= 1.0]
+        return point
+
+    def scaled(u: Array) -> tuple[float, Array]:
+        value, slope = function(place(u))
+        return value / unit, (slope * width)[free] / unit
+
+    u = ((start - low) / np.where(free, width, 1.0))[free]
+    options = {"ftol": 0, "gtol": 1e-10, "maxiter": 500}
+    for _ in range(_RESTARTS):  # anew where a ridge between two modes has spoilt the curvature it has learnt
+        end = minimize(scaled, u, jac=True, method="L-BFGS-B", bounds=[(0.0, 1.0)] * len(u), options=options)
+        still = np.abs(end.x - u).max() < 1e-9
+        u = end.x
+        if still:
+            break
+    return place(u)
+
+
+def quick_minimum(
+    function: Callable[[Array], tuple[Array, Array]], starts: Array, low: Array, high: Array, steps: int = 14
+) -> float:
+    """The lowest value of projected steps along gradients, from all starts (k, n) at once.
+
+    function: points (k, n) to values (k,) and gradients (k, n). Good to a few parts in a thousand where
+    `smooth_minimum` is exact: for comparing many functions, at one call a step.
     """
-    width = box.high - box.low
-    pose = rows[np.argsort(omega_1)[:_STARTS]].copy()
-    value, slope = _kernel(hexapod, universal, pose)
-    reach = np.full(len(pose), 0.05)  # of a step, in widths of the box
-    for _ in range(_STEPS):
+    width = high - low
+    point = starts.copy()
+    value, slope = function(point)
+    reach = np.full(len(point), 0.05)  # of a step, in widths of the box
+    for _ in range(steps):
         downhill = -slope * width
         size = np.linalg.norm(downhill, axis=1)
         step = downhill * width * (reach / np.where(size > 0, size, 1.0))[:, None]
-        trial = np.clip(pose + step, box.low, box.high)
-        new, new_slope = _kernel(hexapod, universal, trial)
+        trial = np.clip(point + step, low, high)
+        new, new_slope = function(trial)
         better = new < value
-        pose[better], value[better], slope[better] = trial[better], new[better], new_slope[better]
+        point[better], value[better], slope[better] = trial[better], new[better], new_slope[better]
         reach = np.where(better, reach * 1.6, reach * 0.35)
     return float(value.min())
 
 
-def _kernel(hexapod: Hexapod, universal: bool, rows: Array) -> tuple[Array, Array]:
-    wanted = _core.SWEEP["omega_1"] | _core.SWEEP["omega_1_gradient"]
-    found = _core.sweep(hexapod.packed, universal, rows, wanted, _LIMITS, 1)
-    return np.nan_to_num(found["omega_1"]), np.nan_to_num(found["omega_1_gradient"])
+def pattern_minimum(function: Callable[[Array], Array], starts: Array, steps: int = 60) -> tuple[float, Array]:
+    """Least value and place of a function of the unit cube without a gradient, from all starts (k, n) at once.
+
+    A pattern search: each coordinate is moved both ways, and then all to their better sides. Steps are cut off at the
+    faces of the cube, so that a minimum at a corner is reached exactly. function: points (m, n) to values (m,).
+    """
+    point = starts.copy()
+    best = function(point)
+    k, n = point.shape
+    reach = np.full(k, 0.5)
+    directions = np.concatenate([np.eye(n), -np.eye(n)])
+    for _ in range(steps):
+        trial = np.clip(point[:, None] + reach[:, None, None] * directions, 0.0, 1.0)
+        found = function(trial.reshape(-1, n)).reshape(k, 2 * n)
+        lower = np.minimum(found[:, :n], found[:, n:]) < best[:, None]
+        side = np.where(found[:, :n] < found[:, n:], 1.0, -1.0) * lower
+        together = np.clip(point + reach[:, None] * side, 0.0, 1.0)
+        all_found = np.concatenate([found, function(together)[:, None]], axis=1)
+        all_trial = np.concatenate([trial, together[:, None]], axis=1)
+        chosen = np.argmin(all_found, axis=1)
+        least = all_found[np.arange(k), chosen]
+        better = least < best
+        point[better], best[better] = all_trial[better, chosen[better]], least[better]
+        reach = np.where(better, reach, reach / 2)
+        if reach.max() < 1e-4:
+            break
+    first = int(np.argmin(best))
+    return float(best[first]), point[first]

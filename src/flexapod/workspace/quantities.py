@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from flexapod import _core
-from flexapod.conventions import AXES, Array, JointModel
+from flexapod.checks import one_of
+from flexapod.conventions import AXES, Array, JointModel, unit_of
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import PoseError
+from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import is_universal
 from flexapod.mechanics.kinematics import neutral_directions
-from flexapod.workspace.pose_sets import UNITS
 
 
 class Quantity(NamedTuple):
@@ -42,6 +42,22 @@ QUANTITIES: dict[str, Quantity] = {
     "within_limits": Quantity("", "whether legs and joints are within the design's limits"),
 }
 DEFAULT = ("omega_1", "cond_H")
+#: What else a quantity is called -> its name here.
+COMMON_NAMES = {
+    "frequency": "omega_1",
+    "index": "omega_1",
+    "stability_index": "omega_1",
+    "lowest_frequency": "omega_1",
+    "frequencies": "omega",
+    "natural_frequencies": "omega",
+    "condition_number": "cond_H",
+    "condition": "cond_H",
+    "leg_lengths": "leg_length",
+    "lengths": "leg_length",
+    "joint_angles": "universal_angle",
+    "stiffness": "lowest_stiffness",
+    "limits": "within_limits",
+}
 #: Code of a pose that has not been computed yet, in a store that is being written.
 PENDING = 255
 _MEANINGS = {
@@ -59,18 +75,15 @@ def statuses() -> dict[int, str]:
     return {**dict(enumerate(_core.SWEEP_STATUS)), PENDING: "pending"}
 
 
-def chosen(quantities: Iterable[str]) -> tuple[str, ...]:
-    """Quantities by name, in the order of the table, each once. Raises PoseError for an unknown name or none."""
+def chosen(quantities: str | Iterable[str]) -> tuple[str, ...]:
+    """Quantities by name, in the order of the table, each once. Raises ArgumentError for an unknown name or none."""
     names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
-    unknown = [name for name in names if name not in QUANTITIES]
-    if unknown:
-        from difflib import get_close_matches
-
-        near = get_close_matches(str(unknown[0]), QUANTITIES, n=1)
-        hint = f" Did you mean {near[0]!r}?" if near else ""
-        raise PoseError(f"there is no quantity {unknown[0]!r}.{hint} There are: {', '.join(QUANTITIES)}.")
+    for name in names:
+        if name in COMMON_NAMES:
+            raise ArgumentError(f"there is no quantity {name!r}. Did you mean {COMMON_NAMES[name]!r}?")
+        one_of(name, "quantity", QUANTITIES)
     if not names:
-        raise PoseError(f"no quantity was asked for; choose from {', '.join(QUANTITIES)}.")
+        raise ArgumentError(f"no quantity was asked for; choose from {', '.join(QUANTITIES)}.")
     return tuple(name for name in QUANTITIES if name in names)
 
 
@@ -93,6 +106,21 @@ def evaluate(
         hexapod.packed, is_universal(joint), rows, mask, packed_limits(hexapod) if limits is None else limits, threads
     )
     return {name: found[name] for name in (*quantities, "status")}
+
+
+def index_and_gradient(hexapod: Hexapod, joint: JointModel) -> Callable[[Array], tuple[Array, Array]]:
+    """A function from poses, rows (n, 6), to omega_1 (n,) and its derivatives by the coordinates (n, 6).
+
+    Both are zero where omega_1 cannot be computed.
+    """
+    mask = _core.SWEEP["omega_1"] | _core.SWEEP["omega_1_gradient"]
+    universal, packed, limits = is_universal(joint), hexapod.packed, packed_limits(hexapod)
+
+    def found(rows: Array) -> tuple[Array, Array]:
+        at = _core.sweep(packed, universal, rows, mask, limits, 1)
+        return np.nan_to_num(at["omega_1"]), np.nan_to_num(at["omega_1_gradient"])
+
+    return found
 
 
 def packed_limits(hexapod: Hexapod) -> Array:
@@ -119,7 +147,7 @@ def attributes(name: str) -> dict[str, Any]:
     if name in AXES:
         k = AXES.index(name)
         turn = f"about the fixed axis {AXES[k - 3]}" if k > 2 else "of the reference point, base frame"
-        return {"units": UNITS[k], "long_name": f"{name} {turn}"}
+        return {"units": unit_of(name), "long_name": f"{name} {turn}"}
     quantity = QUANTITIES[name]
     return {"units": quantity.unit or "1", "long_name": quantity.meaning}
 

@@ -1,31 +1,39 @@
-"""Where a machine is looked at: a workspace box, or poses one by one; fixed in the base or carried along with home."""
+"""Where in the workspace a machine is looked at: every function with an argument `region` converts it here.
+
+A region is a Pose (one or many), six numbers or rows (n, 6) of x, y, z (m), roll, pitch, yaw (rad), a Box or Workspace,
+a PoseSet, a Trajectory, or None for the home pose. All are in the base frame, except a Workspace that is measured from
+the home pose.
+"""
 
 from __future__ import annotations
 
-from itertools import product
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeAlias, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.conventions import Array
-from flexapod.errors import ArgumentError, PoseError
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.layout import HOME, numbers
+from flexapod.errors import PoseError, shown
+from flexapod.mechanics.inputs import as_hexapod, pose_or_home
 from flexapod.pose import Pose
-from flexapod.workspace.pose_sets import Box, low_discrepancy
+from flexapod.workspace.box import Box, Workspace
+from flexapod.workspace.pose_sets import PoseSet, SobolPoses, given_poses
 
-ZERO = np.zeros(6)
+PATH_SAMPLES = 400  # poses along a trajectory
 
 
-class Places(Protocol):
-    """Rows of x, y, z m, roll, pitch, yaw rad at which a design is judged.
+class Region(Protocol):
+    """Poses at which a design is judged: x, y, z (m), roll, pitch, yaw (rad).
 
     from_home: they are added to the six numbers of the design's home pose, and move with it.
     """
 
     from_home: bool
 
-    def rows(self, home: Array, count: int, seed: int = 0) -> Array:
-        """Poses to sweep (n, 6): about `count` of a box, or all of a list."""
+    def rows(self, home: Array, samples: int, seed: int = 0) -> Array:
+        """Poses (n, 6): about `samples` of a box, or all of a list."""
         ...
 
     def box(self, home: Array) -> Box | None:
@@ -35,49 +43,17 @@ class Places(Protocol):
     def describe(self) -> dict[str, Any]: ...
 
 
-class Workspace:
-    """All poses of a box (m, rad), in the base frame, or (from_home) measured from the design's home pose.
+@runtime_checkable
+class Curve(Protocol):
+    """A path on which poses can be taken, such as `fx.Trajectory`."""
 
-    Raises: ArgumentError for what is no Box; PoseError for a box without extent.
-    Source: own.
-    """
+    def poses(self, samples: int) -> Pose:
+        """At least `samples` poses in their order."""
+        ...
 
-    def __init__(self, box: Box, from_home: bool = False) -> None:
-        if not isinstance(box, Box):
-            raise ArgumentError(f"a workspace is a flexapod Box; this is {type(box).__name__}.")
-        if not box.free:
-            raise PoseError(f"{box!r} is one pose; a workspace needs a range of at least one coordinate.")
-        self._box, self.from_home = box, from_home
 
-    @classmethod
-    def about_home(cls, position: float, angle: float) -> Workspace:
-        """Every coordinate of the home pose, plus and minus `position` (m) and `angle` (rad)."""
-        half = np.repeat([float(position), float(angle)], 3)
-        return cls(Box(*zip(-half, half, strict=True)), from_home=True)
-
-    def box(self, home: Array) -> Box:
-        """Where the box is for a design with this home pose (x, y, z m, roll, pitch, yaw rad)."""
-        origin = home if self.from_home else ZERO
-        return Box(*zip(self._box.low + origin, self._box.high + origin, strict=True))
-
-    def rows(self, home: Array, count: int, seed: int = 0) -> Array:
-        """The corners and the middle of the box, where extremes often are, then a Sobol sequence: (n, 6) m and rad."""
-        box = self.box(home)
-        free = np.flatnonzero(box.high > box.low)
-        middle = (box.low + box.high) / 2
-        corners = np.tile(middle, (2 ** len(free), 1))
-        corners[:, free] = list(product(*zip(box.low[free], box.high[free], strict=True)))
-        return np.concatenate([middle[None], corners, low_discrepancy(box, count, seed).rows(0, count)])
-
-    def describe(self) -> dict[str, Any]:
-        """In plain numbers: what makes this workspace and no other."""
-        return {"box": self._box.ranges(), "from_home": self.from_home}
-
-    def __repr__(self) -> str:
-        low, high = self._box.low, self._box.high
-        if self.from_home and np.array_equal(-low, high) and np.ptp(high[:3]) == np.ptp(high[3:]) == 0:
-            return f"all poses within {high[0]:.6g} m and {np.degrees(high[3]):.6g} degrees of home"
-        return f"{'home + ' if self.from_home else ''}{self._box!r}"
+#: Whatever a function takes as `region`.
+RegionLike: TypeAlias = "Region | Box | PoseSet | Pose | Curve | ArrayLike | None"
 
 
 class PoseList:
@@ -89,7 +65,7 @@ class PoseList:
     def box(self, home: Array) -> None:
         return None
 
-    def rows(self, home: Array, count: int, seed: int = 0) -> Array:
+    def rows(self, home: Array, samples: int = 0, seed: int = 0) -> Array:
         return self._rows + home if self.from_home else self._rows
 
     def describe(self) -> dict[str, Any]:
@@ -106,14 +82,18 @@ class PoseList:
 AT_HOME = PoseList(np.zeros((1, 6)), from_home=True)
 
 
-def places(value: Places | Box | Pose | ArrayLike | None) -> Places:
-    """Whatever names places: a Workspace, a Box, a Pose or a batch of them, rows (n, 6); None is the home pose."""
+def as_region(value: RegionLike, name: str = "region") -> Region:
+    """A region for any design, from what `RegionLike` lists; None is the home pose. Raises PoseError otherwise."""
     if value is None:
         return AT_HOME
     if isinstance(value, Workspace | PoseList):
         return value
     if isinstance(value, Box):
-        return Workspace(value)
+        return Workspace(value) if value.free else PoseList(value.low[None])
+    if isinstance(value, PoseSet):
+        return PoseList(_six(value.rows(0, value.count)))
+    if isinstance(value, Curve):
+        value = value.poses(PATH_SAMPLES)
     if isinstance(value, Pose):
         return PoseList(np.concatenate([value.position, value.rpy], axis=-1).reshape(-1, 6))
     try:
@@ -122,6 +102,45 @@ def places(value: Places | Box | Pose | ArrayLike | None) -> Places:
         rows = np.zeros(())
     if rows.ndim not in (1, 2) or rows.shape[-1] != 6 or not rows.size or not np.isfinite(rows).all():
         raise PoseError(
-            f"{value!r} names no poses; give a Workspace, a Box, a Pose, or rows x, y, z (m), roll, pitch, yaw (rad)."
+            f"{name} is {shown(value)}; give a Workspace, a Box, a PoseSet, a Pose, a Trajectory, or rows x, y, z (m), "
+            "roll, pitch, yaw (rad)."
         )
     return PoseList(rows.reshape(-1, 6))
+
+
+def poses_of(hexapod: Hexapod, region: RegionLike, samples: int, seed: int = 0) -> PoseSet:
+    """The poses of a region for one design: those that it lists, or else `samples` of a box (Sobol) or a trajectory.
+
+    Raises PoseError for a wrong shape, for no pose at all, or where a home pose is needed and not given; NaN is left
+    to the sweep.
+    """
+    as_hexapod(hexapod)
+    if isinstance(region, PoseSet):
+        return region
+    if isinstance(region, Box):
+        return SobolPoses(region, samples, seed)
+    if isinstance(region, Workspace):
+        return SobolPoses(region.box(home_of(hexapod, region)), samples, seed)
+    if region is None or isinstance(region, PoseList):
+        listed = as_region(region)
+        return given_poses(listed.rows(home_of(hexapod, listed), samples))
+    given: Any = region.poses(samples) if isinstance(region, Curve) else region
+    return given_poses(given)
+
+
+def home_of(hexapod: Hexapod, region: Region) -> Array:
+    """The home pose that a region is measured from, (6,) m and rad; zeros if it is fixed in the base.
+
+    Raises PoseError if the design names no home pose and the region needs it.
+    """
+    if not region.from_home:
+        return np.zeros(6)
+    pose_or_home(hexapod, None, "region")
+    return numbers(hexapod)[HOME]
+
+
+def _six(rows: Array) -> Array:
+    """Rows of six numbers, from rows of six, or of twelve: a position and a matrix."""
+    if rows.shape[1] == 6:
+        return rows
+    return np.concatenate([rows[:, :3], Pose(rows[:, :3], rows[:, 3:].reshape(-1, 3, 3)).rpy], axis=1)

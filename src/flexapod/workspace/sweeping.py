@@ -7,7 +7,6 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from flexapod.checks import thread_count
 from flexapod.conventions import AXES, Array, JointModel
@@ -15,7 +14,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
 from flexapod.mechanics.inputs import is_universal
 from flexapod.pose import Pose
-from flexapod.workspace.pose_sets import GridPoses, PoseSet, pose_set
+from flexapod.workspace.pose_sets import GridPoses, PoseSet
 from flexapod.workspace.quantities import (
     DEFAULT,
     QUANTITIES,
@@ -25,6 +24,7 @@ from flexapod.workspace.quantities import (
     provenance,
     statuses,
 )
+from flexapod.workspace.region import RegionLike, poses_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,26 +32,86 @@ if TYPE_CHECKING:
 
 def sweep(
     hexapod: Hexapod,
-    poses: PoseSet | Pose | ArrayLike,
-    quantities: Iterable[str] = DEFAULT,
+    region: RegionLike = None,
+    *,
+    quantities: str | Iterable[str] = DEFAULT,
+    samples: int = 2**14,
+    seed: int = 0,
     joint: JointModel = "universal",
     threads: int | None = None,
 ) -> xr.Dataset:
-    """Quantities at every pose of a set, as a Dataset in SI units with a status for each pose.
+    """Compute quantities at every pose of a region.
 
-    poses: `random_poses`, `low_discrepancy`, `pose_grid`, `pose_path`, a batch `Pose`, or rows (..., 6) of x, y, z (m),
-    roll, pitch, yaw (rad). quantities: of `omega_1`, `omega`, `cond_H`, `leg_length`, `universal_angle`,
-    `spherical_angle`, `leg_distance`, `leg_force`, `lowest_stiffness`, `within_limits`. threads: default all cores; the
-    numbers do not depend on it. A pose that cannot be computed is NaN, with the reason in `status` (flag_values,
-    flag_meanings); a singular one has omega_1 zero to rounding. The pose coordinates of an array are views of it, not
-    copies. The axes of a grid are dimensions. Frequencies are in rad/s.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    region : PoseSet, Pose, Box, Workspace, Trajectory or array_like, optional
+        The poses: a set made by `random_poses`, `low_discrepancy`, `pose_grid` or `pose_path`; a Pose, one or many;
+        rows (..., 6) of x, y, z (m), roll, pitch, yaw (rad); or a Box, a Workspace or a Trajectory, of which `samples`
+        poses are taken. All are in the base frame, except a Workspace that is measured from the home pose. Default:
+        the home pose.
+    quantities : str or iterable of str, optional
+        Which of ``omega_1``, ``omega``, ``cond_H``, ``leg_length``, ``universal_angle``, ``spherical_angle``,
+        ``leg_distance``, ``leg_force``, ``lowest_stiffness``, ``within_limits``.
+    samples : int, optional
+        Number of poses of a Box or a Workspace (a Sobol sequence), and least number along a Trajectory.
+    seed : int, optional
+        Seed of the sequence's scrambling.
+    joint : {"universal", "spin_free"}, optional
+        Joint model.
+    threads : int, optional
+        Number of threads, default one for each core. The results do not depend on it.
 
-    Raises: PoseError for wrong or empty sets, an unknown quantity, or when no pose is finite.
-    Source: Section 3, for any set of poses.
+    Returns
+    -------
+    xarray.Dataset
+        In SI units, over the axes of the set of poses (a grid has an axis for each coordinate that varies):
+
+        - omega_1 (rad/s): lowest natural frequency, the dynamic stability index
+        - omega (rad/s), along mode: natural frequencies
+        - cond_H (1): condition number of the force transformation H
+        - leg_length (m), universal_angle, spherical_angle (rad), along leg: joint angles from neutral
+        - leg_distance (m): least distance between two leg axes
+        - leg_force (N): largest static leg force under gravity
+        - lowest_stiffness (N/m): lowest stiffness against displacement of the reference point
+        - within_limits: whether legs and joints are within the design's limits
+        - status: whether a pose could be computed, and if not why (flag_values, flag_meanings)
+        - coordinates x, y, z (m), roll, pitch, yaw (rad)
+
+    Raises
+    ------
+    DesignError
+        If `hexapod` is not a Hexapod.
+    ArgumentError
+        If a quantity, the joint model, or a number is invalid.
+    PoseError
+        If the poses have the wrong shape, there is none, or all hold NaN or infinity.
+
+    See Also
+    --------
+    summarise : Extremes and quantiles of a sweep.
+    worst_pose : The least index over all of a region.
+
+    Notes
+    -----
+    Section 3 of [1]_, for any set of poses. A pose that cannot be computed is NaN; at a singular one omega_1 is zero to
+    rounding. The coordinates of poses given as an array are views of it, not copies.
+
+    References
+    ----------
+    .. [1] P. Mukherjee, B. Dasgupta and A. K. Mallik, "Dynamic stability index and vibration analysis of a flexible
+       Stewart platform", Journal of Sound and Vibration 307 (2007), 495-512.
+
+    Examples
+    --------
+    >>> found = fx.sweep(fx.load("motion-base"), fx.Workspace.about_home(0.2, 0.1), samples=1024)
+    >>> round(float(found.omega_1.min()), 1), round(float(found.cond_H.max()), 2)
+    (109.9, 3.28)
     """
     wanted = chosen(quantities)
     is_universal(joint)
-    points = pose_set(poses)
+    points = poses_of(hexapod, region, samples, seed)
     rows = points.rows(0, points.count)
     found = evaluate(hexapod, rows, wanted, joint, thread_count(threads))
     status = found["status"]
@@ -92,8 +152,6 @@ def coordinates(points: PoseSet, rows: Array) -> dict[str, Any]:
         axes = {name: (name if name in points.dims else (), points.axes[name]) for name in AXES}
         return {name: (dims, axis if dims else axis[0], attributes(name)) for name, (dims, axis) in axes.items()}
     if rows.shape[1] == 12:
-        from flexapod.pose import Pose
-
         pose = Pose(np.nan_to_num(rows[:, :3]), rows[:, 3:].reshape(-1, 3, 3))
         rows = np.concatenate([rows[:, :3], pose.rpy], axis=1)
     return {name: (points.dims, rows[:, k].reshape(points.shape), attributes(name)) for k, name in enumerate(AXES)}

@@ -7,14 +7,17 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import _core
-from flexapod.checks import thread_count
+from flexapod.checks import thread_count, whole
 from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import is_universal, states
+from flexapod.mechanics.inputs import as_hexapod, is_universal, states
 from flexapod.pose import Pose
-from flexapod.workspace.pose_sets import Box, low_discrepancy
+from flexapod.workspace.box import Box
+from flexapod.workspace.box_minimum import smooth_minimum
+from flexapod.workspace.pose_sets import low_discrepancy
 from flexapod.workspace.quantities import evaluate
+from flexapod.workspace.region import RegionLike, as_region, home_of
 
 SINGULAR = 1e-9  # omega_1 / omega_6 below which the index is zero to rounding
 AGREE = 1e-6  # relative difference of indices that count as the same minimum
@@ -23,15 +26,27 @@ _APART = 0.15  # least distance of two starts, in units of the box's diagonal
 
 
 class WorstPose(NamedTuple):
-    """Where the index is least in a box, and how sure that is.
+    """Where the stability index is least in a region, and how sure that is.
 
-    pose: x, y, z m, roll, pitch, yaw rad (`flexapod.Pose.from_rpy(*pose)`). omega_1: rad/s, there; zero where the box
-    holds a singular pose (singular). gradient: of omega_1 by the six coordinates, rad/s per m and per rad; at the least
-    it is zero but for coordinates in `at_bounds`, where it points out of the box. starts, agreed: how many searches
-    were made and how many ended at this index. minima: index and pose of every distinct local minimum found, least
-    first. sampled: least index of the sweep that gave the starts.
-
-    Source: own.
+    Attributes
+    ----------
+    pose : ndarray, shape (6,)
+        x, y, z (m), roll, pitch, yaw (rad): `fx.Pose.from_rpy(*pose)`.
+    omega_1 : float
+        The index there, rad/s; zero to rounding where the region holds a singular pose.
+    gradient : ndarray, shape (6,)
+        Derivatives of omega_1 by the six coordinates, rad/s per m and per rad. At the least index of a box they are
+        zero, except for coordinates in `at_bounds`, where they point out of the box.
+    at_bounds : tuple of str
+        Coordinates that are at an end of their range.
+    singular : bool
+        Whether the pose is singular.
+    starts, agreed : int
+        Number of descents, and how many of them ended at this index; zero for a list of poses.
+    minima : list of (float, ndarray)
+        Index (rad/s) and pose of every distinct local minimum found, least first.
+    sampled : float
+        Least index of the poses that were sampled, rad/s.
     """
 
     pose: Array
@@ -47,111 +62,129 @@ class WorstPose(NamedTuple):
 
 def worst_pose(
     hexapod: Hexapod,
-    box: Box,
+    region: RegionLike = None,
+    *,
     joint: JointModel = "universal",
-    points: int = 2**15,
+    samples: int = 2**15,
     starts: int = 12,
     seed: int = 0,
     threads: int | None = None,
 ) -> WorstPose:
-    """The pose of a box with the least stability index (rad/s).
+    """Find the pose of a region with the least stability index.
 
-    A Sobol sweep of `points` poses gives `starts` low poses apart from one another; from each, L-BFGS-B descends on
-    omega_1^2 with exact derivatives. The lowest of several frequencies that meet is never least where they meet (it has
-    a ridge there), so that the descent passes repeated frequencies; squared, it is smooth at a singular pose.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    region : Box, Workspace, Pose, PoseSet, Trajectory or array_like, optional
+        A Box in the base frame or a Workspace, over all of which the index is minimised; or poses, one or many, of
+        which the worst is taken: six numbers or rows (n, 6) of x, y, z (m), roll, pitch, yaw (rad), or a Trajectory,
+        which is sampled. Default: the home pose.
+    joint : {"universal", "spin_free"}, optional
+        Joint model.
+    samples : int, optional
+        Number of poses of the Sobol sequence that the descents start from.
+    starts : int, optional
+        Number of descents in a box.
+    seed : int, optional
+        Seed of the sequence's scrambling.
+    threads : int, optional
+        Number of threads, default one for each core.
 
-    Raises: PoseError for a box without extent, or in which no pose can be computed.
-    Source: own, with L-BFGS-B (R. H. Byrd, P. Lu, J. Nocedal and C. Zhu, 1995).
+    Returns
+    -------
+    WorstPose
+        The pose, its index, and what was found on the way.
+
+    Raises
+    ------
+    DesignError
+        If `hexapod` is not a Hexapod.
+    ArgumentError
+        If a number is invalid, or no coordinate of a Box varies.
+    PoseError
+        If no pose of the region can be computed.
+
+    See Also
+    --------
+    sweep : The index at many poses.
+    stability_index : The index at a pose.
+
+    Notes
+    -----
+    In a box, a Sobol sweep gives low poses apart from one another; from each, L-BFGS-B (Byrd, Lu, Nocedal and Zhu,
+    1995) descends on omega_1^2 with exact derivatives. The lowest of several frequencies that meet is never least where
+    they meet (it has a ridge there), so that the descent passes repeated frequencies; squared, it is smooth at a
+    singular pose.
+
+    Examples
+    --------
+    >>> worst = fx.worst_pose(fx.load("motion-base"), fx.Workspace.about_home(0.2, 0.1), samples=1024)
+    >>> round(worst.omega_1, 2), worst.agreed == worst.starts
+    (104.23, False)
     """
-    universal = is_universal(joint)
-    free = box.high > box.low
-    if not free.any():
-        raise PoseError(f"{box!r} is one pose; a range of at least one coordinate is needed. Use stability_index.")
-    if starts < 1 or points < 1:
-        raise PoseError(f"points is {points} and starts is {starts}; both must be at least 1")
-    rows = low_discrepancy(box, points, seed).rows(0, points)
-    omega = evaluate(hexapod, rows, ("omega_1",), joint, thread_count(threads))["omega_1"]
-    chosen = _apart(rows, omega, box, starts)
-    search = _Search(hexapod, universal, box, free)
-    found = sorted((search.descend(rows[i]) for i in chosen), key=lambda end: end[0])
+    where = as_region(region)
+    index = SquaredFrequency(as_hexapod(hexapod), joint, mode=1)
+    home = home_of(hexapod, where)
+    box = where.box(home)
+    threads = thread_count(threads)
+    if box is None:
+        rows = where.rows(home, samples)
+        return _worst_of(index, rows, evaluate(hexapod, rows, ("omega_1",), joint, threads)["omega_1"])
+    rows = low_discrepancy(box, samples, seed=seed).rows(0, samples)
+    omega = evaluate(hexapod, rows, ("omega_1",), joint, threads)["omega_1"]
+    begin = _apart(rows, omega, box, whole(starts, "starts"))
+    ends = [smooth_minimum(index, rows[i], box.low, box.high) for i in begin]
+    found = sorted(((index.root(end), end) for end in ends), key=lambda one: one[0])
     minima = _distinct(found, box)
     least, pose = minima[0]
-    agreed = sum(_same(value, least, search.scale) for value, _ in found)
-    gradient = search.gradient(pose)
     edge = (pose <= box.low) | (pose >= box.high)
     return WorstPose(
         pose=pose,
         omega_1=least,
-        gradient=gradient,
-        at_bounds=tuple(name for name, at in zip(AXES, edge & free, strict=True) if at),
-        singular=least <= SINGULAR * search.scale,
+        gradient=index.gradient(pose),
+        at_bounds=tuple(name for name, at in zip(AXES, edge, strict=True) if at and name in box.free),
+        singular=least <= SINGULAR * index.scale,
         starts=len(found),
-        agreed=agreed,
+        agreed=sum(_same(value, least, index.scale) for value, _ in found),
         minima=minima,
         sampled=float(np.nanmin(omega)),
     )
 
 
-class _Search:
-    """Descent on omega_1^2 over the free coordinates of a box, each from 0 to 1."""
+def _worst_of(index: SquaredFrequency, rows: Array, omega: Array) -> WorstPose:
+    """The worst of some poses."""
+    if not np.isfinite(omega).any():
+        raise PoseError(f"none of the {len(rows)} poses can be computed. Look at the status of a sweep of them.")
+    pose = rows[int(np.nanargmin(omega))]
+    least, gradient = index.root(pose), index.gradient(pose)
+    singular = least <= SINGULAR * index.scale
+    return WorstPose(pose, least, gradient, (), singular, 0, 0, [(least, pose)], float(np.nanmin(omega)))
 
-    def __init__(self, hexapod: Hexapod, universal: bool, box: Box, free: np.ndarray) -> None:
-        self.hexapod, self.universal, self.box, self.free = hexapod, universal, box, free
-        self.width = box.high - box.low
+
+class SquaredFrequency:
+    """The square of one of the six natural frequencies at x, y, z, roll, pitch, yaw, (6,), with exact derivatives."""
+
+    def __init__(self, hexapod: Hexapod, joint: JointModel, mode: int) -> None:
+        self.hexapod, self.universal, self.mode = hexapod, is_universal(joint), mode - 1
         self.scale = 1.0  # largest omega_6 met, rad/s
 
-    def descend(self, start: Array) -> tuple[float, Array]:
-        """omega_1 and pose where the descent ends."""
-        from scipy.optimize import minimize
-
-        u = ((start - self.box.low) / np.where(self.free, self.width, 1.0))[self.free]
-        unit = max(self._square(start)[0], np.finfo(float).tiny)
-
-        def function(u: Array) -> tuple[float, Array]:
-            value, slope = self._square(self._pose(u))
-            return value / unit, (slope * self.width)[self.free] / unit
-
-        bounds = [(0.0, 1.0)] * len(u)
-        for _ in range(3):  # anew where a ridge between two modes has spoilt the curvature it has learnt
-            end = minimize(
-                function,
-                u,
-                jac=True,
-                method="L-BFGS-B",
-                bounds=bounds,
-                options={"ftol": 0, "gtol": 1e-10, "maxiter": 500},
-            )
-            still = np.abs(end.x - u).max() < 1e-9
-            u = end.x
-            if still:
-                break
-        pose = self._pose(u)
-        return float(np.sqrt(max(self._square(pose)[0], 0.0))), pose
-
-    def gradient(self, pose: Array) -> Array:
-        """Of omega_1 by the six coordinates; NaN where omega_1 is zero."""
-        square, slope = self._square(pose)
-        return slope / (2 * np.sqrt(square)) if square > 0 else np.full(6, np.nan)
-
-    def _pose(self, u: Array) -> Array:
-        pose = self.box.low.copy()
-        pose[self.free] = np.clip(self.box.low + self._spread(u) * self.width, self.box.low, self.box.high)[self.free]
-        at_end = self._spread(u) >= 1.0
-        pose[at_end] = self.box.high[at_end]
-        return pose
-
-    def _spread(self, u: Array) -> Array:
-        whole = np.zeros(6)
-        whole[self.free] = u
-        return whole
-
-    def _square(self, six: Array) -> tuple[float, Array]:
-        """omega_1^2 and its derivatives by the coordinates. A pose that no leg can take raises PoseError."""
+    def __call__(self, six: Array) -> tuple[float, Array]:
+        """omega^2 and its derivatives by the coordinates. A pose that no leg can take raises PoseError."""
         s = states(self.hexapod, Pose.from_rpy(*six))
         omega = _core.natural_modes(self.hexapod.packed, self.universal, s.platform, s.base)[0][0]
-        by_twist = _core.frequency_derivatives(self.hexapod.packed, self.universal, s.platform, s.base)[1][0, 0]
+        by_twist = _core.frequency_derivatives(self.hexapod.packed, self.universal, s.platform, s.base)[1]
         self.scale = max(self.scale, float(omega[-1]))
-        return float(omega[0] ** 2), by_twist @ twist_of_coordinates(six)
+        return float(omega[self.mode] ** 2), by_twist[0, self.mode] @ twist_of_coordinates(six)
+
+    def root(self, six: Array) -> float:
+        """The frequency itself, rad/s."""
+        return float(np.sqrt(max(self(six)[0], 0.0)))
+
+    def gradient(self, six: Array) -> Array:
+        """Of the frequency by the six coordinates; NaN where it is zero."""
+        square, slope = self(six)
+        return slope / (2 * np.sqrt(square)) if square > 0 else np.full(6, np.nan)
 
 
 def twist_of_coordinates(six: Array) -> Array:

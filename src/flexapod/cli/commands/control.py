@@ -70,7 +70,7 @@ def _find(hexapod: Hexapod, pose: Pose, options: Options, report: Report) -> Con
 
     report("design", 0.0)
     tangent = linearise(hexapod, pose, joint=options.joint)
-    recommended = sampling_time(hexapod, pose, options.joint)
+    recommended = sampling_time(hexapod, pose, joint=options.joint)
     dt = options.dt or recommended
     made = _made(hexapod, pose, tangent, options, dt)
     report("design", 1.0)

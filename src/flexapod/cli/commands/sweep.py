@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from flexapod.design.hexapod import Hexapod
-    from flexapod.workspace.pose_sets import Box, PoseSet
+    from flexapod.workspace.box import Box
+    from flexapod.workspace.pose_sets import PoseSet
     from flexapod.workspace.store.store import SweepStore
 
 
@@ -60,7 +61,7 @@ def command(**given: Any) -> None:
 
 def _points(hexapod: Hexapod, options: Options) -> tuple[PoseSet, Box | None]:
     from flexapod.cli.options.poses import box_of, grid_of, read_poses
-    from flexapod.workspace.pose_sets import low_discrepancy, pose_set, random_poses
+    from flexapod.workspace.pose_sets import given_poses, low_discrepancy, random_poses
 
     ways = [bool(options.box or options.around), bool(options.grid), options.poses is not None]
     if sum(ways) != 1:
@@ -73,11 +74,11 @@ def _points(hexapod: Hexapod, options: Options) -> tuple[PoseSet, Box | None]:
             raise click.UsageError(
                 "--points and --low-discrepancy go with --box or --around; a grid or file has its own poses."
             )
-        found = grid_of(hexapod, options.grid) if ways[1] else pose_set(read_poses(options.poses))  # type: ignore[arg-type]
+        found = grid_of(hexapod, options.grid) if ways[1] else given_poses(read_poses(options.poses))  # type: ignore[arg-type]
         return found, None
     box = box_of(hexapod, options.box, options.around)
     make = low_discrepancy if options.even else random_poses
-    return make(box, options.points or DEFAULT_POINTS, options.seed), box
+    return make(box, options.points or DEFAULT_POINTS, seed=options.seed), box
 
 
 def _quantities(text: str) -> tuple[str, ...]:
@@ -92,7 +93,7 @@ def _in_memory(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], o
     from flexapod.workspace.sweeping import sweep
 
     check_file(options.out or Path("sweep.nc"), points.count, quantities)
-    found = sweep(hexapod, points, quantities, options.joint, options.threads)
+    found = sweep(hexapod, points, quantities=quantities, joint=options.joint, threads=options.threads)
     if options.out is not None:
         save(found, options.out)
         click.echo(f"wrote {options.out}", err=True)
@@ -121,9 +122,10 @@ def _store(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], optio
     from flexapod.workspace.store.store import SweepStore
 
     assert options.out is not None
+    given: dict[str, Any] = {"quantities": quantities, "joint": options.joint, "chunk": options.chunk}
     if options.resume:
-        return SweepStore.resume(options.out, hexapod, points, quantities, options.joint, options.chunk)
-    return SweepStore.create(options.out, hexapod, points, quantities, options.joint, options.chunk, options.keep_poses)
+        return SweepStore.resume(options.out, hexapod, points, **given)
+    return SweepStore.create(options.out, hexapod, points, keep_poses=options.keep_poses, **given)
 
 
 def _run(store: SweepStore, workers: Any) -> None:
@@ -157,7 +159,7 @@ def _report(hexapod: Hexapod, found: xr.Dataset, box: Box | None, options: Optio
     if options.worst and box is not None:
         from flexapod.workspace.worst import worst_pose
 
-        worst = worst_pose(hexapod, box, options.joint, seed=options.seed, threads=options.threads)
+        worst = worst_pose(hexapod, box, joint=options.joint, seed=options.seed, threads=options.threads)
         result["worst_pose"] = worst_json(worst)
         if not options.as_json:
             print_worst(worst)

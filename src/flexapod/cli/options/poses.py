@@ -12,12 +12,13 @@ import click
 if TYPE_CHECKING:
     from flexapod.conventions import Array
     from flexapod.design.hexapod import Hexapod
-    from flexapod.workspace.pose_sets import Box, PoseSet
+    from flexapod.workspace.box import Box
+    from flexapod.workspace.pose_sets import PoseSet
 
 
 def box_of(hexapod: Hexapod, texts: Iterable[str], around: tuple[float, float] | None) -> Box:
     """The box of `--box x=-0.1:0.1,roll=-10:10 ...` or `--around 0.1 10`; the rest is held at the home pose."""
-    from flexapod.workspace.pose_sets import Box
+    from flexapod.workspace.box import Box
 
     parts = _parts("--box", texts)
     if around is not None:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from flexapod.optimisation.constraints import Constraint
     from flexapod.optimisation.objectives import Objective
     from flexapod.optimisation.variables import JointCircle, Variable
-    from flexapod.workspace.region import Places
+    from flexapod.workspace.region import Region
 
 _CIRCLE = {"radius": "length", "half_angle": "angle", "turn": "angle", "height": "length"}
 #: What --keep may name: the constraint, and the dimension of its bound.
@@ -93,12 +93,13 @@ def where(
     pose: tuple[float, ...] | None,
     box: Iterable[str],
     around: tuple[float, float] | None,
-) -> Places | None:
+) -> Region | None:
     """The places of --pose, --box or --around (which moves with home); None for the home pose."""
     import numpy as np
 
     from flexapod.cli.options.poses import box_of
-    from flexapod.workspace.region import Workspace, places
+    from flexapod.workspace.box import Workspace
+    from flexapod.workspace.region import as_region
 
     box = tuple(box)
     if sum((pose is not None, bool(box), around is not None)) > 1:
@@ -107,7 +108,7 @@ def where(
         return Workspace.about_home(around[0], math.radians(around[1]))
     if box:
         return Workspace(box_of(hexapod, box, None))
-    return None if pose is None else places(np.concatenate([pose[:3], np.radians(pose[3:])]))
+    return None if pose is None else as_region(np.concatenate([pose[:3], np.radians(pose[3:])]))
 
 
 def objective(

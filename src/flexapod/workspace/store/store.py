@@ -20,16 +20,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from uuid import uuid4
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod.conventions import AXES, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import OutputError
 from flexapod.mechanics.inputs import is_universal
-from flexapod.pose import Pose
-from flexapod.workspace.pose_sets import GivenPoses, GridPoses, PoseSet, pose_set
+from flexapod.workspace.pose_sets import GivenPoses, GridPoses, PoseSet
 from flexapod.workspace.quantities import DEFAULT, PENDING, QUANTITIES, attributes, chosen, provenance
+from flexapod.workspace.region import RegionLike, poses_of
 from flexapod.workspace.store.block_job import Job, Workers, sync, zarr_package
 from flexapod.workspace.store.blocks import Blocks, blocks
 from flexapod.workspace.store.threads import Threads
@@ -65,8 +64,11 @@ class SweepStore:
         cls,
         path: str | Path,
         hexapod: Hexapod,
-        poses: PoseSet | Pose | ArrayLike,
-        quantities: Iterable[str] = DEFAULT,
+        region: RegionLike = None,
+        *,
+        quantities: str | Iterable[str] = DEFAULT,
+        samples: int = 2**20,
+        seed: int = 0,
         joint: JointModel = "universal",
         chunk: int | None = None,
         keep_poses: bool = True,
@@ -78,7 +80,7 @@ class SweepStore:
 
         Raises: OutputError where there is something already, or where nothing can be written; PoseError as `sweep`.
         """
-        points, wanted = pose_set(poses), chosen(quantities)
+        points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities)
         is_universal(joint)
         if chunk is not None and chunk < 1:
             raise OutputError(f"chunk is {chunk}; it must be at least 1 pose.")
@@ -93,8 +95,11 @@ class SweepStore:
         cls,
         path: str | Path,
         hexapod: Hexapod,
-        poses: PoseSet | Pose | ArrayLike,
-        quantities: Iterable[str] = DEFAULT,
+        region: RegionLike = None,
+        *,
+        quantities: str | Iterable[str] = DEFAULT,
+        samples: int = 2**20,
+        seed: int = 0,
         joint: JointModel = "universal",
         chunk: int | None = None,
     ) -> SweepStore:
@@ -103,7 +108,7 @@ class SweepStore:
         Raises: OutputError where the design, the poses, the quantities, the joint model or the processor's instructions
         are not those it was begun with, and names both.
         """
-        points, wanted = pose_set(poses), chosen(quantities)
+        points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities)
         attrs = read_attributes(path)
         kept = bool(attrs["keeps_poses"])
         cut = Blocks(points.shape, tuple(map(int, attrs["chunk"].split())))
