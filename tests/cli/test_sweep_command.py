@@ -99,7 +99,7 @@ AROUND = ("--around", "0.05", "10")
         (("--grid", "x=0:1:3", "--points", "5"), "go with --box or --around"),
         (("--grid", "x=0:1:3", "--worst"), "--worst looks for"),
         ((*AROUND, "--points", "0"), "--points"),
-        ((*AROUND, "--quantities", "omega_9"), "no quantity 'omega_9'"),
+        ((*AROUND, "--quantities", "omega_9"), "quantity is 'omega_9'"),
         ((*AROUND, "--resume"), "Give --out NAME.zarr"),
         ((*AROUND, "--out", "map.xyz"), "must end in .zarr"),
         ((*AROUND, "--out", "none/map.nc"), "is no directory"),
