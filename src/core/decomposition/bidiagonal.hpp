@@ -3,8 +3,8 @@
 // polynomial the method rises to the lowest one and cannot miss it.
 #pragma once
 
+#include "decomposition/reflection.hpp"
 #include "numbers/linear6.hpp"
-#include "simd/pack.hpp"
 
 namespace flexapod {
 
@@ -12,43 +12,6 @@ namespace flexapod {
 /// to a relative error of the order of their own.
 template <int n, class T> struct SquaredBidiagonal {
   T q[n], e[n > 1 ? n - 1 : 1];
-};
-
-/// Sum of products in two chains.
-template <int m, class A, class B> FLEXAPOD_INLINE auto inner(const A& a, const B& b) {
-  auto even = a(0) * b(0);
-  if constexpr (m == 1) {
-    return even;
-  } else {
-    auto odd = a(1) * b(1);
-    FLEXAPOD_UNROLL
-    for (int i = 2; i < m; ++i)
-      if (i % 2) odd += a(i) * b(i);
-      else even += a(i) * b(i);
-    return even + odd;
-  }
-}
-
-/// The reflection E - beta v v^T that turns x into its first axis: v is x with `shift` added to its first part. For
-/// x = 0 it is the identity.
-template <class T> struct Reflection {
-  T square, shift, beta;  // square = |x|^2
-
-  template <int m, class X> static FLEXAPOD_INLINE Reflection of(const X& x) {
-    Reflection r;
-    r.square = inner<m>(x, x);
-    const T length = sqrt(r.square), first = x(0);
-    r.shift = select(first < 0.0, -length, length);
-    r.beta = select(r.square > 1e-280, 1.0 / (r.square + abs(first) * length), T(0.0));
-    return r;
-  }
-  /// Reflects y; x as it was given.
-  template <int m, class X, class Y> FLEXAPOD_INLINE void apply(const X& x, const Y& y) const {
-    const T sum = beta * (inner<m>(x, y) + shift * y(0));  // the inner product does not wait for the length
-    y(0) -= sum * (x(0) + shift);
-    FLEXAPOD_UNROLL
-    for (int i = 1; i < m; ++i) y(i) -= sum * x(i);
-  }
 };
 
 template <int k, class T> FLEXAPOD_INLINE void bidiagonal_step(T (&a)[6][6], SquaredBidiagonal<6, T>& b) {

@@ -1,7 +1,7 @@
 // H x = b for lanes by Householder's orthogonal reduction: stable without exchanging rows, which lanes cannot.
 #pragma once
 
-#include "decomposition/bidiagonal.hpp"
+#include "decomposition/reflection.hpp"
 
 namespace flexapod {
 

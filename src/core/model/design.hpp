@@ -2,6 +2,8 @@
 // design, and the derivative by any number of it is one more dual part.
 #pragma once
 
+#include <algorithm>
+
 #include "numbers/vec3.hpp"
 
 namespace flexapod {
@@ -55,6 +57,18 @@ template <class T> struct LegInertia {
     return part.inertia + point_inertia(part.mass, part.mass_center);
   }
 };
+
+/// Two sizes of the platform, about its reference point, m.
+template <class T> T mean_radius(const Design<T>& d) {
+  T sum(0.0);
+  for (const auto& p : d.p) sum += norm(p) / 6.0;
+  return sum;
+}
+inline double largest_radius(const Design<double>& d) {
+  double largest = 0;
+  for (const auto& p : d.p) largest = std::max(largest, norm(p));
+  return largest;
+}
 
 enum class Joint {
   universal,  // exact: a universal joint lets the leg spin about itself as the base axis k demands

@@ -37,23 +37,20 @@ struct SeededDesign {
 /// omega^2; for modes of one frequency the eigenvalues of the block are those along the direction.
 inline void rayleigh_matrix(const Machine<Seed>& machine, const Geometry<Seed>& g, const Mat3<Seed>& R,
                             const Modes& modes, Seed (&out)[6][6]) {
-  const Mat6<Seed> J = inertia(machine, g, R), H = force_transformation(g);
+  const Mat6<Seed> J = inertia(machine, g, R);
+  const SpringMatrix<Seed> directions = spring_directions(g);
+  Seed stretch[6][spring_count];
   for (int a = 0; a < 6; ++a) {
-    Vec6<Seed> stretch, momentum;
+    Vec6<double> shape;
+    for (int r = 0; r < 6; ++r) shape[r] = modes.shape[r][a];
+    spring_rates(directions, shape, stretch[a]);
+    Vec6<Seed> momentum;
     for (int i = 0; i < 6; ++i)
-      for (int r = 0; r < 6; ++r) {
-        stretch[i] += modes.shape[r][a] * H[r][i];
-        momentum[i] += modes.shape[r][a] * J[i][r];
-      }
-    for (int i = 0; i < 6; ++i) stretch[i] = machine.design.leg[i].stiffness * stretch[i];
+      for (int r = 0; r < 6; ++r) momentum[i] += shape[r] * J[i][r];
     for (int b = 0; b <= a; ++b) {
       const double lambda = 0.5 * (modes.omega[a] * modes.omega[a] + modes.omega[b] * modes.omega[b]);
-      Seed sum;
-      for (int i = 0; i < 6; ++i) {
-        Seed other;
-        for (int r = 0; r < 6; ++r) other += modes.shape[r][b] * H[r][i];
-        sum += stretch[i] * other - (lambda * modes.shape[i][b]) * momentum[i];
-      }
+      Seed sum = stiffness_product(machine.design, stretch[a], stretch[b]);
+      for (int i = 0; i < 6; ++i) sum -= (lambda * modes.shape[i][b]) * momentum[i];
       out[a][b] = out[b][a] = sum;
     }
   }

@@ -1,7 +1,7 @@
 // Energy and its loss, for balances.
 #pragma once
 
-#include "model/equations.hpp"
+#include "model/springs.hpp"
 
 namespace flexapod {
 
@@ -16,21 +16,15 @@ inline double kinetic_energy(double m, const Vec3<double>& c, const Sym3<double>
   return 0.5 * m * dot(v, v) + dot(v, cross(w, c)) + 0.5 * dot(w, J * w);
 }
 
-/// Power lost in a leg's joints, W.
-template <class T> T leg_dissipation(const Leg<T>& leg, const LegEnds<T>& end, const LegMotion<T>& motion) {
-  const Vec3<T> at_platform = motion.omega - end.omega_p;
-  return leg.C_p * end.v.x * end.v.x + leg.C_u * dot(motion.omega_rel, motion.omega_rel) +
-         leg.C_s * dot(at_platform, at_platform);
-}
-
-/// Of platform and legs; gravitational energy is zero at the inertial origin. The elastic part is that of legs with
-/// unstretched lengths L_0.
+/// Of platform and legs; gravitational energy is zero at the inertial origin. The elastic part is that of springs, for
+/// legs with unstretched lengths L_0.
 inline Energy energy(const Machine<double>& machine, const Motion<double>& platform, const Motion<double>& base,
                      const double (&L_0)[6]) {
   const Design<double>& d = machine.design;
   const Geometry<double> g(d, platform.pose, base.pose);
   const Vec3<double> R_p = platform.pose.R * d.R_0;
   Energy e;
+  e.elastic = elastic_energy(d, g, L_0);
   e.kinetic = kinetic_energy(d.M, {}, rotate(platform.pose.R, d.I_p), platform.velocity_at(R_p), platform.w);
   e.gravitational = -d.M * dot(d.gravity, platform.pose.t + R_p);
   for (int i = 0; i < 6; ++i) {
@@ -45,8 +39,7 @@ inline Energy energy(const Machine<double>& machine, const Motion<double>& platf
     const Vec3<double> weighted =
         m_d * (base.pose.t + g.q_b[i]) + in.m_u * (platform.pose.t + g.q_p[i]) + transposed(leg.axes, in.c_d + in.c_u);
     e.gravitational -= dot(d.gravity, weighted);
-    e.elastic += 0.5 * d.leg[i].stiffness * (leg.L - L_0[i]) * (leg.L - L_0[i]);
-    e.dissipation += leg_dissipation(d.leg[i], end, motion);
+    e.dissipation += friction_power(d.leg[i], joint_rates(end, motion));
   }
   return e;
 }

@@ -83,8 +83,7 @@ struct FoundPose {
 /// pose where no solution can be reached.
 inline FoundPose forward_kinematics(const Design<double>& d, const double (&length)[6], Pose<double> pose) {
   const Pose<double> base;
-  double reach = 0;  // rotations are measured at the platform's size
-  for (const auto& p : d.p) reach = std::max(reach, norm(p));
+  const double reach = largest_radius(d);  // rotations are measured at the platform's size
   const auto residuals = [&](const Geometry<double>& g, Vec6<double>& r) {
     double sum = 0;
     for (int i = 0; i < 6; ++i) r[i] = norm(g.S[i]) - length[i], sum += r[i] * r[i];

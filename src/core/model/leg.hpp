@@ -6,7 +6,7 @@
 // has the columns 0, w_2 = (tau, 0, 1)/L and w_3 = (0, -1, 0)/L with tau = (k.s)/|k x s|; the paper's model has tau = 0.
 #pragma once
 
-#include "model/design.hpp"
+#include "model/friction.hpp"
 #include "model/motion.hpp"
 
 namespace flexapod {
@@ -108,24 +108,30 @@ template <class T> struct LegMotion {
   }
 };
 
+template <class T> JointRates<T> joint_rates(const LegEnds<T>& end, const LegMotion<T>& motion) {
+  return {end.v.x, motion.omega_rel, motion.omega - end.omega_p};
+}
+
 /// What the leg's spherical joint carries for a given motion, in leg axes.
 template <class T> struct SphericalLoad {
   Vec3<T> force;   // F_s, on the leg by the platform (Eq. 23), for no actuator force
-  Vec3<T> moment;  // f, friction moment C_s (omega - omega_p)
+  Vec3<T> moment;  // f, friction moment
 };
 
-/// F_s = f_u + W^T [N + C_u omega_rel + f] + s C_p L', with f_u the upper part's inertia and weight force and N both
-/// parts' inertia and weight moments about their joints (Eqs 20-23; corrections E3, E4, part B).
+/// F_s = f_u + W^T [N + f_universal + f_spherical] + s f_prismatic, with f_u the upper part's inertia and weight force,
+/// N both parts' inertia and weight moments about their joints, and the joints' friction (Eqs 20-23; corrections E3, E4,
+/// part B).
 template <class T, class D, class E>
-SphericalLoad<T> spherical_load(const LegAxes<T>& leg, const LegInertia<D>& in, const Leg<E>& friction,
+SphericalLoad<T> spherical_load(const LegAxes<T>& leg, const LegInertia<D>& in, const Leg<E>& parts,
                                 const LegEnds<T>& end, const LegMotion<T>& motion) {
   const Vec3<T>&A = motion.A, &w = motion.omega;
   const Vec3<T> f_u = in.m_u * end.a_p + cross(A, in.c_u) + cross(w, cross(w, in.c_u));
   const Vec3<T> N = cross(in.c_d, end.a_b) + cross(in.c_u, end.a_p) + in.J * A + cross(w, in.J * w);
+  const JointFriction<T> friction(parts, joint_rates(end, motion));
   SphericalLoad<T> load;
-  load.moment = friction.C_s * (w - end.omega_p);
-  load.force = f_u + leg.W_transposed(N + friction.C_u * motion.omega_rel + load.moment);
-  load.force.x += friction.C_p * end.v.x;
+  load.moment = friction.spherical;
+  load.force = f_u + leg.W_transposed(N + friction.universal + friction.spherical);
+  load.force.x += friction.prismatic;
   return load;
 }
 

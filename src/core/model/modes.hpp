@@ -3,7 +3,7 @@
 
 #include "decomposition/svd_jacobi.hpp"
 #include "model/displacement.hpp"
-#include "model/equations.hpp"
+#include "model/springs.hpp"
 
 namespace flexapod {
 
@@ -14,19 +14,12 @@ struct Modes {
   Mat6<double> shape;
 };
 
-/// Eq. 5 as singular values of B = L^-1 H K^1/2 with J_p = L L^T: near a singular pose the eigenvalues of
-/// J_p^-1 H K H^T would lose half the digits of the lowest frequency.
+/// Eq. 5 as singular values of B = L^-1 F with J_p = L L^T and K = F F^T: near a singular pose the eigenvalues of
+/// J_p^-1 K would lose half the digits of the lowest frequency.
 inline Modes natural_modes(const Machine<double>& machine, const Geometry<double>& g, const Mat3<double>& R) {
-  const Mat6<double> H = force_transformation(g);
   const Cholesky<double> L(inertia(machine, g, R));
-  Mat6<double> B;
-  for (int j = 0; j < 6; ++j) {
-    const double root = std::sqrt(machine.design.leg[j].stiffness);
-    Vec6<double> h;
-    for (int i = 0; i < 6; ++i) h[i] = root * H[i][j];
-    h = L.forward(h);
-    for (int i = 0; i < 6; ++i) B[i][j] = h[i];
-  }
+  SpringMatrix<double> B = RootStiffness<double>(machine.design).scaled(spring_directions(g));
+  L.forward_all(B);
   const SingularValues values(B);
   Modes modes;
   for (int j = 0; j < 6; ++j) {
@@ -39,29 +32,29 @@ inline Modes natural_modes(const Machine<double>& machine, const Geometry<double
   return modes;
 }
 
-/// v^T H K H^T v - lambda v^T J_p v for a mode's v and lambda = omega^2. Its derivative by anything, at fixed v and
+/// v^T K v - lambda v^T J_p v for a mode's v and lambda = omega^2. Its derivative by anything, at fixed v and
 /// lambda, is that of lambda (for a mode that is not repeated), since v^T J_p v = 1.
 template <class T, class D, class U>
-T rayleigh_residual(const Machine<D>& machine, const Mat6<T>& J, const Mat6<T>& H, const Vec6<U>& shape,
-                    const U& lambda) {
+T rayleigh_residual(const Machine<D>& machine, const Mat6<T>& J, const SpringMatrix<T>& directions,
+                    const Vec6<U>& shape, const U& lambda) {
   Vec6<T> v;
   for (int i = 0; i < 6; ++i) v[i] = T(shape[i]);
-  const Vec6<T> stretch = transposed(H, v);
-  T sum = T(-lambda) * dot(v, J * v);
-  for (int i = 0; i < 6; ++i) sum += machine.design.leg[i].stiffness * (stretch[i] * stretch[i]);
-  return sum;
+  T stretch[spring_count];
+  spring_rates(directions, v, stretch);
+  return stiffness_product(machine.design, stretch, stretch) - T(lambda) * dot(v, J * v);
 }
 
 /// The residuals of all modes.
 template <class T, class D>
 Vec6<product_t<T, D>> rayleigh_residuals(const Machine<D>& machine, const Geometry<T>& g, const Mat3<T>& R,
                                          const Modes& modes) {
-  const Mat6<T> J = inertia(machine, g, R), H = force_transformation(g);
+  const Mat6<T> J = inertia(machine, g, R);
+  const SpringMatrix<T> directions = spring_directions(g);
   Vec6<T> residual;
   for (int m = 0; m < 6; ++m) {
     Vec6<double> v;
     for (int i = 0; i < 6; ++i) v[i] = modes.shape[i][m];
-    residual[m] = rayleigh_residual(machine, J, H, v, modes.omega[m] * modes.omega[m]);
+    residual[m] = rayleigh_residual(machine, J, directions, v, modes.omega[m] * modes.omega[m]);
   }
   return residual;
 }

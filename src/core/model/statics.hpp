@@ -2,7 +2,7 @@
 #pragma once
 
 #include "model/displacement.hpp"
-#include "model/equations.hpp"
+#include "model/springs.hpp"
 
 namespace flexapod {
 
@@ -18,17 +18,16 @@ template <class T> Motion<T> at_rest(const Pose<T>& pose) {
   return motion;
 }
 
-/// eta - H F - [R F_ext; R M_ext] at rest with F = -K (L - L_0): zero at equilibrium (Eq. 34; corrections E6).
+/// eta less the wrenches of springs and of external loads at rest: zero at equilibrium (Eq. 34; corrections E6).
 template <class T>
 Vec6<T> rest_residual(const Machine<double>& machine, const Pose<T>& platform, const Pose<T>& base,
                       const RestLoad& load) {
   const Geometry<T> g(machine.design, platform, base);
-  Vec6<T> F;
-  for (int i = 0; i < 6; ++i) F[i] = machine.design.leg[i].stiffness * (load.L_0[i] - norm(g.S[i]));
   const Vec6<T> eta = inverse_wrench(machine, g, at_rest(platform), at_rest(base));
-  const Vec6<T> legs = force_transformation(g) * F, external = external_wrench(platform.R, load.wrench);
+  const Vec6<T> springs = spring_wrench(machine.design, g, load.L_0);
+  const Vec6<T> external = external_wrench(platform.R, load.wrench);
   Vec6<T> r;
-  for (int i = 0; i < 6; ++i) r[i] = eta[i] - legs[i] - external[i];
+  for (int i = 0; i < 6; ++i) r[i] = eta[i] - springs[i] - external[i];
   return r;
 }
 
@@ -68,11 +67,9 @@ enum class Rest { found, singular, not_found };
 /// Newton on the residual from a start pose, with exact derivatives and step halving. The pose is left where the
 /// search ended.
 inline Rest settle(const Machine<double>& machine, const Pose<double>& base, const RestLoad& load, Pose<double>& pose) {
-  double size = 0, force = 0;  // scales of length and force, to compare rows and to limit steps
-  for (int i = 0; i < 6; ++i) {
-    size += norm(machine.design.p[i]) / 6.0;
-    force = std::max(force, machine.design.leg[i].stiffness * std::abs(load.L_0[i]));
-  }
+  const double size = mean_radius(machine.design);  // with `force`: to compare rows and to limit steps
+  double force = 0;
+  for (int i = 0; i < 6; ++i) force = std::max(force, axial_force(machine.design.leg[i], std::abs(load.L_0[i])));
   const auto merit = [&](const Vec6<double>& r) {
     double sum = 0;
     for (int i = 0; i < 6; ++i) sum += std::pow(r[i] / (i < 3 ? force : force * size), 2);

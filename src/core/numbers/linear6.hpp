@@ -1,4 +1,4 @@
-// Six-by-six linear algebra: small fixed loops, no branch on the data except in `solve_general`.
+// Linear algebra of six rows, mostly six by six: small fixed loops, no branch on the data except in `solve_general`.
 #pragma once
 
 #include "numbers/vec3.hpp"
@@ -16,8 +16,9 @@ template <class T> struct Vec6 {
   Vec3<T> bottom() const { return {a[3], a[4], a[5]}; }
 };
 
-template <class T> struct Mat6 {
-  T a[6][6]{};
+/// Six rows of m.
+template <class T, int m = 6> struct Mat6 {
+  T a[6][m]{};
   T* operator[](int i) { return a[i]; }
   const T* operator[](int i) const { return a[i]; }
 };
@@ -67,9 +68,9 @@ template <class T> struct Cholesky {
     }
     return b;
   }
-  void forward_all(Mat6<T>& B) const {  // L X = B, in place
+  template <int m> void forward_all(Mat6<T, m>& B) const {  // L X = B, in place
     for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) {
+      for (int j = 0; j < m; ++j) {
         T sum = B[i][j];
         for (int k = 0; k < i; ++k) sum = sum - l[i][k] * B[k][j];
         B[i][j] = sum * l[i][i];

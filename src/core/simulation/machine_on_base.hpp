@@ -6,6 +6,7 @@
 // acceleration less gravity, so that neither the base's velocity nor gravity need appear beside them.
 #pragma once
 
+#include "model/springs.hpp"
 #include "simulation/excitation.hpp"
 #include "simulation/integrate.hpp"
 #include "simulation/six_legs.hpp"
@@ -45,7 +46,7 @@ class MachineOnBase {
         rotates_(base.uses(3, 6)) {
     const Mat3<double> to_base = transpose(in_.base.R);
     rest_ = {to_base * (in_.platform.t - in_.base.t), to_base * in_.platform.R};
-    for (const auto& leg : in_.design.leg) friction_ = friction_ || leg.C_p > 0 || leg.C_u > 0 || leg.C_s > 0;
+    friction_ = has_friction(in_.design);
     for (int g = 0; g < leg_groups; ++g) places_.group[g].q_b = legs_.group[g].b, places_.group[g].k = legs_.group[g].k;
     set_chart(Quaternion());
     force_ = PerLeg(in_.leg_force);
@@ -209,7 +210,7 @@ class MachineOnBase {
       const Lanes product = dot(2.0 * chart.S + change, change);
       const Lanes stretch = product / (sqrt(chart.L * chart.L + product) + chart.L);
       now.leg_force.group[g] =
-          force_.group[g] + held.group[g] + legs_.group[g].leg.stiffness * (command.group[g] - stretch);
+          force_.group[g] + held.group[g] + axial_force(legs_.group[g].leg, command.group[g] - stretch);
     }
   }
 
@@ -222,7 +223,7 @@ class MachineOnBase {
       chart.q = R_chart_ * legs_.group[g].p;
       chart.S = (rest_.t + d_chart_) + chart.q - legs_.group[g].b;
       chart.L = sqrt(dot(chart.S, chart.S));
-      force_.group[g] -= legs_.group[g].leg.stiffness * (chart.L - before);
+      force_.group[g] += axial_force(legs_.group[g].leg, before - chart.L);
     }
   }
 

@@ -44,8 +44,7 @@ class Simulation {
 
   Simulation(const MachineOnBaseInput& input, const Excitation& base, const Excitation& wrench,
              const Excitation& command, const Tolerances& tolerances)
-      : machine_(input, base, wrench, command), tol_(tolerances) {
-    for (const auto& p : input.design.p) size_ = std::max(size_, norm(p));
+      : machine_(input, base, wrench, command), tol_(tolerances), size_(largest_radius(input.design)) {
     const Modes modes = natural_modes(machine_.machine(), machine_.geometry(State{}), machine_.rest().R);
     slowest_ = modes.omega[0], fastest_ = modes.omega[5];
     double spacing = std::numeric_limits<double>::infinity();
@@ -270,7 +269,7 @@ class Simulation {
   Counts counts_;
   List<double> corners_;
   State last_{};
-  double size_ = 0, slowest_, fastest_, max_step_, next_step_ = 0, time_ = 0;
+  double size_, slowest_, fastest_, max_step_, next_step_ = 0, time_ = 0;
   Peaks peaks_;
   double last_error_ = 1.0;
   double side_ = 0;    // sign of det H

@@ -3,7 +3,6 @@
 // force beside the six.
 #pragma once
 
-#include "model/energy.hpp"
 #include "model/equations.hpp"
 #include "model/reactions.hpp"
 #include "simd/pack.hpp"
@@ -156,7 +155,7 @@ struct BaseLoad {
     const LegReactions<Lanes> r = leg_reactions(group.leg, group.inertia, leg, end, motion, leg_force, 0.5);
     force += r.universal_force;
     moment += cross(at.q_b, r.universal_force) + r.universal_moment;
-    dissipation += leg_dissipation(group.leg, end, motion);
+    dissipation += friction_power(group.leg, joint_rates(end, motion));
   }
 };
 

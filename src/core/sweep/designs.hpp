@@ -2,8 +2,7 @@
 // one of their own. The mechanics is that of the single machine, over packs.
 #pragma once
 
-#include "decomposition/bidiagonal.hpp"
-#include "decomposition/jacobi_lanes.hpp"
+#include "decomposition/singular_lanes.hpp"
 #include "model/modes.hpp"
 #include "sweep/task.hpp"
 
@@ -11,28 +10,20 @@ namespace flexapod {
 
 using sweep_task::DesignTask;
 
-/// B = L^-1 H K^1/2 in the platform's axes; `legs`: lanes where every leg has a length and lies across its axis.
-template <class T>
-Mat6<T> scaled_force_transformation(const Machine<T>& machine, const Pose<T>& pose, mask_t<T>& legs) {
+/// B = L^-1 F in the platform's axes; `legs`: lanes where every leg has a length and lies across its axis.
+template <class T> SpringMatrix<T> scaled_springs(const Machine<T>& machine, const Pose<T>& pose, mask_t<T>& legs) {
   const Geometry<T> g(machine.design, Pose<T>(), Pose<T>{-transposed(pose.R, pose.t), transpose(pose.R)});
   SpatialInertia<T> J = platform_inertia(machine.design, Mat3<T>::identity());
-  Mat6<T> B;
+  SpringMatrix<T> directions;
   legs = T(0.0) < T(1.0);
   for (int i = 0; i < 6; ++i) {
     const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
     add_leg_inertia(J, leg, machine.inertia[i], g.q_p[i]);
-    const T root = sqrt(machine.design.leg[i].stiffness);
-    const Vec6<T> h = leg_wrench(g.q_p[i], root * leg.s());
-    for (int r = 0; r < 6; ++r) B[r][i] = h[r];
+    set_spring_directions(directions, i, g.q_p[i], leg.s());
     legs = legs & (leg.cosecant < 1e7) & (leg.L > 0.0);
   }
-  const Cholesky<T> L(J.matrix());
-  for (int i = 0; i < 6; ++i) {
-    Vec6<T> column;
-    for (int r = 0; r < 6; ++r) column[r] = B[r][i];
-    column = L.forward(column);
-    for (int r = 0; r < 6; ++r) B[r][i] = column[r];
-  }
+  SpringMatrix<T> B = RootStiffness<T>(machine.design).scaled(directions);
+  Cholesky<T>(J.matrix()).forward_all(B);
   return B;
 }
 
@@ -76,25 +67,13 @@ template <class T> class DesignSweep {
 
   template <class Place> void solve(const Machine<T>& machine, const Pose<T>& pose, Place place, int count) const {
     mask_t<T> legs;
-    const Mat6<T> B = scaled_force_transformation(machine, pose, legs);
-    Mat6<T> work = B;
-    SquaredBidiagonal<6, T> b = bidiagonalise(work);
-    const T scale = normalise(b);
-    const auto bad = !(legs & (scale < 1e300));
-    mask_t<T> failed;
-    T value[6];
+    const auto B = [&] { return scaled_springs(machine, pose, legs); };
     const int modes = task.modes;
-    if (modes == 6) all_six(b, value, failed);
-    else value[0] = lowest(b, T(0.0), failed);
-    failed = failed & (!bad);
-    if (any(failed)) [[unlikely]] {
-      T exact[6];
-      squared_singular_values(B, exact);
-      for (int i = 0; i < modes; ++i) value[i] = select(failed, exact[i] / scale, value[i]);
-    }
+    const auto [share, sum] = modes == 6 ? singular_squares<Wanted::all, T>(B) : singular_squares<Wanted::lowest, T>(B);
+    const auto bad = !(legs & (sum < 1e300));
     for (int i = 0; i < modes; ++i) {
       double x[T::lanes];
-      select(bad, T(std::numeric_limits<double>::quiet_NaN()), sqrt(scale * value[i])).store(x);
+      select(bad, T(std::numeric_limits<double>::quiet_NaN()), sqrt(sum * share[i])).store(x);
       for (int l = 0; l < count; ++l) task.omega[place(l) * modes + i] = x[l];
     }
   }

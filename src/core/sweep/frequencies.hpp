@@ -1,7 +1,7 @@
 // Many poses of one machine, packs of them at a time. The mechanics is that of the single pose, over packs.
 #pragma once
 
-#include "decomposition/bidiagonal.hpp"
+#include "decomposition/singular_lanes.hpp"
 #include "sweep/quantities.hpp"
 
 namespace flexapod {
@@ -14,40 +14,23 @@ template <class T> struct SweepModes {
   const MassAndForceMap<T>& dynamics;
 
   template <bool all> FLEXAPOD_FLAT T frequencies() const {
-    constexpr int count = all ? 6 : 1;
-    Mat6<T> B = matrix();
-    SquaredBidiagonal<6, T> b = bidiagonalise(B);
-    const T scale = normalise(b);
-    const T fault = worse(!(scale < 1e300), sweep_task::no_inertia, dynamics.fault);
+    const auto B = [this] { return dynamics.B(machine, Cholesky<T>(dynamics.J.matrix())); };
+    const auto squares = singular_squares<all ? Wanted::all : Wanted::lowest, T>(B);
+    const T fault = worse(!(squares.sum < 1e300), sweep_task::no_inertia, dynamics.fault);
     const auto bad = fault > T(sweep_task::singular);
-    auto failed = bad;
-    T value[6];
-    if constexpr (all) all_six(b, value, failed);
-    else value[0] = lowest(b, T(0.0), failed);
-    failed = failed & (!bad);
-    if (any(failed)) [[unlikely]]
-      repeat(failed, scale, value);
-    for (int i = 0; i < count; ++i) {
-      const T omega = unless(bad, sqrt(scale * value[i]));
+    for (int i = 0; i < (all ? 6 : 1); ++i) {
+      const T omega = unless(bad, sqrt(squares.sum * squares.share[i]));
       if (all) rows.put(task.omega_, omega, i, 6);
       if (i == 0 && task.omega_1_ != nullptr) rows.put(task.omega_1_, omega);
     }
-    return singular(value[0] < 1e-26, fault);
+    return singular(squares.share[0] < 1e-26, fault);
   }
 
   FLEXAPOD_FLAT T condition() const {
-    Mat6<T> H = dynamics.H;
-    SquaredBidiagonal<6, T> b = bidiagonalise(H);
-    normalise(b);
     const auto bad = no_pose(dynamics.fault);
-    auto open_low = bad, open_high = bad;
-    T value[6];
-    value[0] = lowest(b, T(0.0), open_low), value[5] = highest(b, open_high);
-    const auto failed = (open_low | open_high) & (!bad);
-    if (any(failed)) [[unlikely]]
-      repeat_H(failed, value);
-    rows.put(task.cond_H_, unless(bad, sqrt(value[5] / value[0])));
-    return singular(value[0] < 1e-26 * value[5], dynamics.fault);
+    const auto [share, sum] = singular_squares<Wanted::extremes, T>([this] { return dynamics.H(); });
+    rows.put(task.cond_H_, unless(bad, sqrt(share[5] / share[0])));
+    return singular(share[0] < 1e-26 * share[5], dynamics.fault);
   }
 
   T status() const {
@@ -58,21 +41,8 @@ template <class T> struct SweepModes {
   }
 
  private:
-  Mat6<T> matrix() const { return dynamics.B(machine, Cholesky<T>(dynamics.J.matrix())); }
-
   static T singular(const mask_t<T>& bad, const T& fault) {
     return select(bad & (fault <= 0.0), T(sweep_task::singular), fault);
-  }
-  FLEXAPOD_COLD void repeat(const mask_t<T>& failed, const T& scale, T (&value)[6]) const {
-    by_rotations(matrix(), failed, scale, value);
-  }
-  FLEXAPOD_COLD void repeat_H(const mask_t<T>& failed, T (&value)[6]) const {
-    by_rotations(dynamics.H, failed, T(1.0), value);
-  }
-  static void by_rotations(const Mat6<T>& B, const mask_t<T>& failed, const T& scale, T (&value)[6]) {
-    T exact[6];
-    squared_singular_values(B, exact);
-    for (int i = 0; i < 6; ++i) value[i] = select(failed, exact[i] / scale, value[i]);
   }
 };
 
@@ -163,7 +133,7 @@ template <class T> class Sweep {
     joined.fault.set_part(i, part.fault);
     if (!(task.quantities & (modal | Quantity::cond_H))) return;
     for (int r = 0; r < 6; ++r)
-      for (int c = 0; c < 6; ++c) joined.H[r][c].set_part(i, part.H[r][c]);
+      for (int c = 0; c < spring_count; ++c) joined.directions[r][c].set_part(i, part.directions[r][c]);
     if (!(task.quantities & modal)) return;
     join(joined.J.top, part.J.top, i), join(joined.J.bottom, part.J.bottom, i);
     for (int r = 0; r < 3; ++r) {

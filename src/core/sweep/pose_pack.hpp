@@ -2,7 +2,7 @@
 // and inertia are constants. The base's frame is the inertial one.
 #pragma once
 
-#include "model/equations.hpp"
+#include "model/springs.hpp"
 #include "simd/elementary.hpp"
 #include "sweep/task.hpp"
 
@@ -13,7 +13,7 @@ struct SweptMachine {
   Machine<double> machine;
   Machine<double> weightless;         // gravity enters as an acceleration of platform and base
   SpatialInertia<double> J_platform;  // platform axes
-  double root_K[6];
+  RootStiffness<double> root_stiffness;
   double size;  // of the platform: makes rows of forces and of moments comparable
 
   explicit SweptMachine(const sweep_task::Task& task)
@@ -21,12 +21,9 @@ struct SweptMachine {
                 task.universal ? Joint::universal : Joint::spin_free),
         weightless(machine),
         J_platform(platform_inertia(machine.design, Mat3<double>::identity())),
-        size(0.0) {
+        root_stiffness(machine.design),
+        size(mean_radius(machine.design)) {
     weightless.design.gravity = Vec3<double>();
-    for (int i = 0; i < 6; ++i) {
-      root_K[i] = std::sqrt(machine.design.leg[i].stiffness);
-      size += norm(machine.design.p[i]) / 6.0;
-    }
   }
 };
 
@@ -79,18 +76,19 @@ template <class T> struct PosePack {
   }
 };
 
-/// What vibrates: J_p and H, in the platform's axes.
+/// What vibrates: J_p and the directions of the springs, in the platform's axes.
 template <class T> struct MassAndForceMap {
   SpatialInertia<T> J;
-  Mat6<T> H;
+  SpringMatrix<T> directions;
   T fault;
 
+  Mat6<T> H() const { return leg_directions(directions); }
   /// With lengths and directions only: J is left.
   void set_legs(const PosePack<T>& at) {
     fault = at.fault;
     for (int i = 0; i < 6; ++i) {
       const Vec3<T>& S = at.g.S[i];
-      set_column(i, leg_wrench(at.g.q_p[i], rsqrt(dot(S, S)) * S));
+      set_spring_directions(directions, i, at.g.q_p[i], rsqrt(dot(S, S)) * S);
     }
   }
   void set(const SweptMachine& m, const PosePack<T>& at) {
@@ -100,23 +98,18 @@ template <class T> struct MassAndForceMap {
     fault = at.fault;
     for (int i = 0; i < 6; ++i) {
       add_leg_inertia(J, legs[i], m.machine.inertia[i], at.g.q_p[i]);
-      set_column(i, leg_wrench(at.g.q_p[i], legs[i].s()));
+      set_spring_directions(directions, i, at.g.q_p[i], legs[i].s());
       fault = worse(!(legs[i].cosecant < 1e7), sweep_task::no_leg, fault);
     }
   }
-  /// B = L^-1 H K^1/2.
-  Mat6<T> B(const SweptMachine& m, const Cholesky<T>& L) const {
-    Mat6<T> B;
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 6; ++j) B[i][j] = m.root_K[j] * H[i][j];
+  /// B = L^-1 F.
+  SpringMatrix<T> B(const SweptMachine& m, const Cholesky<T>& L) const {
+    SpringMatrix<T> B = m.root_stiffness.scaled(directions);
     L.forward_all(B);
     return B;
   }
 
  private:
-  void set_column(int i, const Vec6<T>& h) {
-    for (int r = 0; r < 6; ++r) H[r][i] = h[r];
-  }
   static SpatialInertia<T> pack(const SpatialInertia<double>& J) {
     const auto sym = [](const Sym3<double>& m) { return Sym3<T>{m.xx, m.yy, m.zz, m.xy, m.xz, m.yz}; };
     return {sym(J.top), {{J.bottom_left.row[0], J.bottom_left.row[1], J.bottom_left.row[2]}}, sym(J.bottom)};

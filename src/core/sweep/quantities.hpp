@@ -1,7 +1,6 @@
 // What a sweep can tell of a pack of poses beside frequencies and the condition of H.
 #pragma once
 
-#include "decomposition/jacobi_lanes.hpp"
 #include "decomposition/least_squares.hpp"
 #include "model/kinematics.hpp"
 #include "model/modes.hpp"
@@ -64,21 +63,22 @@ template <class T> struct SweepQuantities {
     const Geometry<T> g(machine.weightless.design, platform.pose, base.pose);
     Vec6<T> load[1] = {inverse_wrench(machine.weightless, g, platform, base)};
     for (int i = 3; i < 6; ++i) load[0][i] *= 1.0 / machine.size;
-    const T weak = solve(load);
+    const T weak = solve(legs().H(), load);
     T most = abs(load[0][0]);
     for (int i = 1; i < 6; ++i) most = max(most, abs(load[0][i]));
     return finish(task.leg_force_, most, weak);
   }
 
-  /// The least translational stiffness: 1 / largest eigenvalue of the block of translations of (H K H^T)^-1, which is
-  /// Y^T Y with Y = K^-1/2 H^-1 [E; 0].
+  /// The least translational stiffness: 1 / largest eigenvalue of the block of translations of K^-1, which is Y^T Y with
+  /// Y = F^-1 [E; 0] for a square F.
   T stiffness() const {
     Vec6<T> side[3];
     for (int i = 0; i < 3; ++i) side[i][i] = T(1.0);
-    const T weak = solve(side);
+    SpringMatrix<T> F = machine.root_stiffness.scaled(legs().directions);
+    const T weak = solve(square_factor(F), side);
     T Y[3][6];
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 6; ++j) Y[i][j] = side[i][j] * (1.0 / machine.root_K[j]);
+      for (int j = 0; j < 6; ++j) Y[i][j] = side[i][j];
     orthogonalise_rows<3, 6, T>(Y, nullptr);
     const T most = max(max(row_square(Y[0]), row_square(Y[1])), row_square(Y[2]));
     return finish(task.lowest_stiffness_, 1.0 / most, weak);
@@ -97,7 +97,7 @@ template <class T> struct SweepQuantities {
     const Pose<D> moved = displaced(at.pose, variables<D>(0), variables<D>(3));
     const Geometry<D> g(machine.machine.design, moved, Pose<D>());
     const D residual =
-        rayleigh_residual(machine.machine, inertia(machine.machine, g, moved.R), force_transformation(g), v, lambda);
+        rayleigh_residual(machine.machine, inertia(machine.machine, g, moved.R), spring_directions(g), v, lambda);
     const T half = 0.5 * rsqrt(lambda);
     T by[6];
     for (int i = 0; i < 6; ++i) by[i] = half * residual.d[i];
@@ -116,14 +116,17 @@ template <class T> struct SweepQuantities {
     const Vec3<T>& S = at.g.S[i];
     return upper_angle(norm(cross(n, S)), dot(n, S));
   }
-  /// Solves H x = b with rows of moments divided by the platform's size; how near H is to singular.
-  template <int m> T solve(Vec6<T> (&b)[m]) const {
+  MassAndForceMap<T> legs() const {
     MassAndForceMap<T> legs;
     legs.set_legs(at);
+    return legs;
+  }
+  /// Solves A x = b with rows of moments divided by the platform's size; how near A is to singular.
+  template <int m> T solve(Mat6<T> A, Vec6<T> (&b)[m]) const {
     for (int i = 3; i < 6; ++i)
-      for (T& h : legs.H.a[i]) h *= 1.0 / machine.size;
+      for (T& a : A.a[i]) a *= 1.0 / machine.size;
     T weak;
-    solve_orthogonal(legs.H, b, weak);
+    solve_orthogonal(A, b, weak);
     return weak;
   }
   T finish(double* to, const T& value, const T& weak) const {
