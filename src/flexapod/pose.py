@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.conventions import Array
-from flexapod.errors import FlexapodError, PoseError
+from flexapod.errors import FlexapodError, PoseError, shown
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -23,12 +23,17 @@ def vectors(value: ArrayLike, name: str, width: int = 3, error_type: type[Flexap
     try:
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise error_type(f"{name} is {value!r}; {width} numbers are needed") from error
+        raise error_type(f"{name} is {shown(value)}; it must hold {width} numbers.") from error
     if array.ndim == 0 or array.shape[-1] != width:
-        raise error_type(f"{name} has shape {array.shape}; its last axis must hold {width} numbers")
+        raise error_type(f"{name} has shape {array.shape}; its last axis must hold {width} numbers.")
     if not np.isfinite(array).all():
-        raise error_type(f"{name} holds NaN or infinity; all its numbers must be finite")
+        raise error_type(f"{name} holds NaN or infinity; all its numbers must be finite.")
     return array
+
+
+_ROTATION = (
+    "give a scipy Rotation or matrices of shape (..., 3, 3). From angles: Pose.from_rpy(x, y, z, roll, pitch, yaw)."
+)
 
 
 def _rotation_matrices(rotation: Any) -> Array:
@@ -36,23 +41,52 @@ def _rotation_matrices(rotation: Any) -> Array:
     try:
         matrix = np.array(matrix, dtype=np.float64)  # a copy: a pose does not change with its maker's arrays
     except (TypeError, ValueError) as error:
-        raise PoseError(f"rotation is {rotation!r}; give a scipy Rotation or matrices of shape (..., 3, 3)") from error
+        raise PoseError(f"rotation is {shown(rotation)}; {_ROTATION}") from error
     if matrix.ndim < 2 or matrix.shape[-2:] != (3, 3):
-        raise PoseError(f"rotation has shape {matrix.shape}; give a scipy Rotation or matrices of shape (..., 3, 3)")
+        raise PoseError(f"rotation has shape {matrix.shape}; {_ROTATION}")
     skew = np.abs(matrix @ np.swapaxes(matrix, -1, -2) - np.eye(3)).max(initial=0.0)
     if not skew < 1e-9 or np.any(np.linalg.det(matrix) < 0):
-        raise PoseError("rotation is not a rotation matrix: R R^T must be the identity to 1e-9 and det R be +1")
+        raise PoseError("rotation is not a rotation matrix: R R^T must be the identity to 1e-9 and det R be +1.")
     return matrix
 
 
 class Pose:
-    """Position of a body's reference point and its orientation.
+    """Position of a body's reference point and its orientation; one pose or many, equal and hashed by value.
 
-    position: (..., 3) m. rotation: a scipy `Rotation` (one or many), or matrices (..., 3, 3) that take vectors from
-    body axes to the outer frame; default: none.
+    Parameters
+    ----------
+    position : array_like
+        Position of the reference point, m, (..., 3).
+    rotation : scipy.spatial.transform.Rotation or array_like, optional
+        Orientation: a `Rotation` (one or many), or matrices (..., 3, 3) that take vectors from body axes to the outer
+        frame. Left out, the body is not turned.
 
-    Raises: PoseError for wrong shapes, NaN, or matrices that do not rotate.
-    Source: Section 4.2; E7: an orientation is a rotation, not three angles.
+    Attributes
+    ----------
+    position : ndarray
+        Position, m, (..., 3), read-only.
+    matrix : ndarray
+        Rotation matrices, (..., 3, 3), read-only.
+
+    Raises
+    ------
+    PoseError
+        For wrong shapes, numbers that are not finite, or matrices that do not rotate.
+
+    Notes
+    -----
+    Section 4.2 of the paper; an orientation is a rotation, not three angles. Functions that take a pose also take six
+    numbers: x, y, z in m and roll, pitch, yaw in rad.
+
+    Examples
+    --------
+    >>> fx.Pose.from_rpy(0, 0, 0.5, yaw=30, degrees=True)
+    Pose(x=0 y=0 z=0.5 m, roll=0 pitch=0 yaw=30 deg)
+    >>> from scipy.spatial.transform import Rotation
+    >>> fx.Pose([0, 0, 0.5], Rotation.from_euler("z", 30, degrees=True)).rpy.round(4).tolist()
+    [0.0, 0.0, 0.5236]
+    >>> fx.Pose([[0, 0, 0.5], [0, 0, 0.6]])[1]
+    Pose(x=0 y=0 z=0.6 m, roll=0 pitch=0 yaw=0 deg)
     """
 
     __slots__ = ("matrix", "position")
@@ -67,25 +101,50 @@ class Pose:
             shape = np.broadcast_shapes(p.shape[:-1], R.shape[:-2])
         except ValueError:
             raise PoseError(
-                f"position {p.shape} and rotation {R.shape} do not fit: their leading axes must be equal or 1"
+                f"position {p.shape} and rotation {R.shape} do not fit: their leading axes must be equal or 1."
             ) from None
         self.position = np.broadcast_to(p, (*shape, 3))
         self.matrix = np.broadcast_to(R, (*shape, 3, 3))
 
     @classmethod
     def from_rpy(
-        cls, x: ArrayLike, y: ArrayLike, z: ArrayLike, roll: ArrayLike = 0, pitch: ArrayLike = 0, yaw: ArrayLike = 0
+        cls,
+        x: ArrayLike,
+        y: ArrayLike,
+        z: ArrayLike,
+        roll: ArrayLike = 0,
+        pitch: ArrayLike = 0,
+        yaw: ArrayLike = 0,
+        *,
+        degrees: bool = False,
     ) -> Pose:
-        """Pose from metres and radians, each (...): turned about the fixed axes x (roll), then y (pitch), then z (yaw).
+        """Make a pose from a position and three angles, turned about the fixed axes x (roll), then y (pitch), then z.
 
-        Raises: PoseError for what are no finite numbers, or shapes that do not fit.
+        Parameters
+        ----------
+        x, y, z : array_like
+            Position, m, (...).
+        roll, pitch, yaw : array_like
+            Angles about the fixed axes x, y and z, in this order, (...), rad.
+        degrees : bool
+            Whether the angles are given in degrees.
+
+        Returns
+        -------
+        Pose
+            One pose, or as many as the numbers' common shape has.
+
+        Raises
+        ------
+        PoseError
+            For what is not a finite number, or shapes that do not fit.
         """
         try:
             numbers = np.broadcast_arrays(*(np.asarray(v, dtype=np.float64) for v in (x, y, z, roll, pitch, yaw)))
         except (TypeError, ValueError) as error:
             raise PoseError(f"x, y, z, roll, pitch and yaw must be numbers, or arrays that fit: {error}") from error
         six = vectors(np.stack(numbers, axis=-1), "pose", 6)
-        return Pose(six[..., :3], rpy_matrix(six[..., 3:]))
+        return Pose(six[..., :3], rpy_matrix(np.radians(six[..., 3:]) if degrees else six[..., 3:]))
 
     @property
     def rotation(self) -> Rotation:
@@ -164,7 +223,7 @@ def as_pose(value: Any, name: str = "pose") -> Pose:
         return value
     if isinstance(value, Motion) or np.ndim(value) == 0 or isinstance(value, str):
         raise PoseError(
-            f"{name} is {type(value).__name__}; give a flexapod Pose, or x, y, z in m and roll, pitch, yaw in rad"
+            f"{name} is {type(value).__name__}; give a flexapod Pose, or x, y, z in m and roll, pitch, yaw in rad."
         )
     six = vectors(value, name, 6)
     return Pose(six[..., :3], rpy_matrix(six[..., 3:]))
@@ -177,13 +236,35 @@ def orthonormal(matrix: Array) -> Array:
 
 
 class Motion:
-    """Pose, velocity and acceleration of a body, in the inertial frame, at its reference point.
+    """Pose, velocity and acceleration of a body in the inertial frame; one motion or many, equal and hashed by value.
 
-    pose: `Pose`. velocity m/s, angular_velocity rad/s, acceleration m/s2, angular_acceleration rad/s2: (..., 3),
-    default zero.
+    Parameters
+    ----------
+    pose : Pose or array_like
+        Where the body is: a Pose, or x, y, z in m and roll, pitch, yaw in rad.
+    velocity : array_like
+        Velocity of the reference point, m/s, (..., 3).
+    angular_velocity : array_like
+        Angular velocity, rad/s, (..., 3).
+    acceleration : array_like
+        Acceleration of the reference point, m/s2, (..., 3).
+    angular_acceleration : array_like
+        Angular acceleration, rad/s2, (..., 3).
 
-    Raises: PoseError for wrong shapes or numbers that are not finite.
-    Source: Section 4.2.
+    Raises
+    ------
+    PoseError
+        For wrong shapes or numbers that are not finite.
+
+    Notes
+    -----
+    Section 4.2 of the paper. What is left out is zero.
+
+    Examples
+    --------
+    >>> motion = fx.Motion([0, 0, 0.5, 0, 0, 0], velocity=[0, 0, 0.1])
+    >>> motion.velocity.tolist()
+    [0.0, 0.0, 0.1]
     """
 
     __slots__ = ("acceleration", "angular_acceleration", "angular_velocity", "pose", "velocity")
@@ -196,7 +277,7 @@ class Motion:
 
     def __init__(
         self,
-        pose: Pose,
+        pose: PoseLike,
         velocity: ArrayLike = (0.0, 0.0, 0.0),
         angular_velocity: ArrayLike = (0.0, 0.0, 0.0),
         acceleration: ArrayLike = (0.0, 0.0, 0.0),
@@ -208,11 +289,12 @@ class Motion:
             "acceleration": acceleration,
             "angular_acceleration": angular_acceleration,
         }
+        pose = as_pose(pose)
         checked = {name: vectors(value, name) for name, value in given.items()}
         try:
             shape = np.broadcast_shapes(pose.shape, *(v.shape[:-1] for v in checked.values()))
         except ValueError:
-            raise PoseError("the leading axes of pose, velocities and accelerations must be equal or 1") from None
+            raise PoseError("the leading axes of pose, velocities and accelerations must be equal or 1.") from None
         self.pose = Pose(np.broadcast_to(pose.position, (*shape, 3)), np.broadcast_to(pose.matrix, (*shape, 3, 3)))
         for name, value in checked.items():
             setattr(self, name, np.broadcast_to(value, (*shape, 3)))

@@ -16,7 +16,10 @@ SHAPES = {
 
 @dataclass(frozen=True)
 class Key:
-    """What a value must be. `least` and `most` are in SI units; `open_` leaves `least` itself out."""
+    """What a value must be. `least` and `most` are in SI units; `open_` leaves `least` itself out.
+
+    A value that must be `symmetric` may also be given as the three numbers on its diagonal.
+    """
 
     meaning: str
     dimension: str | None
@@ -29,14 +32,15 @@ class Key:
 
     @property
     def shape_text(self) -> str:
-        return " or ".join(SHAPES[shape] for shape in self.shapes)
+        moments = ", or the three principal moments" if self.symmetric else ""
+        return " or ".join(SHAPES[shape] for shape in self.shapes) + moments
 
 
 _ONE: tuple[tuple[int, ...], ...] = ((),)
 _LEGS: tuple[tuple[int, ...], ...] = ((), (6,))
 _VECTOR = ((3,),)
 _JOINTS = ((6, 3),)
-_INERTIA = "Write the same number on both sides of the diagonal, or the three principal moments alone."
+_INERTIA = "Write the same number on both sides of the diagonal; principal moments alone may be given as three numbers."
 _FLAT_ANGLE = 3.141592653589793
 _ROW_REMEDY = "Give one row [x, y, z] for each of the six legs."
 _ANGLE_REMEDY = "If the number is in degrees, put _deg at the end of the key."
@@ -56,7 +60,7 @@ def _part(joint: str) -> dict[str, Key]:
         "inertia": Key(
             "inertia about the part's own mass centre, leg axes",
             "inertia",
-            ((3, 3), (3,), (6, 3, 3)),
+            ((3, 3), (6, 3, 3)),
             _INERTIA,
             symmetric=True,
         ),
@@ -115,7 +119,7 @@ KEYS: dict[str, Key] = {
     "platform.inertia": Key(
         "inertia about the mass centre, platform axes",
         "inertia",
-        ((3, 3), (3,)),
+        ((3, 3),),
         _INERTIA,
         symmetric=True,
     ),

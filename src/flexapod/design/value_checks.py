@@ -17,14 +17,14 @@ def check_value(name: str, value: Any, rule: Key, unit: str | None = None) -> Ar
     """One value as an array in SI units, in the shape it was given. Raises DesignError that says what is wrong."""
     unit = si_unit(rule.dimension) if unit is None else unit
     given = _numbers(name, value, rule)
+    if rule.symmetric and given.shape == (3,):
+        given = np.diag(given)
     if given.shape not in rule.shapes:
         shape = "one number" if given.ndim == 0 else f"shape {' x '.join(map(str, given.shape))}"
         raise DesignError(f"{name} has {shape}; it must be {rule.shape_text}. {rule.remedy}")
     si = to_si(given, rule.dimension, unit) if rule.dimension else given
     _check_each(name, given, si, rule, unit)
-    if rule.symmetric and si.shape == (3,):
-        si = np.diag(si)  # principal moments
-    elif rule.symmetric:
+    if rule.symmetric:
         si = _symmetric(name, given, si, rule, unit)
     return np.asarray(si + 0.0)  # + 0.0: -0.0 becomes 0.0, so that equal designs have equal bytes
 

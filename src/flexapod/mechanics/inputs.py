@@ -69,7 +69,7 @@ def states(hexapod: Hexapod, platform: MotionLike | None, base: MotionLike | Non
         shape = np.broadcast_shapes(*(motion.shape for motion in motions))
     except ValueError:
         raise PoseError(
-            f"pose has batch axes {motions[0].shape}, base {motions[1].shape}; they must be equal or 1"
+            f"pose has batch axes {motions[0].shape}, base {motions[1].shape}; they must be equal or 1."
         ) from None
     rows = [np.ascontiguousarray(_spread(m.packed, shape).reshape(-1, 24)) for m in motions]
     length, sine = _core.leg_fit(hexapod.packed, *rows)
@@ -131,6 +131,6 @@ def _fitted(value: Array, name: str, shape: tuple[int, ...]) -> Array:
         spread = _spread(value, shape)
     except ValueError:
         raise ArgumentError(
-            f"{name} has shape {value.shape}, which does not fit the batch axes {shape} of the states"
+            f"{name} has shape {value.shape}, which does not fit the batch axes {shape} of the states."
         ) from None
     return np.ascontiguousarray(spread.reshape(-1, value.shape[-1]))
