@@ -7,9 +7,9 @@ OUT    ?= out
 SECONDS ?= 300
 
 CORE := CMakeLists.txt $(wildcard src/core/*/*)
-CPP  := $(wildcard src/core/*/*.?pp tests/core/*.cpp)
+CPP  := $(wildcard src/core/*/*.?pp tests/core/*.?pp)
 
-.PHONY: report paper test coverage build lint types bench bench-readme docs validation sanitize portable fuzz dist \
+.PHONY: report paper test coverage build lint types bench bench-readme docs validation core-test sanitize portable fuzz dist \
         clean web web-types web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
@@ -80,6 +80,12 @@ $(SANITIZED)/.built: $(VENV)/.built $(CORE)
 	$(BIN)/python -m pip install -q --no-deps --no-build-isolation --target $(SANITIZED)/site \
 	  -C build-dir=$(SANITIZED)/cmake -C cmake.define.FLEXAPOD_SANITIZE=ON .
 	touch $@
+
+core-test: $(VENV)/.tools ## tests of the core in C++, where doctest is installed (Debian: doctest-dev)
+	if echo '#include <doctest/doctest.h>' | $(CXX) -x c++ -fsyntax-only - 2>/dev/null; then \
+	  $(BIN)/cmake -S tests/core -B build/core-test -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja >/dev/null && \
+	  $(BIN)/cmake --build build/core-test && build/core-test/core_tests; \
+	else echo "doctest is not here: the core's C++ tests were not run"; fi
 
 portable: build ## the core by other compilers and for Arm, as far as this machine has them, gives the same numbers
 	$(BIN)/python tests/core/compare.py
