@@ -33,7 +33,7 @@ def core_call(hexapod: fx.Hexapod):
         [np.concatenate([s.force, s.moment]) for s in drawn],
     ]
     rows = [np.tile(np.array(column), (COPIES, 1)) for column in columns]
-    return lambda: _core.forward_dynamics(hexapod.packed, True, *rows)
+    return lambda: _core.forward_dynamics(hexapod.packed, _core.Joint.universal, *rows)
 
 
 def contests(plan: Plan) -> list[Contest]:

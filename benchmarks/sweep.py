@@ -11,6 +11,8 @@ import os
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from functools import reduce
+from operator import or_
 from statistics import median
 
 import numpy as np
@@ -35,8 +37,8 @@ def no_limits() -> np.ndarray:
     return np.concatenate([np.zeros(36), np.tile([-np.inf, np.inf], 6), [np.inf, np.inf, -np.inf]])
 
 
-def bits(quantities: tuple[str, ...]) -> int:
-    return sum(_core.SWEEP[q] for q in quantities)
+def bits(quantities: tuple[str, ...]) -> _core.SweepQuantity:
+    return reduce(or_, (_core.SweepQuantity[q] for q in quantities))
 
 
 # --- the kernel, in a process of its own for each instruction set ---------------------------------------------------
@@ -44,7 +46,7 @@ def bits(quantities: tuple[str, ...]) -> int:
 
 def kernel_rate(quantities: tuple[str, ...], threads: int) -> float:
     design, poses = fx.load("mukherjee-i").packed, random_poses(KERNEL_POSES)
-    arguments = design, True, poses, bits(quantities), no_limits(), threads
+    arguments = design, _core.Joint.universal, poses, bits(quantities), no_limits(), threads
     _core.sweep(*arguments)
     return KERNEL_POSES / seconds(lambda: _core.sweep(*arguments))
 
@@ -164,7 +166,7 @@ def _error(hexapod, poses, omega, cond_H) -> float:
 
 def check(hexapod, poses, pinocchio) -> None:
     """All contenders compute the same: to rounding times the condition."""
-    found = _core.sweep(hexapod.packed, True, poses, bits(("omega", "cond_H")), no_limits(), 1)
+    found = _core.sweep(hexapod.packed, _core.Joint.universal, poses, bits(("omega", "cond_H")), no_limits(), 1)
     omega, cond_H = array_modes(np, hexapod, poses)
     error = np.abs(found["omega"] / omega - 1).max(axis=1) / (omega[:, 5] / omega[:, 0])
     assert error.max() < 1e-13, error.max()
@@ -207,7 +209,7 @@ def report(hexapod, contenders, turns) -> None:
         ratio = median(turn[label] / turn["both              NumPy + LAPACK"] for turn in turns)
         print(f"{label:42s} {median(rate):10.3g} {max(rate):10.3g} {ratio:8.1f}")
     for task, quantities in TASKS.items():
-        flops = _core.sweep_flops(hexapod.packed, True, random_poses(2_000), bits(quantities))
+        flops = _core.sweep_flops(hexapod.packed, _core.Joint.universal, random_poses(2_000), bits(quantities))
         shares = []
         for name in _core.simd_available():
             label = f"{task:17s} {name:8s} 1 thread"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod import _core
 from flexapod.conventions import Array
 from flexapod.errors import FlexapodError, PoseError, shown
 
@@ -180,6 +181,11 @@ class Pose:
     def __getitem__(self, index: Any) -> Pose:
         return Pose(self.position[index], self.matrix[index])
 
+    @property
+    def packed(self) -> Array:
+        """(..., n): its numbers in the core's order, position and matrix by rows."""
+        return np.concatenate([self.position, self.matrix.reshape(*self.shape, 9)], axis=-1)
+
     def __repr__(self) -> str:
         if self.shape:
             return f"<Pose {self.shape}>"
@@ -233,6 +239,22 @@ def orthonormal(matrix: Array) -> Array:
     """The rotation nearest to a matrix that is one to rounding."""
     u, _, vt = np.linalg.svd(matrix)
     return u @ vt
+
+
+#: Name, numbers and shape of each part of a motion as the core has it, in its order; the first two are the pose.
+_PARTS = [
+    (field.name, slice(field.offset, field.offset + field.index.size), field.shape) for field in _core.MOTION_LAYOUT
+]
+_RATES = [name for name, _, _ in _PARTS[2:]]
+
+
+def unpack(numbers: Array) -> dict[str, Array]:
+    """The parts of a motion, or of a pose alone, by name, from numbers (..., n) in the core's order."""
+    return {
+        name: numbers[..., place].reshape(*numbers.shape[:-1], *shape)
+        for name, place, shape in _PARTS
+        if place.stop <= numbers.shape[-1]
+    }
 
 
 class Motion:
@@ -311,10 +333,14 @@ class Motion:
 
     @property
     def packed(self) -> Array:
-        """(..., 24): position, rotation by rows, velocity, angular velocity, acceleration, angular acceleration."""
-        flat = self.pose.matrix.reshape(*self.shape, 9)
-        rates = (self.velocity, self.angular_velocity, self.acceleration, self.angular_acceleration)
-        return np.concatenate([self.pose.position, flat, *rates], axis=-1)
+        """(..., n): its numbers in the core's order (`flexapod._core.MOTION_LAYOUT`)."""
+        return np.concatenate([self.pose.packed, *(getattr(self, name) for name in _RATES)], axis=-1)
+
+    @classmethod
+    def unpacked(cls, numbers: Array) -> Motion:
+        """The motion of numbers (..., n) in the core's order."""
+        parts = unpack(numbers)
+        return cls(Pose(parts.pop("position"), parts.pop("matrix")), **parts)
 
     def __eq__(self, other: object) -> bool:
         return np.array_equal(self.packed, other.packed) if isinstance(other, Motion) else NotImplemented

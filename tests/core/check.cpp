@@ -30,7 +30,7 @@ void sweep(const double* design, const double* limits, const double* poses, std:
   std::vector<std::uint8_t> status(n);
   const std::unique_ptr<bool[]> within(new bool[n]);
   sweep_task::Task task{};
-  task.design = design, task.universal = true, task.poses = poses, task.width = 6, task.quantities = 1023;
+  task.design = design, task.joint = Joint::universal, task.poses = poses, task.width = 6, task.quantities = 1023;
   task.limits = reinterpret_cast<const sweep_task::Limits*>(limits);
   task.omega_1_ = lowest.data(), task.omega_ = omega.data(), task.cond_H_ = cond.data();
   task.leg_length_ = length.data(), task.leg_distance_ = distance.data(), task.leg_force_ = force.data();

@@ -10,6 +10,8 @@ import shutil
 import subprocess
 import sys
 import tempfile
+from functools import reduce
+from operator import or_
 from pathlib import Path
 from typing import NamedTuple
 
@@ -33,6 +35,7 @@ POSES = 203  # not a multiple of any number of lanes
 LENGTHS = {"omega": 6, "cond_H": 1, "leg_length": 6, "leg_distance": 1, "leg_force": 1, "lowest_stiffness": 1}
 LENGTHS |= {"universal_angle": 6, "spherical_angle": 6, "omega_1_gradient": 6, "status": 1, "within_limits": 1}
 CENTER = {"mukherjee-i": (0.0, 0.0, 0.89), "mukherjee-ii": (0.0, 0.0, 0.085)}  # where a design has no home
+JOINT = _core.Joint.universal
 TOLERANCE = 1e-11  # of the largest number of a pose; conditions here are below 1e3
 
 
@@ -68,10 +71,10 @@ class Problem:
         )
         limits = np.concatenate([np.tile([0, 0, 1.0], 12), np.tile([0, 1.0], 6), [0.5, 0.5, 0.01]])
         self.input = np.concatenate([hexapod.packed, limits, poses.ravel(), motions.ravel()]).tobytes()
-        self.expected = _core.sweep(hexapod.packed, True, poses, sum(_core.SWEEP.values()), limits, 1)
+        self.expected = _core.sweep(hexapod.packed, JOINT, poses, reduce(or_, _core.SweepQuantity), limits, 1)
         rest = np.tile(fx.Motion(fx.Pose([0.0, 0.0, 0.0])).packed, (POSES, 1))
         none = np.zeros((POSES, 6))
-        self.expected["acceleration"] = _core.forward_dynamics(hexapod.packed, True, motions, rest, none, none)
+        self.expected["acceleration"] = _core.forward_dynamics(hexapod.packed, JOINT, motions, rest, none, none)
 
 
 def difference(problem: Problem, output: bytes) -> float:

@@ -188,7 +188,7 @@ def test_slopes_where_frequencies_are_equal(measured):
         packed = own[:211] + step * direction[0]
         motion = fx.Motion(pose).packed[None]
         still = fx.Motion.fixed().packed[None]
-        return _core.natural_modes(packed, True, motion, still)[0][0, :3]
+        return _core.natural_modes(packed, _core.Joint.universal, motion, still)[0][0, :3]
 
     for side in (1, -1):  # each of the three goes its own way, in order, on either side
         moved = (lowest_three(side * 1e-5) - omega[:3]) / 1e-5

@@ -6,30 +6,31 @@ from tests.helpers.support import apart
 
 import flexapod as fx
 from flexapod import _core
+from flexapod.design.packing import PLACES
 from flexapod.optimisation.uncertainty import Ensemble
 
 
 def rows_of(poses):
-    return np.ascontiguousarray(np.concatenate([poses.position, poses.matrix.reshape(-1, 9)], axis=1))
+    return poses.packed
 
 
-@pytest.mark.parametrize("universal", [True, False])
-def test_many_designs_at_once_are_as_one_by_one(universal, measured):
+@pytest.mark.parametrize("joint", _core.Joint)
+def test_many_designs_at_once_are_as_one_by_one(joint, measured):
     rng = np.random.default_rng(2)
     machine = fx.load("mukherjee-i")
-    designs = machine.packed * (1 + 0.02 * rng.standard_normal((37, 211)))  # no multiple of the lanes
+    designs = machine.packed * (1 + 0.02 * rng.standard_normal((37, _core.design_size)))  # no multiple of the lanes
     six = np.concatenate([machine.home.position, machine.home.rpy]) + 0.05 * rng.standard_normal((37, 6))
     poses = fx.Pose.from_rpy(*six.T)
     still = fx.Motion.fixed().packed[None]
     motions = fx.Motion(poses).packed
 
     def alone(design, k):
-        return _core.natural_modes(design, universal, motions[k : k + 1], still)[0][0]
+        return _core.natural_modes(design, joint, motions[k : k + 1], still)[0][0]
 
-    paired = _core.sweep_designs(designs, universal, rows_of(poses), True, 6, 2)
+    paired = _core.sweep_designs(designs, joint, rows_of(poses), True, 6, 2)
     expected = np.array([alone(design, k) for k, design in enumerate(designs)])
     measured("design/ensemble", apart(paired[:, 0], expected), 1e-10)  # eps times the root of cond(J), with room
-    every = _core.sweep_designs(designs, universal, rows_of(poses)[:5], False, 1, 1)
+    every = _core.sweep_designs(designs, joint, rows_of(poses)[:5], False, 1, 1)
     assert every.shape == (37, 5, 1)
     np.testing.assert_allclose(every[3, :, 0], [alone(designs[3], k)[0] for k in range(5)], rtol=1e-10)
 
@@ -37,9 +38,10 @@ def test_many_designs_at_once_are_as_one_by_one(universal, measured):
 def test_many_designs_at_repeated_frequencies_and_impossible_poses():
     machine = fx.load("cubic-isolator").replace({"legs.lower": None, "legs.upper": None})
     designs = np.tile(machine.packed, (20, 1))
-    designs[7, 57] = np.nan  # the mass
+    designs[7, PLACES["platform.mass"]] = np.nan
     home = fx.home_pose(machine)
-    omega = _core.sweep_designs(designs, True, rows_of(fx.Pose(home.position[None], home.matrix[None])), False, 6, 1)
+    at_home = rows_of(fx.Pose(home.position[None], home.matrix[None]))
+    omega = _core.sweep_designs(designs, _core.Joint.universal, at_home, False, 6, 1)
     expected = fx.natural_modes(machine, home).omega
     assert np.isnan(omega[7]).all()
     np.testing.assert_allclose(np.delete(omega[:, 0], 7, axis=0), np.tile(expected, (19, 1)), rtol=1e-12)

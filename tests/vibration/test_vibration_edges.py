@@ -76,7 +76,7 @@ def test_a_resonance_without_damping_hit_exactly_is_infinite_and_only_there():
 def test_an_equilibrium_search_that_meets_a_singular_pose_says_where(machine, monkeypatch):
     """Rounding hardly ever lets it be singular to the last digit, so the core's word for it is put in its mouth."""
     real = statics._core.settle
-    monkeypatch.setattr(statics._core, "settle", lambda *given: (real(*given)[0], "singular"))
+    monkeypatch.setattr(statics._core, "settle", lambda *given: (real(*given)[0], statics._core.Rest.singular))
     lengths = fx.inverse_kinematics(machine, fx.Pose([0, 0, 0.89]))
     with pytest.raises(
         fx.SingularPoseError, match=r"the search for equilibrium met Pose\(.*no stiffness in some direction"

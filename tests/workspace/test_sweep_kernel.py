@@ -4,6 +4,8 @@ import os
 import pickle
 import subprocess
 import sys
+from functools import reduce
+from operator import or_
 
 import numpy as np
 import pytest
@@ -17,8 +19,8 @@ from flexapod import _core
 from flexapod.mechanics.kinematics import limit_excess, neutral_directions
 
 EPS = np.finfo(float).eps
-ALL = sum(_core.SWEEP.values())
-OK, SINGULAR, NO_LEG, NOT_FINITE, NO_INERTIA = range(5)
+ALL = reduce(or_, _core.SweepQuantity)
+OK, SINGULAR, NO_LEG, NOT_FINITE, NO_INERTIA = (status.value for status in _core.SweepStatus)
 
 # An instruction set is chosen at import, so each has a process of its own that computes what it is sent.
 WORKER = """
@@ -44,10 +46,10 @@ class Kernel:
         )
         assert pickle.load(self.process.stdout) == name
 
-    def __call__(self, hexapod, poses, quantities=ALL, universal=True, threads=1, limits=None) -> dict:
+    def __call__(self, hexapod, poses, quantities=ALL, joint="universal", threads=1, limits=None) -> dict:
         poses = np.ascontiguousarray(poses)
         limits = limits_array(hexapod) if limits is None else limits
-        arguments = (hexapod.packed, universal, poses, quantities, limits, threads)
+        arguments = (hexapod.packed, _core.Joint[joint], poses, quantities, limits, threads)
         pickle.dump(arguments, self.process.stdin)
         self.process.stdin.flush()
         return pickle.load(self.process.stdout)
@@ -121,7 +123,7 @@ def test_exact_in_every_lane(name, joint, exact_results, measured):
     for quantities, found in computed:
         for i, e in enumerate(exact):
             # 100 eps cond(B): the bound of the singular values for any method in float64, with a factor for the sums
-            omega = found["omega"][i] if quantities & _core.SWEEP["omega"] else found["omega_1"][i : i + 1]
+            omega = found["omega"][i] if quantities & _core.SweepQuantity.omega else found["omega_1"][i : i + 1]
             exact_omega = e.omega[: len(omega)]
             assert found["status"][i] == OK, poses[i]
             measured("sweeps/omega", (omega / exact_omega - 1) / (EPS * e.cond_B), 100)
@@ -137,8 +139,8 @@ def exact_results(kernel):
             poses = poses_for_accuracy(hexapod, rng)
             EXACT[key] = hexapod, poses, [exact_modes(hexapod, p, joint == "universal") for p in poses]
         hexapod, poses, exact = EXACT[key]
-        masks = [_core.SWEEP["cond_H"] | _core.SWEEP[q] for q in ("omega_1", "omega")]
-        return poses, exact, [(mask, kernel(hexapod, poses, mask, joint == "universal")) for mask in masks]
+        masks = [_core.SweepQuantity.cond_H | _core.SweepQuantity[q] for q in ("omega_1", "omega")]
+        return poses, exact, [(mask, kernel(hexapod, poses, mask, joint)) for mask in masks]
 
     return results
 
@@ -191,7 +193,7 @@ def test_limits_hold_somewhere_and_not_elsewhere(kernel):
     )
     poses = box(hexapod, np.random.default_rng(4), 400, 0.25, 0.5)
     pose = fx.Pose.from_rpy(*poses.T)
-    within = kernel(hexapod, poses, _core.SWEEP["within_limits"])["within_limits"]
+    within = kernel(hexapod, poses, _core.SweepQuantity.within_limits)["within_limits"]
     assert np.array_equal(within, fx.check_limits(hexapod, pose).ok)
     assert 20 < within.sum() < 380
     for what, value, least, most in limit_excess(hexapod, pose):  # each limit is met by some pose
@@ -205,7 +207,7 @@ def test_gradient(name, kernel, measured):
     two = fx.natural_modes(hexapod, fx.Pose.from_rpy(*poses.T)).omega[:, :2]
     poses = poses[two[:, 1] > 1.05 * two[:, 0]][:19]  # near a crossing differences say nothing
     assert len(poses) == 19, "more than one pack's lanes"
-    gradient = kernel(hexapod, poses, _core.SWEEP["omega_1_gradient"])["omega_1_gradient"]
+    gradient = kernel(hexapod, poses, _core.SweepQuantity.omega_1_gradient)["omega_1_gradient"]
     step = 1e-5
 
     def omega_1(six):
@@ -220,7 +222,7 @@ def test_gradient(name, kernel, measured):
         np.testing.assert_allclose(gradient[:, i], rise, rtol=1e-6, atol=1e-8 * np.abs(gradient).max())
     pose = fx.Pose.from_rpy(*poses.T)
     rows = np.concatenate([pose.position, pose.matrix.reshape(-1, 9)], axis=1)
-    turned = kernel(hexapod, rows, _core.SWEEP["omega_1_gradient"])["omega_1_gradient"]
+    turned = kernel(hexapod, rows, _core.SweepQuantity.omega_1_gradient)["omega_1_gradient"]
     for i in range(19):
         exact = fx.frequency_sensitivity(hexapod, pose[i]).pose[0]
         measured("sweeps/gradient", apart(turned[i], exact, floor=0.1 * np.abs(exact).max()), 1e-9)
@@ -235,7 +237,7 @@ def test_pose_by_angles_or_matrix(kernel):
     poses[30:, 5] += 3e7
     pose = fx.Pose.from_rpy(*poses.T)
     rows = np.concatenate([pose.position, pose.matrix.reshape(-1, 9)], axis=1)
-    mask = _core.SWEEP["omega"] | _core.SWEEP["cond_H"]
+    mask = _core.SweepQuantity.omega | _core.SweepQuantity.cond_H
     angles, matrix = kernel(hexapod, poses, mask), kernel(hexapod, rows, mask)
     ok = angles["status"] == OK
     assert ok.sum() >= 30
@@ -289,7 +291,7 @@ def test_leg_along_its_universal_axis(kernel):
     s = fx.force_transformation(hexapod, fx.home_pose(hexapod))[:3, 3]
     locked = hexapod.replace({"base.universal_axes[3]": s})
     home = center(hexapod)[None]
-    mask = _core.SWEEP["omega_1"] | _core.SWEEP["leg_length"]
+    mask = _core.SweepQuantity.omega_1 | _core.SweepQuantity.leg_length
     found = kernel(locked, home, mask, limits=limits_array(hexapod))
     assert found["status"][0] == NO_LEG
     assert np.isnan(found["omega_1"][0])
@@ -385,7 +387,7 @@ def test_massless_legs(kernel, measured):
     part = {"mass": 0.0, "mass_center": np.zeros(3), "inertia": np.zeros((3, 3))}
     light = hexapod.replace({f"legs.{name}.{key}": value for name in ("lower", "upper") for key, value in part.items()})
     poses = box(hexapod, rng, 50)
-    found = kernel(light, poses, _core.SWEEP["omega"])["omega"]
+    found = kernel(light, poses, _core.SweepQuantity.omega)["omega"]
     pose = fx.Pose.from_rpy(*poses.T)
     r = pose.matrix @ light.platform_mass_center
     shift = np.tile(np.eye(6), (50, 1, 1))  # to the mass centre, where the platform's inertia is two blocks
@@ -424,4 +426,4 @@ def test_wrong_call_is_refused(change, words):
     hexapod = fx.load("mukherjee-i")
     given = {"poses": np.zeros((3, 6)), "limits": limits_array(hexapod), "threads": 1} | change
     with pytest.raises(ValueError, match=words):
-        _core.sweep(hexapod.packed, True, given["poses"], 1, given["limits"], given["threads"])
+        _core.sweep(hexapod.packed, _core.Joint.universal, given["poses"], ALL, given["limits"], given["threads"])

@@ -46,9 +46,10 @@ inline const double* rows(const Input& input, size_t n, size_t width, const char
   return input.data();
 }
 
-inline Machine<double> machine_of(const Input& design, bool universal) {
+/// The machine of a design; what is purely geometric is the same for every joint model.
+inline Machine<double> machine_of(const Input& design, Joint joint = Joint::universal) {
   const auto* d = reinterpret_cast<const Design<double>*>(rows(design, 1, design_size, "design"));
-  return Machine<double>(*d, universal ? Joint::universal : Joint::spin_free);
+  return Machine<double>(*d, joint);
 }
 
 inline const Motion<double>* motions(const Input& input, size_t n, const char* name) {

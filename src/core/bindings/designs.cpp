@@ -9,15 +9,14 @@ namespace flexapod {
 namespace {
 
 /// (designs, poses, modes) or, paired, (designs, modes).
-nb::object sweep_designs(const Input& designs, bool universal, const Input& poses, bool paired, int modes,
-                         int threads) {
+nb::object sweep_designs(const Input& designs, Joint joint, const Input& poses, bool paired, int modes, int threads) {
   if (threads < 1) throw std::invalid_argument("threads is " + std::to_string(threads) + "; it must be >= 1");
   if (modes != 1 && modes != 6) throw std::invalid_argument("modes must be 1 or 6");
   const size_t n = designs.size() / design_size, k = poses.size() / 12;
   rows(poses, paired ? n : k, 12, "poses");
   sweep_task::DesignTask task{};
   task.designs = rows(designs, n, design_size, "designs");
-  task.universal = universal;
+  task.joint = joint;
   task.poses = poses.data();
   task.poses_count = k;
   task.paired = paired;
@@ -51,10 +50,10 @@ struct Field {
 ///     "joint_cosine" (n, 12: universal, spherical), each as (value, derivative along the directions).
 /// directions: (m, 211). displacements: (n, m, 6), of the poses along each direction. home: one motion, or empty, and
 /// its displacements (m, 6).
-nb::dict design_gradients(const Input& design, bool universal, const Input& platforms, const Input& directions,
+nb::dict design_gradients(const Input& design, Joint joint, const Input& platforms, const Input& directions,
                           const Input& displacements, const Input& home, const Input& home_displacements,
                           unsigned what) {
-  const Machine<double> machine = machine_of(design, universal);
+  const Machine<double> machine = machine_of(design, joint);
   const size_t n = platforms.size() / motion_size, m = directions.size() / design_size;
   const Motion<double>* platform = motions(platforms, n, "platform");
   const double* along = rows(directions, m, design_size, "directions");

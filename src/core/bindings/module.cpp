@@ -4,6 +4,7 @@
 #include "bindings/designs.hpp"
 #include "bindings/simulation.hpp"
 #include "bindings/sweep.hpp"
+#include "bindings/types.hpp"
 #include "model/energy.hpp"
 #include "model/kinematics.hpp"
 #include "model/modes.hpp"
@@ -29,7 +30,7 @@ Geometry<double> geometry(const Machine<double>& machine, const States& s, size_
 }
 
 nb::tuple leg_rates(const Input& design, const Input& platforms, const Input& bases) {
-  const Machine<double> machine = machine_of(design, true);
+  const Machine<double> machine = machine_of(design);
   const States s(platforms, bases);
   Output L({s.n, 6}), L_dot({s.n, 6}), L_ddot({s.n, 6});
   double *l = L.data(), *v = L_dot.data(), *a = L_ddot.data();
@@ -41,7 +42,7 @@ nb::tuple leg_rates(const Input& design, const Input& platforms, const Input& ba
 }
 
 nb::tuple leg_fit(const Input& design, const Input& platforms, const Input& bases) {
-  const Machine<double> machine = machine_of(design, true);
+  const Machine<double> machine = machine_of(design);
   const States s(platforms, bases);
   Output length({s.n, 6}), sine({s.n, 6});
   double *l = length.data(), *k = sine.data();
@@ -53,7 +54,7 @@ nb::tuple leg_fit(const Input& design, const Input& platforms, const Input& base
 }
 
 nb::tuple joint_angles(const Input& design, const Input& platforms, const Input& bases, const Input& neutral) {
-  const Machine<double> machine = machine_of(design, true);
+  const Machine<double> machine = machine_of(design);
   const States s(platforms, bases);
   using Directions = const Vec3<double>(&)[6];
   const double* directions = rows(neutral, 2, 18, "neutral");
@@ -69,7 +70,7 @@ nb::tuple joint_angles(const Input& design, const Input& platforms, const Input&
 }
 
 nb::object leg_distance(const Input& design, const Input& platforms, const Input& bases) {
-  const Machine<double> machine = machine_of(design, true);
+  const Machine<double> machine = machine_of(design);
   const States s(platforms, bases);
   Output distance({s.n});
   for (size_t i = 0; i < s.n; ++i) {
@@ -80,7 +81,7 @@ nb::object leg_distance(const Input& design, const Input& platforms, const Input
 }
 
 nb::tuple forward_kinematics_(const Input& design, const Input& lengths, const Input& starts) {
-  const Machine<double> machine = machine_of(design, true);
+  const Machine<double> machine = machine_of(design);
   const size_t n = lengths.size() / 6;
   const double* length = rows(lengths, n, 6, "lengths");
   const Motion<double>* start = motions(starts, n, "start");
@@ -96,7 +97,7 @@ nb::tuple forward_kinematics_(const Input& design, const Input& lengths, const I
 }
 
 nb::object force_transformation_(const Input& design, const Input& platforms, const Input& bases) {
-  const Machine<double> machine = machine_of(design, true);
+  const Machine<double> machine = machine_of(design);
   const States s(platforms, bases);
   Output H({s.n, 6, 6});
   double* out = H.data();
@@ -104,8 +105,8 @@ nb::object force_transformation_(const Input& design, const Input& platforms, co
   return nb::cast(H.array());
 }
 
-nb::tuple equations_of_motion(const Input& design, bool universal, const Input& platforms, const Input& bases) {
-  const Machine<double> machine = machine_of(design, universal);
+nb::tuple equations_of_motion(const Input& design, Joint joint, const Input& platforms, const Input& bases) {
+  const Machine<double> machine = machine_of(design, joint);
   const States s(platforms, bases);
   Output J_p({s.n, 6, 6}), J_b({s.n, 6, 6}), eta({s.n, 6}), H({s.n, 6, 6});
   double *jp = J_p.data(), *jb = J_b.data(), *e = eta.data(), *h = H.data();
@@ -119,20 +120,20 @@ nb::tuple equations_of_motion(const Input& design, bool universal, const Input& 
   return nb::make_tuple(J_p.array(), J_b.array(), eta.array(), H.array());
 }
 
-nb::object forward_dynamics_(const Input& design, bool universal, const Input& platforms, const Input& bases,
+nb::object forward_dynamics_(const Input& design, Joint joint, const Input& platforms, const Input& bases,
                              const Input& leg_forces, const Input& wrenches) {
   const States s(platforms, bases);
   const double *F = rows(leg_forces, s.n, 6, "leg_force"), *load = rows(wrenches, s.n, 6, "wrench");
   Output acceleration({s.n, 6});
-  simulation_kernel_in_use().forward_dynamics({rows(design, 1, design_size, "design"), universal, s.n, platforms.data(),
+  simulation_kernel_in_use().forward_dynamics({rows(design, 1, design_size, "design"), joint, s.n, platforms.data(),
                                                bases.data(), F, load, acceleration.data()});
   return nb::cast(acceleration.array());
 }
 
 /// Leg forces for the accelerations given; NaN where H is singular.
-nb::object inverse_dynamics_(const Input& design, bool universal, const Input& platforms, const Input& bases,
+nb::object inverse_dynamics_(const Input& design, Joint joint, const Input& platforms, const Input& bases,
                              const Input& wrenches) {
-  const Machine<double> machine = machine_of(design, universal);
+  const Machine<double> machine = machine_of(design, joint);
   const States s(platforms, bases);
   const double* load = rows(wrenches, s.n, 6, "wrench");
   Output forces({s.n, 6});
@@ -146,9 +147,9 @@ nb::object inverse_dynamics_(const Input& design, bool universal, const Input& p
 }
 
 /// Rows of 6 legs x 6 vectors x 3, and the total force and moment on the base.
-nb::tuple joint_reactions(const Input& design, bool universal, const Input& platforms, const Input& bases,
+nb::tuple joint_reactions(const Input& design, Joint joint, const Input& platforms, const Input& bases,
                           const Input& leg_forces, double section) {
-  const Machine<double> machine = machine_of(design, universal);
+  const Machine<double> machine = machine_of(design, joint);
   const States s(platforms, bases);
   const double* F = rows(leg_forces, s.n, 6, "leg_force");
   Output legs({s.n, 6, 6, 3}), total({s.n, 2, 3});
@@ -165,9 +166,9 @@ nb::tuple joint_reactions(const Input& design, bool universal, const Input& plat
 }
 
 /// Rows of kinetic, gravitational, elastic energy and dissipated power.
-nb::object energy_(const Input& design, bool universal, const Input& platforms, const Input& bases,
+nb::object energy_(const Input& design, Joint joint, const Input& platforms, const Input& bases,
                    const Input& unstretched) {
-  const Machine<double> machine = machine_of(design, universal);
+  const Machine<double> machine = machine_of(design, joint);
   const States s(platforms, bases);
   const double* L_0 = rows(unstretched, s.n, 6, "unstretched");
   Output energies({s.n, 4});
@@ -180,8 +181,8 @@ nb::object energy_(const Input& design, bool universal, const Input& platforms, 
   return nb::cast(energies.array());
 }
 
-nb::tuple natural_modes_(const Input& design, bool universal, const Input& platforms, const Input& bases) {
-  const Machine<double> machine = machine_of(design, universal);
+nb::tuple natural_modes_(const Input& design, Joint joint, const Input& platforms, const Input& bases) {
+  const Machine<double> machine = machine_of(design, joint);
   const States s(platforms, bases);
   Output omega({s.n, 6}), shape({s.n, 6, 6});
   double *w = omega.data(), *v = shape.data();
@@ -193,8 +194,8 @@ nb::tuple natural_modes_(const Input& design, bool universal, const Input& platf
 }
 
 /// J_plat, and each leg's J_p_i, for energy shares.
-nb::tuple inertia_parts(const Input& design, bool universal, const Input& platforms, const Input& bases) {
-  const Machine<double> machine = machine_of(design, universal);
+nb::tuple inertia_parts(const Input& design, Joint joint, const Input& platforms, const Input& bases) {
+  const Machine<double> machine = machine_of(design, joint);
   const States s(platforms, bases);
   Output platform({s.n, 6, 6}), legs({s.n, 6, 6, 6});
   double *p = platform.data(), *l = legs.data();
@@ -211,8 +212,8 @@ nb::tuple inertia_parts(const Input& design, bool universal, const Input& platfo
 }
 
 /// Derivatives of omega^2: (n, 6, 211) by the design's numbers and (n, 6, 6) by the platform's displacement.
-nb::tuple frequency_derivatives(const Input& design, bool universal, const Input& platforms, const Input& bases) {
-  const Machine<double> machine = machine_of(design, universal);
+nb::tuple frequency_derivatives(const Input& design, Joint joint, const Input& platforms, const Input& bases) {
+  const Machine<double> machine = machine_of(design, joint);
   const States s(platforms, bases);
   Output by_design({s.n, 6, design_size}), by_pose({s.n, 6, 6});
   double* pose_out = by_pose.data();
@@ -227,9 +228,9 @@ nb::tuple frequency_derivatives(const Input& design, bool universal, const Input
 }
 
 /// M, C, K, M_b, C_b, K_b, H at rest with the wrench and the unstretched lengths given.
-nb::tuple tangent_(const Input& design, bool universal, const Input& platform, const Input& base, const Input& wrench,
+nb::tuple tangent_(const Input& design, Joint joint, const Input& platform, const Input& base, const Input& wrench,
                    const Input& unstretched) {
-  const Machine<double> machine = machine_of(design, universal);
+  const Machine<double> machine = machine_of(design, joint);
   RestLoad load{vec6(rows(wrench, 1, 6, "wrench")), {}};
   std::copy_n(rows(unstretched, 1, 6, "unstretched"), 6, load.L_0);
   const States s(platform, base);
@@ -244,10 +245,10 @@ nb::tuple tangent_(const Input& design, bool universal, const Input& platform, c
   return nb::tuple(matrices);
 }
 
-/// The pose (12 numbers) where the platform settles, and how the search ended: "found", "singular", "not_found".
-nb::tuple settle_(const Input& design, bool universal, const Input& start, const Input& base, const Input& wrench,
+/// The pose (12 numbers) where the platform settles, and how the search ended.
+nb::tuple settle_(const Input& design, Joint joint, const Input& start, const Input& base, const Input& wrench,
                   const Input& unstretched) {
-  const Machine<double> machine = machine_of(design, universal);
+  const Machine<double> machine = machine_of(design, joint);
   RestLoad load{vec6(rows(wrench, 1, 6, "wrench")), {}};
   std::copy_n(rows(unstretched, 1, 6, "unstretched"), 6, load.L_0);
   const States s(start, base);
@@ -256,8 +257,7 @@ nb::tuple settle_(const Input& design, bool universal, const Input& start, const
   Output found({12});
   double* out = found.data();
   write(out, pose);
-  const char* words[] = {"found", "singular", "not_found"};
-  return nb::make_tuple(found.array(), words[static_cast<int>(end)]);
+  return nb::make_tuple(found.array(), end);
 }
 
 }  // namespace
@@ -266,7 +266,7 @@ nb::tuple settle_(const Input& design, bool universal, const Input& start, const
 NB_MODULE(_core, m) {
   using namespace flexapod;
   m.doc() = "Flexapod's mechanics: compiled functions of a design and of motions.";
-  m.attr("design_size") = design_size;
+  bind_types(m);
   m.def("leg_rates", &leg_rates);
   m.def("leg_fit", &leg_fit);
   m.def("joint_angles", &joint_angles);

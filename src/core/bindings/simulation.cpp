@@ -91,13 +91,13 @@ class Crew {
 };
 
 /// A machine for the kernel, with the excitations of its base, wrench and leg command.
-simulation_task::Machine machine(const double* design, bool universal, const double* setup, bool works,
-                                 const Input& base, const Input& wrench, const Input& command) {
+simulation_task::Machine machine(const double* design, Joint joint, const double* setup, bool works, const Input& base,
+                                 const Input& wrench, const Input& command) {
   const auto series = [](const Input& e) {
     static_cast<void>(Excitation(e.data(), e.size()));  // throws here, not on a thread, if the numbers are wrong
     return simulation_task::Series{e.data(), e.size()};
   };
-  return {design, universal, setup, works, series(base), series(wrench), series(command)};
+  return {design, joint, setup, works, series(base), series(wrench), series(command)};
 }
 
 Output nan_filled(std::initializer_list<size_t> shape) {
@@ -110,7 +110,7 @@ Output nan_filled(std::initializer_list<size_t> shape) {
 
 /// `excitations`: for each simulation those of base, wrench and leg command. `options`: rtol, atol, max_step, max_steps,
 /// stop_at_singular, motions, works, threads.
-nb::tuple simulate(const Input& designs, bool universal, const Input& setups, const std::vector<Input>& excitations,
+nb::tuple simulate(const Input& designs, Joint joint, const Input& setups, const std::vector<Input>& excitations,
                    const Input& times, const Input& options, nb::object progress) {
   const size_t n = setups.size() / setup_size;
   const double* design = rows(designs, n, design_size, "designs");
@@ -124,7 +124,7 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
 
   std::vector<simulation_task::Machine> driven;
   for (size_t i = 0; i < n; ++i)
-    driven.push_back(machine(design + i * design_size, universal, setup + i * setup_size, works, excitations[3 * i],
+    driven.push_back(machine(design + i * design_size, joint, setup + i * setup_size, works, excitations[3 * i],
                              excitations[3 * i + 1], excitations[3 * i + 2]));
   Output displacement = nan_filled({n, m, 6}), relative = nan_filled({n, m, 6}), work = nan_filled({n, m, 4}),
          platform = nan_filled({n, kept, 24}), base = nan_filled({n, kept, 24}), leg_force = nan_filled({n, kept, 6}),
@@ -141,7 +141,7 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
                                            W + i * m * 4,        part(p, 24), part(b, 24),   part(F, 6)};
     const simulation_task::End end = chosen->simulate({driven[i], tolerances, samples, &crew.stop, &done[i]});
     done[i] = 1.0;
-    how[i] = end.outcome, ended[i] = end.time;
+    how[i] = static_cast<double>(end.outcome), ended[i] = end.time;
     std::copy_n(end.last, motion_size, final_motion + i * motion_size);
     c[3 * i] = end.accepted, c[3 * i + 1] = end.rejected, c[3 * i + 2] = end.evaluations;
   });
@@ -152,7 +152,7 @@ nb::tuple simulate(const Input& designs, bool universal, const Input& setups, co
 /// One run of a sampled controller. `controller`: A, B, C, D, limit (see SampledController); `noise`: 36 for each sample;
 /// `timing`: dt, steps of a sample. Returns rows at every step's end, from t = 0, of measurements and displacement (NaN
 /// after an early end), forces and clipping at every sample, and the outcome.
-nb::tuple control_loop(const Input& design, bool universal, const Input& setup, const Input& base,
+nb::tuple control_loop(const Input& design, Joint joint, const Input& setup, const Input& base,
                        const std::vector<Input>& controller, const Input& noise, const Input& timing,
                        nb::object progress) {
   constexpr size_t signals = simulation_task::signals;
@@ -169,7 +169,7 @@ nb::tuple control_loop(const Input& design, bool universal, const Input& setup, 
   const size_t m = samples * clock.steps + 1;
   const double* white = rows(noise, samples, signals, "noise");
   const Input none{};
-  const simulation_task::Machine shaken = machine(rows(design, 1, design_size, "design"), universal,
+  const simulation_task::Machine shaken = machine(rows(design, 1, design_size, "design"), joint,
                                                   rows(setup, 1, setup_size, "setup"), false, base, none, none);
   Output measured = nan_filled({m, signals}), displacement = nan_filled({m, 6}), force = nan_filled({samples, 6});
   Output cut({samples}), outcome({1});
@@ -177,17 +177,18 @@ nb::tuple control_loop(const Input& design, bool universal, const Input& setup, 
   double* how = outcome.data();
   std::vector<std::atomic<double>> done(1);
   Crew crew;
-  crew.run(1, 1, progress, done,
-           [&](size_t) { *how = chosen->control_loop({shaken, law, clock, white, record, &crew.stop, &done[0]}); });
+  crew.run(1, 1, progress, done, [&](size_t) {
+    *how = static_cast<double>(chosen->control_loop({shaken, law, clock, white, record, &crew.stop, &done[0]}));
+  });
   return nb::make_tuple(measured.array(), displacement.array(), force.array(), cut.array(), outcome.array());
 }
 /// The equations of one simulation for other integrators: y' = rates(t, y) from y = start().
 class Equations {
  public:
-  Equations(const Input& design, bool universal, const Input& setup, const std::vector<Input>& excitations) {
+  Equations(const Input& design, Joint joint, const Input& setup, const std::vector<Input>& excitations) {
     for (const Input& e : excitations) numbers_.emplace_back(e.data(), e.data() + e.size());
     const auto part = [&](size_t i) { return simulation_task::Series{numbers_.at(i).data(), numbers_.at(i).size()}; };
-    equations_ = chosen->new_equations({rows(design, 1, design_size, "design"), universal,
+    equations_ = chosen->new_equations({rows(design, 1, design_size, "design"), joint,
                                         rows(setup, 1, setup_size, "setup"), false, part(0), part(1), part(2)});
   }
   Equations(const Equations&) = delete;
@@ -253,7 +254,7 @@ void bind_simulation(nb::module_& m) {
   m.def("control_loop", &control_loop, nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(), nb::arg(),
         nb::arg().none());
   nb::class_<Equations>(m, "Equations")
-      .def(nb::init<const Input&, bool, const Input&, const std::vector<Input>&>())
+      .def(nb::init<const Input&, Joint, const Input&, const std::vector<Input>&>())
       .def("start", &Equations::start)
       .def("rates", &Equations::rates);
   m.def("excitation", &excitation);

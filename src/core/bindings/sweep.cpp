@@ -48,7 +48,7 @@ const Kernel* chosen = nullptr;
 
 struct Array {
   const char* name;
-  unsigned quantity;
+  sweep_task::Quantity quantity;
   double* Task::* place;
   size_t columns;
 };
@@ -85,12 +85,12 @@ struct Job {
   std::unique_ptr<bool[]> within;
   std::unique_ptr<std::uint8_t[]> status;
 
-  Job(const Input& design, bool universal, const Input& poses, unsigned quantities) {
+  Job(const Input& design, Joint joint, const Input& poses, sweep_task::Quantity quantities) {
     if (poses.ndim() != 2 || (poses.shape(1) != 6 && poses.shape(1) != 12))
       throw std::invalid_argument("poses must have shape (n, 6) or (n, 12)");
     n = poses.shape(0);
     task.design = rows(design, 1, design_size, "design");
-    task.universal = universal;
+    task.joint = joint;
     task.poses = poses.data();
     task.width = static_cast<int>(poses.shape(1));
     task.quantities = quantities;
@@ -106,10 +106,10 @@ struct Job {
   }
 };
 
-nb::dict sweep_(const Input& design, bool universal, const Input& poses, unsigned quantities, const Input& limits,
-                int threads) {
+nb::dict sweep_(const Input& design, Joint joint, const Input& poses, sweep_task::Quantity quantities,
+                const Input& limits, int threads) {
   if (threads < 1) throw std::invalid_argument("threads is " + std::to_string(threads) + "; it must be >= 1");
-  Job job(design, universal, poses, quantities);
+  Job job(design, joint, poses, quantities);
   job.task.limits = reinterpret_cast<const sweep_task::Limits*>(rows(limits, 1, sweep_task::limits_size, "limits"));
   {
     nb::gil_scoped_release release;
@@ -124,9 +124,9 @@ nb::dict sweep_(const Input& design, bool universal, const Input& poses, unsigne
 }
 
 /// The mean over the poses.
-double sweep_flops(const Input& design, bool universal, const Input& poses, unsigned quantities) {
+double sweep_flops(const Input& design, Joint joint, const Input& poses, sweep_task::Quantity quantities) {
   const sweep_task::Limits no_limits{};
-  Job job(design, universal, poses, quantities);
+  Job job(design, joint, poses, quantities);
   job.task.limits = &no_limits;
   return count_flops(job.task, job.n) / static_cast<double>(job.n);
 }
@@ -150,13 +150,10 @@ void bind_sweep(nb::module_& m) {
   m.def("simd", [] { return chosen->name; });
   m.def("simd_available", &simd_available);
   m.def("peak_flops", [](size_t rounds) { return chosen->peak(rounds); }, nb::call_guard<nb::gil_scoped_release>());
-  nb::dict bits;
-  for (const Array& array : arrays)
-    if (std::strstr(array.name, "_angle") == nullptr) bits[array.name] = static_cast<unsigned>(array.quantity);
-  bits["joint_angle"] = static_cast<unsigned>(sweep_task::joint_angle);
-  bits["within_limits"] = static_cast<unsigned>(sweep_task::within_limits);
-  m.attr("SWEEP") = bits;
-  m.attr("SWEEP_STATUS") = nb::make_tuple("ok", "singular", "no_leg", "not_finite", "no_inertia");
+  nb::dict asked;
+  for (const Array& array : arrays) asked[array.name] = array.quantity;
+  asked["within_limits"] = sweep_task::within_limits;
+  m.attr("SWEEP_ARRAYS") = asked;
 }
 
 }  // namespace flexapod

@@ -1,6 +1,7 @@
 // Where a body is and how it moves, in the inertial frame.
 #pragma once
 
+#include "model/layout.hpp"
 #include "numbers/linear6.hpp"
 
 namespace flexapod {
@@ -23,8 +24,18 @@ template <class T> struct Motion {
   template <class U> Vec3<product_t<T, U>> velocity_at(const Vec3<U>& q) const { return v + cross(w, q); }
 };
 
-inline constexpr int motion_size = 24;
-static_assert(sizeof(Motion<double>) == motion_size * sizeof(double));
+inline constexpr int motion_size = sizeof(Motion<double>) / sizeof(double);
+inline constexpr int pose_size = sizeof(Pose<double>) / sizeof(double);
+
+/// Every field of a motion, in the order of its numbers; the first two are the pose.
+inline constexpr std::array motion_layout{
+    field<Vec3<double>>("position", offsetof(Motion<double>, pose.t), "m"),
+    field<Mat3<double>>("matrix", offsetof(Motion<double>, pose.R), ""),
+    field<Vec3<double>>("velocity", offsetof(Motion<double>, v), "m/s"),
+    field<Vec3<double>>("angular_velocity", offsetof(Motion<double>, w), "rad/s"),
+    field<Vec3<double>>("acceleration", offsetof(Motion<double>, a), "m/s2"),
+    field<Vec3<double>>("angular_acceleration", offsetof(Motion<double>, alpha), "rad/s2")};
+static_assert(cover<motion_size>(motion_layout));
 
 /// The pose moved by a small displacement: t + d, and R turned by the rotation vector e, exact to first order
 /// (all that derivatives need).

@@ -16,12 +16,10 @@ struct Setup {
 };
 static_assert(sizeof(Setup) == setup_size * sizeof(double) && sizeof(Motion<double>) == sizeof(End::last));
 
-Joint joint(bool universal) { return universal ? Joint::universal : Joint::spin_free; }
-
 MachineOnBaseInput input_of(const simulation_task::Machine& m) {
   const auto& s = *reinterpret_cast<const Setup*>(m.setup);
   return {*reinterpret_cast<const Design<double>*>(m.design),
-          joint(m.universal),
+          m.joint,
           s.platform,
           s.base,
           s.leg_force,
@@ -37,7 +35,7 @@ Excitation excitation(const Series& s) { return {s.numbers, s.size}; }
 End simulate(const Run& run) {
   const auto& m = run.machine;
   Simulation simulation(input_of(m), excitation(m.base), excitation(m.wrench), excitation(m.command), run.tolerances);
-  End end{static_cast<int>(simulation.run(run.samples, *run.stop, *run.progress)), simulation.time(), {}, 0, 0, 0};
+  End end{simulation.run(run.samples, *run.stop, *run.progress), simulation.time(), {}, 0, 0, 0};
   const Motion<double> last = simulation.last();
   std::memcpy(end.last, &last, sizeof(end.last));
   const Counts& counts = simulation.counts();
@@ -45,15 +43,15 @@ End simulate(const Run& run) {
   return end;
 }
 
-int control_loop(const Loop& given) {
+Outcome control_loop(const Loop& given) {
   ControlLoop loop(input_of(given.machine), excitation(given.machine.base), SampledController{given.controller},
                    given.timing);
-  return static_cast<int>(loop.run(given.noise, given.record, *given.stop, *given.progress));
+  return loop.run(given.noise, given.record, *given.stop, *given.progress);
 }
 
 void forward_dynamics_of(const States& s) {
   const auto& design = *reinterpret_cast<const Design<double>*>(s.design);
-  const SixLegs legs(flexapod::Machine<double>(design, joint(s.universal)));
+  const SixLegs legs(flexapod::Machine<double>(design, s.joint));
   const auto *platform = reinterpret_cast<const Motion<double>*>(s.platform),
              *base = reinterpret_cast<const Motion<double>*>(s.base);
   const auto *force = reinterpret_cast<const Vec6<double>*>(s.leg_force),

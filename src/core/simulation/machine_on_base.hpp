@@ -10,8 +10,11 @@
 #include "simulation/excitation.hpp"
 #include "simulation/integrate.hpp"
 #include "simulation/six_legs.hpp"
+#include "simulation/task.hpp"
 
 namespace flexapod {
+
+using simulation_task::Measure;
 
 /// What one simulation starts from. Inertial axes, save `wrench`.
 struct MachineOnBaseInput {
@@ -118,24 +121,24 @@ class MachineOnBase {
 
   /// What sensors show, each as a change from rest: leg lengths, their rates, leg forces, the platform's displacement
   /// seen from the base and its rate (axes of the base at rest, turned to the inertial frame), absolute acceleration.
-  void measure(double t, const State& y, double (&out)[36]) {
+  void measure(double t, const State& y, double (&out)[simulation_task::signals]) {
     const Instant now = instant(t, y);
     const Mat3<double>& R_b = now.base.motion.pose.R;
     const Vec6<double> force = now.leg_force.six();
     const Geometry<double> g = geometry(y), rest(machine_.design, rest_, Pose<double>());
+    const auto shown = [&](Measure measure) { return out + 6 * static_cast<int>(measure); };
     for (int i = 0; i < 6; ++i) {
       const double L = norm(g.S[i]);
-      out[i] = dot(g.S[i] + rest.S[i], g.S[i] - rest.S[i]) / (L + norm(rest.S[i]));
-      out[6 + i] = dot(g.S[i], now.v + cross(now.w, g.q_p[i])) / L;
-      out[12 + i] = force[i] - in_.leg_force[i];
+      shown(Measure::leg_length)[i] = dot(g.S[i] + rest.S[i], g.S[i] - rest.S[i]) / (L + norm(rest.S[i]));
+      shown(Measure::leg_rate)[i] = dot(g.S[i], now.v + cross(now.w, g.q_p[i])) / L;
+      shown(Measure::leg_force)[i] = force[i] - in_.leg_force[i];
     }
     const Vec6<double> x = relative(y);
     const Vec3<double> a = R_b * now.platform.a + in_.design.gravity, alpha = R_b * now.platform.alpha;
-    const Vec3<double> turned[6] = {
-        in_.base.R * x.top(), in_.base.R * x.bottom(), in_.base.R * now.v, in_.base.R * now.w, a, alpha};
-    double* to = out + 18;
-    for (const Vec3<double>& v : turned)
-      for (const double c : {v.x, v.y, v.z}) *to++ = c;
+    const Mat3<double>& R = in_.base.R;
+    put(shown(Measure::position), R * x.top(), R * x.bottom());
+    put(shown(Measure::velocity), R * now.v, R * now.w);
+    put(shown(Measure::acceleration), a, alpha);
   }
 
   /// Where the legs are: base axes.
@@ -161,6 +164,9 @@ class MachineOnBase {
     return d;
   }
   static Vec3<double> get(const State& y, int i) { return {y[i], y[i + 1], y[i + 2]}; }
+  static void put(double* to, const Vec3<double>& v, const Vec3<double>& w) {
+    for (const double c : {v.x, v.y, v.z, w.x, w.y, w.z}) *to++ = c;
+  }
   static void put(State& y, int i, const Vec3<double>& v) { y[i] = v.x, y[i + 1] = v.y, y[i + 2] = v.z; }
 
   BaseMotion base_at(double t) {

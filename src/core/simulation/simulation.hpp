@@ -9,8 +9,7 @@
 
 namespace flexapod {
 
-enum class Outcome { complete, singular, leg_collapsed, joint_locked, step_collapse, not_finite, max_steps, stopped };
-
+using simulation_task::Outcome;
 using simulation_task::Samples;
 using simulation_task::Tolerances;
 

@@ -5,9 +5,19 @@
 #include <atomic>
 #include <cstddef>
 
+#include "model/joint.hpp"
+
 namespace simulation_task {
 
-inline constexpr std::size_t setup_size = 50, motion_size = 24, signals = 36;
+inline constexpr std::size_t setup_size = 50, motion_size = 24;
+
+/// How a simulation ended.
+enum class Outcome { complete, singular, leg_collapsed, joint_locked, step_collapse, not_finite, max_steps, stopped };
+
+/// What sensors show, six numbers each, as changes from rest: leg lengths, their rates, leg forces, displacement of the
+/// platform as seen from the base and its rate, absolute acceleration.
+enum class Measure { leg_length, leg_rate, leg_force, position, velocity, acceleration };
+inline constexpr std::size_t measures = 6, signals = 6 * measures;
 
 /// The numbers of an excitation.
 struct Series {
@@ -18,7 +28,7 @@ struct Series {
 /// A machine at rest and what drives it.
 struct Machine {
   const double* design;  // 211 numbers
-  bool universal;
+  core_enums::Joint joint;
   const double* setup;  // 50 numbers: see Setup in simulation_kernel.cpp
   bool works;           // integrate works beside the motion
   Series base, wrench, command;
@@ -46,7 +56,7 @@ struct Run {
 };
 
 struct End {
-  int outcome;
+  Outcome outcome;
   double time;                             // reached
   double last[motion_size];                // the platform's motion then, inertial axes
   double accepted, rejected, evaluations;  // steps, and calls of the equations of motion
@@ -83,7 +93,7 @@ struct Loop {
 /// Many states of one machine: rows of 24, 24, 6 and 6 numbers, the wrench in platform axes; accelerations, rows of 6.
 struct States {
   const double* design;
-  bool universal;
+  core_enums::Joint joint;
   std::size_t count;
   const double *platform, *base, *leg_force, *wrench;
   double* acceleration;
@@ -93,7 +103,7 @@ struct States {
 struct Kernel {
   const char* name;
   End (*simulate)(const Run& run);
-  int (*control_loop)(const Loop& loop);
+  Outcome (*control_loop)(const Loop& loop);
   void (*forward_dynamics)(const States& states);
   void* (*new_equations)(const Machine& machine);
   void (*delete_equations)(void* equations);

@@ -50,7 +50,7 @@ template <class T> class DesignSweep {
   void pack(size_t first, int count) const {
     Design<T> design;
     read(task.designs, design_size, first, count, &design.gravity.x);
-    const Machine<T> machine(design, task.universal ? Joint::universal : Joint::spin_free);
+    const Machine<T> machine(design, task.joint);
     const size_t poses = task.paired ? 1 : task.poses_count;
     for (size_t k = 0; k < poses; ++k) {
       Pose<T> pose;

@@ -17,8 +17,7 @@ struct SweptMachine {
   double size;  // of the platform: makes rows of forces and of moments comparable
 
   explicit SweptMachine(const sweep_task::Task& task)
-      : machine(*reinterpret_cast<const Design<double>*>(task.design),
-                task.universal ? Joint::universal : Joint::spin_free),
+      : machine(*reinterpret_cast<const Design<double>*>(task.design), task.joint),
         weightless(machine),
         J_platform(platform_inertia(machine.design, Mat3<double>::identity())),
         root_stiffness(machine.design),

@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "model/joint.hpp"
+
 namespace sweep_task {
 
 enum Quantity : unsigned {
@@ -39,7 +41,7 @@ static_assert(sizeof(Limits) == limits_size * sizeof(double));
 
 struct Task {
   const double* design;  // 211 numbers
-  bool universal;
+  core_enums::Joint joint;
   const double* poses;  // rows of 6 (position; roll, pitch, yaw) or 12 (position; rotation matrix by rows)
   int width;
   unsigned quantities;
@@ -54,7 +56,7 @@ struct Task {
 /// Natural frequencies of many designs: at all poses, or (paired) each design at the pose of its row.
 struct DesignTask {
   const double* designs;  // rows of 211 numbers
-  bool universal;
+  core_enums::Joint joint;
   const double* poses;  // rows of 12: position; rotation matrix by rows
   std::size_t poses_count;
   bool paired;

@@ -7,18 +7,19 @@ the base carries, in inertial axes, driven by six leg forces f beside the spring
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal, Protocol, get_args
+from typing import Literal, Protocol, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod import _core
 from flexapod.conventions import Array, Complex
 from flexapod.errors import ArgumentError, UnstableError
 from flexapod.mechanics.linearisation import Linearisation
 from flexapod.optional import needed
 
 Measure = Literal["leg_length", "leg_rate", "leg_force", "position", "velocity", "acceleration"]
-MEASURES: tuple[Measure, ...] = get_args(Measure)
+MEASURES = tuple(cast(Measure, measure.name) for measure in _core.Measure)
 UNITS = dict(zip(MEASURES, ("m", "m/s", "N", "m, rad", "m/s, rad/s", "m/s2, rad/s2"), strict=True))
 
 

@@ -18,7 +18,7 @@ from flexapod.conventions import AXES, LEGS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, SimulationError, UnstableError
 from flexapod.excitation.excitation import Excitation
-from flexapod.mechanics.inputs import ZERO, is_universal
+from flexapod.mechanics.inputs import ZERO, as_joint
 from flexapod.mechanics.linearisation import RestOptions, linearise
 from flexapod.pose import Pose
 from flexapod.simulation.integrator import OUTCOMES, prepare
@@ -70,7 +70,7 @@ class Hardware:
             part = np.asarray(value, dtype=np.float64)
             if part.shape not in ((), (6,)) or not np.isfinite(part).all() or (part < 0).any():
                 raise ArgumentError(f"noise of {name} is {value!r}; give a finite number >= 0, or six")
-            rms[6 * MEASURES.index(name) :][:6] = part
+            rms[_columns(name)] = part
         drawn: Array = rms * np.random.default_rng(self.seed).standard_normal((samples, _SIGNALS))
         return drawn
 
@@ -184,7 +184,7 @@ class _Bench:
         ready = prepare(run, self.samples * self.dt, joint)
         *rows, outcome = _core.control_loop(
             self.hexapod.packed,
-            is_universal(joint),
+            as_joint(joint),
             ready.setup,
             ready.excitations[0],
             [*_wide(law), limit],
@@ -238,8 +238,14 @@ class _Bench:
         held = np.vstack([np.zeros(6), np.repeat(forces, self.steps, axis=0)])
         base = w[::_FINER]
         measured = every @ plant.C.T + held @ plant.D.T + base @ plant.G.T
-        displacement = measured[:, 18:24] + value[::_FINER] @ plant.linear.carry.T
+        displacement = measured[:, _columns("position")] + value[::_FINER] @ plant.linear.carry.T
         return _Found(measured, displacement, forces, np.zeros(self.samples))
+
+
+def _columns(measure: str) -> slice:
+    """Where one kind of measurement is among all of them."""
+    first = 6 * MEASURES.index(measure)
+    return slice(first, first + 6)
 
 
 def _wide(law: Controller) -> list[Array]:
@@ -264,9 +270,13 @@ def _dataset(bench: _Bench, found: dict[str, _Found], predicted: dict[str, _Foun
     times = bench.times
     kept = times >= after
     parts = {
-        "acceleration": (lambda f: f.measured[:, 30:36], "absolute acceleration", ("m/s2", "rad/s2")),
+        "acceleration": (
+            lambda f: f.measured[:, _columns("acceleration")],
+            "absolute acceleration",
+            ("m/s2", "rad/s2"),
+        ),
         "displacement": (lambda f: f.displacement, "displacement from rest", ("m", "rad")),
-        "relative": (lambda f: f.measured[:, 18:24], "displacement relative to the base", ("m", "rad")),
+        "relative": (lambda f: f.measured[:, _columns("position")], "displacement relative to the base", ("m", "rad")),
     }
     variables: dict[str, Any] = {}
     for name, (take, words, _) in parts.items():

@@ -17,7 +17,7 @@ from flexapod.conventions import Array
 from flexapod.design import changes as design_changes
 from flexapod.design import design_file
 from flexapod.design.geometry_checks import check_apart, platform_warnings, unit_axes, warnings_of_part
-from flexapod.design.inertia import six_of
+from flexapod.design.packing import packed
 from flexapod.design.parts import Damping, Home, LegPart, Legs, Limits, Value, bytes_of
 from flexapod.design.shorthands import circle_table, expand, tangent_axes
 from flexapod.design.tables import DEFAULT_GRAVITY, complete, flatten
@@ -318,21 +318,8 @@ class Hexapod(Value):
 
     @cached_property
     def packed(self) -> Array:
-        """The design as the core takes it: 211 numbers, read-only.
-
-        gravity, base joints, axes, platform joints, platform body; then leg by leg stiffness, the three frictions,
-        lower and upper body. A body is mass, mass centre, and inertia as xx yy zz xy xz yz.
-        """
-        legs = self.legs
-        frictions = (legs.damping.prismatic, legs.damping.universal, legs.damping.spherical)
-        per_leg = np.concatenate(
-            [np.stack([legs.stiffness, *frictions], axis=1), _packed_part(legs.lower), _packed_part(legs.upper)], axis=1
-        )
-        joints = (self.base_joints, self.universal_axes, self.platform_joints)
-        platform = ([self.platform_mass], self.platform_mass_center, six_of(self.platform_inertia))
-        packed = np.concatenate([self.gravity, *(array.ravel() for array in joints), *platform, per_leg.ravel()])
-        packed.flags.writeable = False
-        return packed
+        """The design's numbers in the core's order (`flexapod._core.DESIGN_LAYOUT`), read-only."""
+        return packed(self.values())
 
     @cached_property
     def digest(self) -> str:
@@ -400,7 +387,3 @@ def load(name_or_path: str | Path) -> Hexapod:
         return Hexapod.from_values(values)
     except DesignError as error:
         raise DesignError(f"{path}: {error}") from error
-
-
-def _packed_part(part: LegPart) -> Array:
-    return np.concatenate([part.mass[:, None], part.mass_center, six_of(part.inertia)], axis=1)

@@ -1,19 +1,12 @@
-"""Which inertias a rigid body can have, and their six numbers."""
+"""Which inertias a rigid body can have."""
 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from flexapod.conventions import Array
 
 ROUNDING = 1e-9  # of the largest moment: what printing with nine digits changes
-
-
-def six_of(inertia: ArrayLike) -> Array:
-    """Entries xx yy zz xy xz yz of symmetric matrices (..., 3, 3)."""
-    matrix = np.asarray(inertia, dtype=np.float64)
-    return matrix[..., [0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
 
 
 def second_moments(inertia: Array) -> Array:

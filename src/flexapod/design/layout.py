@@ -1,4 +1,4 @@
-"""Where each number of a design is: the 211 of `Hexapod.packed`, and after them the six of the home pose."""
+"""The numbers of a design that a search may change: those of `Hexapod.packed`, and after them six of the home pose."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from flexapod import _core
 from flexapod.conventions import Array
+from flexapod.design import packing
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.key_names import resolve
 from flexapod.design.schema import KEYS, Key
@@ -17,45 +18,21 @@ from flexapod.errors import ArgumentError, DesignError
 
 HOME = slice(_core.design_size, _core.design_size + 6)
 SIZE = HOME.stop
-
-
-def _places() -> dict[str, NDArray[np.int64]]:
-    number = np.arange(SIZE)
-    legs = number[67:211].reshape(6, 24)
-    square = np.array([[0, 3, 4], [3, 1, 5], [4, 5, 2]])  # xx yy zz xy xz yz
-    places = {
-        "gravity": number[0:3],
-        "base.joints": number[3:21].reshape(6, 3),
-        "base.universal_axes": number[21:39].reshape(6, 3),
-        "platform.joints": number[39:57].reshape(6, 3),
-        "platform.mass": number[57],
-        "platform.mass_center": number[58:61],
-        "platform.inertia": number[61:67][square],
-        "legs.stiffness": legs[:, 0],
-        "home.position": number[211:214],
-        "home.orientation": number[214:217],
-    }
-    for column, joint in enumerate(("prismatic", "universal", "spherical"), start=1):
-        places[f"legs.damping.{joint}"] = legs[:, column]
-    for first, part in ((4, "lower"), (14, "upper")):
-        places[f"legs.{part}.mass"] = legs[:, first]
-        places[f"legs.{part}.mass_center"] = legs[:, first + 1 : first + 4]
-        places[f"legs.{part}.inertia"] = legs[:, first + 4 : first + 10][:, square]
-    return {key: np.asarray(place) for key, place in places.items()}
-
-
 #: Key of the design file -> numbers of its entries, in the key's shape.
-PLACES = _places()
+PLACES = packing.PLACES | {
+    "home.position": np.arange(HOME.start, HOME.start + 3),
+    "home.orientation": np.arange(HOME.start + 3, SIZE),
+}
 
 
 def numbers(hexapod: Hexapod) -> Array:
-    """The design as 217 numbers; those of a home pose that is not there are NaN."""
+    """The design as `SIZE` numbers; those of a home pose that is not there are NaN."""
     home = np.full(6, np.nan) if hexapod.home is None else np.concatenate([hexapod.home.position, hexapod.home.rpy])
     return np.concatenate([hexapod.packed, home])
 
 
 def with_numbers(hexapod: Hexapod, given: Array, changed: NDArray[np.bool_]) -> Hexapod:
-    """The design with the entries that are `changed` taken from 217 numbers. Raises DesignError if it is none."""
+    """The design with the entries that are `changed` taken from `SIZE` numbers. Raises DesignError if it is none."""
     values = dict(hexapod.values())
     for key, place in PLACES.items():
         if changed[place].any():
@@ -98,6 +75,6 @@ def entries(key: str) -> tuple[NDArray[np.int64], Key, float]:
 
 
 def describe(number: int) -> str:
-    """The key of one of the 217 numbers, such as platform.joints[0][2]."""
+    """The key of one of the numbers, such as platform.joints[0][2]."""
     key, place = next((key, place) for key, place in PLACES.items() if number in place)
     return key + "".join(f"[{i}]" for i in np.argwhere(place == number)[0])

@@ -16,11 +16,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod._core import TermKind
 from flexapod.conventions import AXES, LEGS, Array
 from flexapod.errors import ArgumentError
 from flexapod.pose import Motion, Pose
-
-SINUSOIDS, CHIRP, PIECES = 0.0, 1.0, 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +27,7 @@ class Term:
     """One function of time on one channel; it begins at `start`, may rise smoothly, and may end after `stop`."""
 
     channel: str
-    kind: float
+    kind: TermKind
     numbers: Array
     start: float = 0.0
     rise: float = 0.0
@@ -140,9 +139,7 @@ class Excitation:
         t = np.asarray(times, dtype=float)
         rest = Motion.fixed(base).packed
         rows = _core.base_motion(self.packed, self.rotation == "rpy", rest, np.ascontiguousarray(t.ravel()))
-        rows = rows.reshape(*t.shape, 24)
-        pose = Pose(rows[..., :3], rows[..., 3:12].reshape(*t.shape, 3, 3))
-        return Motion(pose, *(rows[..., i : i + 3] for i in (12, 15, 18, 21)))
+        return Motion.unpacked(rows.reshape(*t.shape, -1))
 
     def __repr__(self) -> str:
         return f"<Excitation of {', '.join(self.channels) or 'nothing'}, {len(self.terms)} terms>"
@@ -161,7 +158,7 @@ def harmonic(channel: str, amplitude: ArrayLike, omega: ArrayLike, phase: ArrayL
     _finite(triples, "amplitude, omega or phase")
     if np.any(triples[:, 1] < 0):
         raise ArgumentError(f"omega is {triples[:, 1].min():.6g} rad/s; it must be >= 0.")
-    return _one(channel, SINUSOIDS, triples.ravel())
+    return _one(channel, TermKind.sinusoids, triples.ravel())
 
 
 def sine_sweep(
@@ -190,7 +187,7 @@ def sine_sweep(
     start, end = _positive(omega_start, "omega_start", "rad/s"), _positive(omega_end, "omega_end", "rad/s")
     numbers = [amplitude, start, end, _positive(duration, "duration", "s"), float(law == "log"), powers[hold]]
     _finite(np.array(numbers), "amplitude")
-    return _one(channel, CHIRP, np.array(numbers))
+    return _one(channel, TermKind.chirp, np.array(numbers))
 
 
 def half_sine_shock(channel: str, acceleration: float, duration: float, recovery: float | None = None) -> Excitation:
@@ -213,7 +210,7 @@ def half_sine_shock(channel: str, acceleration: float, duration: float, recovery
         travel += speed * T_2 - acceleration * T * T_2 / np.pi
         T, speed = T + T_2, 0.0
     pieces.append(_piece(T, [travel, speed]))
-    return _one(channel, PIECES, _pieces(pieces, corners=True))
+    return _one(channel, TermKind.pieces, _pieces(pieces, corners=True))
 
 
 def half_sine_pulse(channel: str, peak: float, duration: float) -> Excitation:
@@ -226,7 +223,8 @@ def half_sine_pulse(channel: str, peak: float, duration: float) -> Excitation:
     """
     _finite(np.array([peak]), "peak")
     T = _positive(duration, "duration", "s")
-    return _one(channel, PIECES, _pieces([_piece(0.0, [0.0], peak, np.pi / T), _piece(T, [0.0])], corners=True))
+    pieces = [_piece(0.0, [0.0], peak, np.pi / T), _piece(T, [0.0])]
+    return _one(channel, TermKind.pieces, _pieces(pieces, corners=True))
 
 
 def polynomial(channel: str, coefficients: ArrayLike) -> Excitation:
@@ -241,7 +239,7 @@ def polynomial(channel: str, coefficients: ArrayLike) -> Excitation:
     _finite(c, "coefficients")
     if c.ndim != 1 or not 1 <= c.size <= 8:
         raise ArgumentError(f"coefficients have shape {c.shape}; one to eight numbers are needed.")
-    return _one(channel, PIECES, _pieces([_piece(0.0, c)], corners=True))
+    return _one(channel, TermKind.pieces, _pieces([_piece(0.0, c)], corners=True))
 
 
 def smooth_step(channel: str, change: float, duration: float) -> Excitation:
@@ -255,7 +253,7 @@ def smooth_step(channel: str, change: float, duration: float) -> Excitation:
     _finite(np.array([change]), "change")
     T = _positive(duration, "duration", "s")
     rise = np.array([0, 0, 0, 0, 35, -84, 70, -20]) * change / T ** np.arange(8)
-    return _one(channel, PIECES, _pieces([_piece(0.0, rise), _piece(T, [change])], corners=True))
+    return _one(channel, TermKind.pieces, _pieces([_piece(0.0, rise), _piece(T, [change])], corners=True))
 
 
 def check_channels(excitation: Excitation, use: str, allowed: Sequence[str]) -> None:
@@ -274,10 +272,10 @@ def sampled_term(channel: str, knots: Array, coefficients: Array, spacing: float
     pieces[:, 0] = knots
     pieces[:, 1 : 1 + coefficients.shape[1]] = coefficients
     numbers = np.concatenate([[0.0], pieces.ravel()])
-    return Excitation((Term(_channel(channel), PIECES, numbers, sampled=spacing, last=end),))
+    return Excitation((Term(_channel(channel), TermKind.pieces, numbers, sampled=spacing, last=end),))
 
 
-def _one(channel: str, kind: float, numbers: Array) -> Excitation:
+def _one(channel: str, kind: TermKind, numbers: Array) -> Excitation:
     return Excitation((Term(_channel(channel), kind, numbers),))
 
 
@@ -289,15 +287,15 @@ def _channel(channel: str) -> str:
 
 def _packed(term: Term) -> Array:
     index = (AXES if term.channel in AXES else LEGS).index(term.channel)
-    header = [index, term.kind, term.start, term.rise, term.stop, term.fall, term.numbers.size]
+    header = [index, term.kind.value, term.start, term.rise, term.stop, term.fall, term.numbers.size]
     return np.concatenate([header, term.numbers])
 
 
 def _scaled(term: Term, factor: float) -> Term:
     numbers = term.numbers.copy()
-    if term.kind == SINUSOIDS:
+    if term.kind == TermKind.sinusoids:
         numbers[::3] *= factor
-    elif term.kind == CHIRP:
+    elif term.kind == TermKind.chirp:
         numbers[0] *= factor
     else:
         pieces = numbers[1:].reshape(-1, 11)

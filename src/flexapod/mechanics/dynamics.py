@@ -12,7 +12,7 @@ from flexapod.checks import number
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
-from flexapod.mechanics.inputs import NO_LEGS, ZERO, is_universal, per_leg, states, wrench
+from flexapod.mechanics.inputs import NO_LEGS, ZERO, as_joint, per_leg, states, wrench
 from flexapod.pose import MotionLike
 
 
@@ -78,7 +78,7 @@ def equations_of_motion(
     Source: Eq. 34; E1 to E5, part B.
     """
     s = states(hexapod, pose, base)
-    J_p, J_b, eta, H = _core.equations_of_motion(hexapod.packed, is_universal(joint), s.platform, s.base)
+    J_p, J_b, eta, H = _core.equations_of_motion(hexapod.packed, as_joint(joint), s.platform, s.base)
     square = (*s.shape, 6, 6)
     return EquationsOfMotion(J_p.reshape(square), J_b.reshape(square), eta.reshape(*s.shape, 6), H.reshape(square))
 
@@ -106,7 +106,7 @@ def forward_dynamics(
     s = states(hexapod, pose, base)
     result = _core.forward_dynamics(
         hexapod.packed,
-        is_universal(joint),
+        as_joint(joint),
         s.platform,
         s.base,
         per_leg(leg_force, "leg_force", s.shape),
@@ -134,7 +134,7 @@ def inverse_dynamics(
     """
     s = states(hexapod, pose, base)
     loads = wrench(force, moment, s.shape)
-    result = _core.inverse_dynamics(hexapod.packed, is_universal(joint), s.platform, s.base, loads)
+    result = _core.inverse_dynamics(hexapod.packed, as_joint(joint), s.platform, s.base, loads)
     if not s.shape and np.isnan(result).any():
         raise SingularPoseError(
             "the legs cannot drive the platform at this pose: H is singular. Choose another pose, or change the joints."
@@ -166,7 +166,7 @@ def joint_reactions(
     s = states(hexapod, pose, base)
     forces = per_leg(leg_force, "leg_force", s.shape)
     legs, total = _core.joint_reactions(
-        hexapod.packed, is_universal(joint), s.platform, s.base, forces, number(section, "section")
+        hexapod.packed, as_joint(joint), s.platform, s.base, forces, number(section, "section")
     )
     legs = legs.reshape(*s.shape, 6, 6, 3)
     total = total.reshape(*s.shape, 2, 3)
@@ -191,7 +191,7 @@ def energy(
     """
     s = states(hexapod, pose, base)
     L_0 = per_leg(NO_LEGS if unstretched_length is None else unstretched_length, "unstretched_length", s.shape)
-    rows = _core.energy(hexapod.packed, is_universal(joint), s.platform, s.base, L_0)
+    rows = _core.energy(hexapod.packed, as_joint(joint), s.platform, s.base, L_0)
     if unstretched_length is None:
         rows[:, 2] = 0.0
     return Energy(*(column.reshape(s.shape)[()] for column in rows.T))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
-from flexapod.conventions import JOINT_MODELS, Array
+from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, DesignError, PoseError, shown
 from flexapod.pose import Motion, MotionLike, Pose, PoseLike, as_pose, vectors
@@ -19,10 +19,11 @@ NO_LEGS = (0.0,) * 6
 
 
 _AT_ORIGIN = Motion.fixed()
+_JOINTS = {joint.name: joint for joint in _core.Joint}
 
 
 class States(NamedTuple):
-    """n states of platform and base as rows of 24 numbers, and the batch axes to give results."""
+    """n states of platform and base as rows of the core's numbers of a motion, and the batch axes to give results."""
 
     platform: Array
     base: Array
@@ -71,7 +72,7 @@ def states(hexapod: Hexapod, platform: MotionLike | None, base: MotionLike | Non
         raise PoseError(
             f"pose has batch axes {motions[0].shape}, base {motions[1].shape}; they must be equal or 1."
         ) from None
-    rows = [np.ascontiguousarray(_spread(m.packed, shape).reshape(-1, 24)) for m in motions]
+    rows = [np.ascontiguousarray(_spread(m.packed, shape).reshape(-1, _core.motion_size)) for m in motions]
     length, sine = _core.leg_fit(hexapod.packed, *rows)
     good = np.all((length >= _shortest(hexapod)) & (sine >= LEAST_SINE), axis=1, keepdims=True)
     if not good.all():
@@ -99,13 +100,14 @@ def _refuse(hexapod: Hexapod, length: Array, sine: Array) -> None:
     )
 
 
-def is_universal(joint: str) -> bool:
-    """True for the exact joint model; raises ArgumentError for an unknown name."""
-    if joint not in JOINT_MODELS:
+def as_joint(joint: str) -> _core.Joint:
+    """The core's joint model of that name; raises ArgumentError for an unknown name."""
+    found = _JOINTS.get(joint)
+    if found is None:
         raise ArgumentError(
             f"joint is {joint!r}; it must be 'universal' (exact) or 'spin_free' (legs that do not spin)"
         )
-    return joint == "universal"
+    return found
 
 
 def per_leg(value: ArrayLike, name: str, shape: tuple[int, ...]) -> Array:

@@ -13,7 +13,7 @@ from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, KinematicsError, PoseError
 from flexapod.mechanics.inputs import as_hexapod, pose_or_home, states
-from flexapod.pose import Motion, MotionLike, Pose, PoseLike, as_pose, orthonormal, rpy_matrix, vectors
+from flexapod.pose import Motion, MotionLike, Pose, PoseLike, as_pose, orthonormal, rpy_matrix, unpack, vectors
 
 
 class LegRates(NamedTuple):
@@ -160,7 +160,8 @@ def _assemble(hexapod: Hexapod, lengths: Array, start: Pose | None) -> tuple[Arr
         pose, error = _core.forward_kinematics(hexapod.packed, rows[i], packed[i])
         best = np.fmin(best, error[0])
         if error[0] <= tolerance:
-            return pose[0, :3], orthonormal(pose[0, 3:].reshape(3, 3))
+            found = unpack(pose[0])
+            return found["position"], orthonormal(found["matrix"])
     tried = "from this start" if start is not None else f"from {len(packed)} starts"
     remedy = "give a start nearer to the pose, or none" if start is not None else "check the lengths, or give a start"
     raise KinematicsError(

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from flexapod import _core
 from flexapod.conventions import AXES, LEGS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.mechanics.inputs import ZERO, is_universal, single_pose, states, wrench
+from flexapod.mechanics.inputs import ZERO, as_joint, single_pose, states, wrench
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.optional import needed
 from flexapod.pose import Pose, PoseLike, skew
@@ -181,7 +181,7 @@ def linearise(
     rest = hold(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
     s = states(hexapod, pose, base)
     M, C, K, M_b, C_b, K_b, H = _core.tangent(
-        hexapod.packed, is_universal(joint), s.platform, s.base, wrench(force, moment, ()), rest.unstretched_length
+        hexapod.packed, as_joint(joint), s.platform, s.base, wrench(force, moment, ()), rest.unstretched_length
     )
     r = s.platform[0, :3] - s.base[0, :3]
     carry = np.eye(6)

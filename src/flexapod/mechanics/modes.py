@@ -9,7 +9,8 @@ import numpy as np
 from flexapod import _core
 from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.mechanics.inputs import is_universal, single_pose, states
+from flexapod.design.packing import PLACES
+from flexapod.mechanics.inputs import as_joint, single_pose, states
 from flexapod.mechanics.kinematics import force_transformation
 from flexapod.pose import PoseLike, skew
 
@@ -96,7 +97,7 @@ def natural_modes(
     Source: Eq. 5; part C says what it leaves out.
     """
     s = states(hexapod, pose, base)
-    omega, shape = _core.natural_modes(hexapod.packed, is_universal(joint), s.platform, s.base)
+    omega, shape = _core.natural_modes(hexapod.packed, as_joint(joint), s.platform, s.base)
     return NaturalModes(omega.reshape(*s.shape, 6), shape.reshape(*s.shape, 6, 6))
 
 
@@ -135,7 +136,7 @@ def energy_shares(
     strain = hexapod.legs.stiffness[:, None] * stretch**2
     with np.errstate(invalid="ignore"):
         strain = strain / strain.sum(axis=-2, keepdims=True)
-    platform, legs = _core.inertia_parts(hexapod.packed, is_universal(joint), s.platform, s.base)
+    platform, legs = _core.inertia_parts(hexapod.packed, as_joint(joint), s.platform, s.base)
     parts = np.concatenate([platform[:, None], legs], axis=1).reshape(*s.shape, 7, 6, 6)
     kinetic = np.einsum("...im,...bij,...jm->...bm", shape, parts, shape)
     return EnergyShares(strain, kinetic)
@@ -156,7 +157,7 @@ def describe_modes(
     pose = single_pose(hexapod, pose)
     s = states(hexapod, pose, base)
     modes = natural_modes(hexapod, pose, base=base, joint=joint)
-    J = _core.equations_of_motion(hexapod.packed, is_universal(joint), s.platform, s.base)[0][0]
+    J = _core.equations_of_motion(hexapod.packed, as_joint(joint), s.platform, s.base)[0][0]
     r = pose.matrix @ hexapod.platform_mass_center
     shift = np.eye(6)  # twist of the reference point from that of the mass centre
     shift[:3, 3:] = skew(r)
@@ -217,23 +218,20 @@ def frequency_sensitivity(
     """
     pose = single_pose(hexapod, pose)
     s = states(hexapod, pose, base)
-    universal = is_universal(joint)
     omega = natural_modes(hexapod, pose, base=base, joint=joint).omega
-    by_design, by_pose = _core.frequency_derivatives(hexapod.packed, universal, s.platform, s.base)
+    by_design, by_pose = _core.frequency_derivatives(hexapod.packed, as_joint(joint), s.platform, s.base)
     half = np.where(omega > 0, 0.5 / np.where(omega > 0, omega, 1.0), np.nan)[:, None]
-    d = half * by_design[0]
-    leg = d[:, 67:].reshape(6, 6, 24)
-    xx, yy, zz, xy, xz, yz = d[:, 61:67].T
-    inertia = np.stack([np.stack(row, -1) for row in ([xx, xy, xz], [xy, yy, yz], [xz, yz, zz])], axis=-2)
+    derivatives = half * by_design[0]
+    by = {key: derivatives[:, place] for key, place in PLACES.items()}
     return Sensitivity(
-        platform_mass=d[:, 57],
-        platform_mass_center=d[:, 58:61],
-        platform_inertia=inertia,
-        stiffness=leg[:, :, 0],
-        base_joints=d[:, 3:21].reshape(6, 6, 3),
-        platform_joints=d[:, 39:57].reshape(6, 6, 3),
-        lower_mass=leg[:, :, 4],
-        upper_mass=leg[:, :, 14],
+        platform_mass=by["platform.mass"],
+        platform_mass_center=by["platform.mass_center"],
+        platform_inertia=by["platform.inertia"],
+        stiffness=by["legs.stiffness"],
+        base_joints=by["base.joints"],
+        platform_joints=by["platform.joints"],
+        lower_mass=by["legs.lower.mass"],
+        upper_mass=by["legs.upper.mass"],
         pose=half * by_pose[0],
     )
 

@@ -12,9 +12,9 @@ from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import KinematicsError, SingularPoseError
 from flexapod.mechanics.dynamics import inverse_dynamics
-from flexapod.mechanics.inputs import ZERO, as_hexapod, is_universal, pose_or_home, single_pose, states, wrench
+from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, pose_or_home, single_pose, states, wrench
 from flexapod.mechanics.kinematics import forward_kinematics, inverse_kinematics
-from flexapod.pose import Pose, PoseLike, as_pose, orthonormal
+from flexapod.pose import Pose, PoseLike, as_pose, orthonormal, unpack
 
 
 class Equilibrium(NamedTuple):
@@ -87,16 +87,15 @@ def static_equilibrium(
         if base is not None:
             start = Pose(base.position + base.matrix @ start.position, base.matrix @ start.matrix)
     s = states(hexapod, start, base)
-    found, outcome = _core.settle(
-        hexapod.packed, is_universal(joint), s.platform, s.base, wrench(force, moment, ()), L_0
-    )
-    pose = Pose(found[:3], orthonormal(found[3:].reshape(3, 3)))
-    if outcome == "singular":
+    found, outcome = _core.settle(hexapod.packed, as_joint(joint), s.platform, s.base, wrench(force, moment, ()), L_0)
+    parts = unpack(found)
+    pose = Pose(parts["position"], orthonormal(parts["matrix"]))
+    if outcome == _core.Rest.singular:
         raise SingularPoseError(
             f"the search for equilibrium met {pose!r}, where the legs have no stiffness in some direction. "
             "Start nearer to the equilibrium, or stiffen the legs."
         )
-    if outcome == "not_found":
+    if outcome == _core.Rest.not_found:
         raise KinematicsError(
             f"no equilibrium was found; the search ended at {pose!r}. The load may be more than the legs can carry "
             "before they collapse: start nearer, reduce the load, or stiffen the legs."

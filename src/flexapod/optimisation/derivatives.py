@@ -13,22 +13,22 @@ from flexapod.pose import Motion, Pose
 from flexapod.workspace.worst import twist_of_coordinates
 
 _FREQUENCIES, _FORCES, _LEGS = 1, 2, 4
-_NO_HOME = np.zeros((0, 24)), np.zeros((0, 6))
+_NO_HOME = np.zeros((0, _core.motion_size)), np.zeros((0, 6))
 
 
 class Slopes:
-    """A design, 217 numbers and their derivatives (217, n), at poses (k, 6) that move with home or do not.
+    """A design, its numbers (m,) and their derivatives (m, n), at poses (k, 6) that move with home or do not.
 
     Everything is computed when it is first asked for: value (k, ...) and derivative (k, ..., n).
     """
 
-    def __init__(self, numbers: Array, jacobian: Array, rows: Array, from_home: bool, universal: bool) -> None:
-        self.numbers, self.jacobian, self.rows, self.from_home, self.universal = (
+    def __init__(self, numbers: Array, jacobian: Array, rows: Array, from_home: bool, joint: _core.Joint) -> None:
+        self.numbers, self.jacobian, self.rows, self.from_home, self.joint = (
             numbers,
             jacobian,
             rows,
             from_home,
-            universal,
+            joint,
         )
 
     @cached_property
@@ -79,7 +79,7 @@ class Slopes:
             home_displacement = (twist_of_coordinates(home) @ by_home).T
         return _core.design_gradients(
             self.numbers[: HOME.start],
-            self.universal,
+            self.joint,
             np.ascontiguousarray(Motion(Pose.from_rpy(*self.rows.T)).packed),
             np.ascontiguousarray(self.jacobian[: HOME.start].T),
             displacement,

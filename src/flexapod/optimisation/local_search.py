@@ -184,7 +184,7 @@ class _Local:
         margin: list[tuple[Array, Array]] = [(np.zeros(0), np.zeros((0, len(u))))]
         for held in self.held:
             rows = held.rows + own[HOME] if held.from_home else held.rows
-            at = Slopes(own, jacobian, rows, held.from_home, self.problem.universal)
+            at = Slopes(own, jacobian, rows, held.from_home, self.problem.core_joint)
             if held.requirement is None:
                 index.append(self.problem.objective.slopes(at, self.sharpness))
             else:

@@ -14,7 +14,7 @@ from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, numbers
 from flexapod.errors import ArgumentError, DesignError, PoseError
-from flexapod.mechanics.inputs import is_universal
+from flexapod.mechanics.inputs import as_joint
 from flexapod.optimisation.constraint_quantities import Kind, Side
 from flexapod.optimisation.constraints import Constraint, Requirement
 from flexapod.optimisation.objectives import Objective
@@ -67,7 +67,7 @@ class Problem:
         threads: int | None,
     ) -> None:
         self.hexapod, self.objective, self.joint = hexapod, objective, joint
-        self.universal, self.threads = is_universal(joint), thread_count(threads)
+        self.core_joint, self.threads = as_joint(joint), thread_count(threads)
         self.map = DesignMap(hexapod, variables)
         constraints = [constraints] if isinstance(constraints, Constraint) else list(constraints)
         wrong = [c for c in constraints if not isinstance(c, Constraint)]

@@ -18,7 +18,7 @@ from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, PLACES, entries, numbers
 from flexapod.errors import ArgumentError
-from flexapod.mechanics.inputs import is_universal
+from flexapod.mechanics.inputs import as_joint
 from flexapod.optional import needed
 from flexapod.pose import Pose
 from flexapod.workspace.box_minimum import pattern_minimum
@@ -187,7 +187,7 @@ class Ensemble:
         self.names = names
 
     def designs(self, u: Array) -> Array:
-        """(s, 211) for points u (s, p) of the unit cube."""
+        """(s, n) for points u (s, p) of the unit cube."""
         found = np.tile(self.base, (len(u), 1))
         load = {p.name: np.full(len(u), p.width[0]) for p in self.payload}
         for k, p in enumerate(self.parameters):
@@ -233,8 +233,9 @@ def _load(designs: Array, mass: Array, at: Array) -> None:
     designs[:, PLACES["platform.mass_center"]] = (M[:, None] * R + mass[:, None] * at) / total[:, None]
     d = at - R
     reduced = M * mass / total  # two point masses about their common centre
-    designs[:, 61:64] += reduced[:, None] * ((d**2).sum(axis=1, keepdims=True) - d**2)
-    designs[:, 64:67] -= reduced[:, None] * d[:, [0, 0, 1]] * d[:, [1, 2, 2]]
+    inertia, (i, j) = PLACES["platform.inertia"], np.triu_indices(3, 1)
+    designs[:, inertia.diagonal()] += reduced[:, None] * ((d**2).sum(axis=1, keepdims=True) - d**2)
+    designs[:, inertia[i, j]] -= reduced[:, None] * d[:, i] * d[:, j]
 
 
 def robustness(
@@ -301,9 +302,9 @@ class _Index:
 
     def __init__(self, ensemble: Ensemble, rows: Array, settings: _Settings) -> None:
         self.ensemble, self.progress = ensemble, settings.progress
-        self.universal, self.threads = is_universal(settings.joint), thread_count(settings.threads)
+        self.joint, self.threads = as_joint(settings.joint), thread_count(settings.threads)
         pose = Pose.from_rpy(*rows.T)
-        self.poses = np.ascontiguousarray(np.concatenate([pose.position, pose.matrix.reshape(-1, 9)], axis=1))
+        self.poses = pose.packed
 
     def nominal(self, name: str) -> float:
         found = float(self.of(self.ensemble.base[None])[0])
@@ -312,7 +313,7 @@ class _Index:
         return found
 
     def of(self, designs: Array) -> Array:
-        omega = _core.sweep_designs(np.ascontiguousarray(designs), self.universal, self.poses, False, 1, self.threads)
+        omega = _core.sweep_designs(np.ascontiguousarray(designs), self.joint, self.poses, False, 1, self.threads)
         return np.nan_to_num(omega[:, :, 0]).min(axis=1)
 
     def __call__(self, u: Array, stage: str = "") -> Array:

@@ -265,7 +265,7 @@ Part = Tie | Circle
 
 
 class DesignMap:
-    """From variables x (n,), SI units, to the 217 numbers of a design and back to a `Hexapod`."""
+    """From variables x (n,), SI units, to the numbers of a design (see layout.py) and back to a `Hexapod`."""
 
     def __init__(self, hexapod: Hexapod, variables: Sequence[Variable | JointCircle]) -> None:
         if isinstance(variables, Variable | JointCircle):
@@ -324,7 +324,7 @@ class DesignMap:
         return np.concatenate([part.start() for part in self.parts])
 
     def numbers(self, x: Any) -> Any:
-        """217 numbers, real or complex as x is."""
+        """The design's numbers, real or complex as x is."""
         x = np.asarray(x)
         found = self._numbers.astype(np.result_type(x, np.float64))
         first = 0
@@ -338,7 +338,7 @@ class DesignMap:
         return found
 
     def jacobian(self, x: Array) -> Array:
-        """(217, n): derivatives of the numbers by the variables."""
+        """(m, n): derivatives of the numbers by the variables."""
         n = len(self.parameters)
         columns = [self.numbers(x + 1j * _STEP * np.eye(n)[k]).imag / _STEP for k in range(n)]
         return np.stack(columns, axis=1)

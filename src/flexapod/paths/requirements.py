@@ -138,4 +138,4 @@ def smooth_minimum(values: Array) -> Array:
 
 
 def _rows(poses: Pose) -> Array:
-    return np.concatenate([poses.position, poses.matrix.reshape(-1, 9)], axis=1)
+    return poses.packed

@@ -12,7 +12,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.excitation.excitation import Excitation
 from flexapod.mechanics.dynamics import energy, joint_reactions
 from flexapod.mechanics.kinematics import leg_rates
-from flexapod.pose import Motion, Pose
+from flexapod.pose import Motion
 from flexapod.simulation.integrator import Trajectories
 from flexapod.simulation.run import SimulationRun
 
@@ -23,7 +23,7 @@ def one_run(
     """One run of many, as far as it got."""
     reached = int(np.isfinite(found.displacement[i, :, 0]).sum())
     times = times[:reached]
-    platform, base = _motion(found.platform[i, :reached]), _motion(found.base[i, :reached])
+    platform, base = Motion.unpacked(found.platform[i, :reached]), Motion.unpacked(found.base[i, :reached])
     command = Excitation() if run.leg_command is None else run.leg_command
     unstretched = found.unstretched_length[i] + command.evaluate(times)[0]
     length = leg_rates(run.hexapod, platform, base=base).length
@@ -72,11 +72,6 @@ class _State(NamedTuple):
     base: Motion
     unstretched: Array
     leg_force: Array
-
-
-def _motion(rows: Array) -> Motion:
-    pose = Pose(rows[:, :3], rows[:, 3:12].reshape(-1, 3, 3))
-    return Motion(pose, *(rows[:, i : i + 3] for i in (12, 15, 18, 21)))
 
 
 def _energies(state: _State, work: Array, joint: JointModel) -> dict[str, Any]:

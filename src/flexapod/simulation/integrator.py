@@ -14,22 +14,13 @@ from flexapod.checks import number, numbers, one_of, thread_count
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, Array, JointModel
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.excitation.excitation import Excitation, check_channels
-from flexapod.mechanics.inputs import is_universal, single_pose
+from flexapod.mechanics.inputs import as_joint, single_pose
 from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.mechanics.statics import hold
 from flexapod.pose import Motion, Pose, as_pose
 from flexapod.simulation.run import Load, SimulationRun, Start
 
-OUTCOMES = (
-    "complete",
-    "singular",
-    "leg_collapsed",
-    "joint_locked",
-    "step_collapse",
-    "not_finite",
-    "max_steps",
-    "stopped",
-)
+OUTCOMES = tuple(outcome.name for outcome in _core.Outcome)
 
 
 class Trajectories(NamedTuple):
@@ -38,8 +29,8 @@ class Trajectories(NamedTuple):
     displacement: (n, m, 6) of the platform from its equilibrium pose, inertial axes, translation (m) and rotation
     vector (rad), with full relative precision however small. relative: the same seen from the base, in its axes: zero
     where the platform rides with the base rigidly. work: (n, m, 4) done by base, external wrench, leg commands and
-    friction since t = 0, J (zero unless asked for). platform, base: (n, m, 24) motions as `Motion.packed`, and
-    leg_force: (n, m, 6) N (m = 0 unless asked for). status: (n,) of OUTCOMES. end_time: (n,) s. last: (n, 24), the
+    friction since t = 0, J (zero unless asked for). platform, base: (n, m, k) motions as `Motion.packed`, and
+    leg_force: (n, m, 6) N (m = 0 unless asked for). status: (n,) of OUTCOMES. end_time: (n,) s. last: (n, k), the
     platform's motion then. steps: (n, 3) accepted, rejected, evaluations of the equations of motion.
     unstretched_length: (n, 6) m, without commands.
     """
@@ -110,7 +101,7 @@ def integrate(
     ]
     found = _core.simulate(
         np.stack([run.hexapod.packed for run in runs]),
-        is_universal(joint),
+        as_joint(joint),
         np.stack([p.setup for p in prepared]),
         [packed for p in prepared for packed in p.excitations],
         t,
@@ -132,7 +123,7 @@ def equations(run: SimulationRun, *, joint: JointModel = "universal") -> _core.E
     below a full turn), velocity, angular velocity.
     """
     p = prepare(run, 0.0, joint)
-    return _core.Equations(run.hexapod.packed, is_universal(joint), p.setup, p.excitations)
+    return _core.Equations(run.hexapod.packed, as_joint(joint), p.setup, p.excitations)
 
 
 class Prepared(NamedTuple):
@@ -161,7 +152,7 @@ def prepare(run: SimulationRun, until: float, joint: JointModel) -> Prepared:
     check_channels(base_motion, "base_motion", AXES)
     check_channels(command, "leg_command", LEGS)
     flags = [base_motion.rotation == "rpy", isinstance(run.start, str) and run.start == "carried"]
-    pose_rows = (Motion(pose).packed[:12], Motion.fixed(base).packed[:12])
+    pose_rows = (pose.packed, Motion.fixed(base).pose.packed)
     setup = np.concatenate([*pose_rows, leg_force, force, moment, *_start(run.start, pose), flags])
     packed = [base_motion.packed, np.concatenate([force_history, moment_history]), command.packed]
     return Prepared(setup, packed, lengths)

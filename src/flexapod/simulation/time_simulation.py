@@ -12,7 +12,7 @@ from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SimulationError
 from flexapod.excitation.excitation import Excitation
-from flexapod.pose import Pose
+from flexapod.pose import Pose, unpack
 from flexapod.simulation.batch import simulate_many
 from flexapod.simulation.run import Load, SimulationRun, Start
 
@@ -209,7 +209,8 @@ def _complete(dataset: xr.Dataset) -> xr.Dataset:
     status, end = dataset.attrs["status"], dataset.attrs["end_time"]
     if status == "complete":
         return dataset
-    where = Pose(last[:3], last[3:12].reshape(3, 3))
+    parts = unpack(last)
+    where = Pose(parts["position"], parts["matrix"])
     result = dataset.sel(time=dataset.time <= end)
     raise SimulationError(
         f"the simulation ended at t = {end:.9g} s in {where!r}: {REASONS[status]}.", end, where, result

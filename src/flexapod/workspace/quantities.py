@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import cache, reduce
+from operator import or_
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +14,7 @@ from flexapod.checks import one_of
 from flexapod.conventions import AXES, Array, JointModel, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
-from flexapod.mechanics.inputs import is_universal
+from flexapod.mechanics.inputs import as_joint
 from flexapod.mechanics.kinematics import neutral_directions
 
 
@@ -22,11 +24,7 @@ class Quantity(NamedTuple):
     unit: str
     meaning: str
     trailing: str = ""
-    kernel: str = ""  #: the kernel's name for it, where it has another
-
-    @property
-    def dtype(self) -> str:
-        return "bool" if self.unit == "" and self.meaning.startswith("whether") else "float64"
+    dtype: str = "float64"
 
 
 QUANTITIES: dict[str, Quantity] = {
@@ -34,12 +32,12 @@ QUANTITIES: dict[str, Quantity] = {
     "omega": Quantity("rad s-1", "natural frequencies", "mode"),
     "cond_H": Quantity("1", "condition number of the force transformation H"),
     "leg_length": Quantity("m", "leg length", "leg"),
-    "universal_angle": Quantity("rad", "universal joint angle from neutral", "leg", "joint_angle"),
-    "spherical_angle": Quantity("rad", "spherical joint angle from neutral", "leg", "joint_angle"),
+    "universal_angle": Quantity("rad", "universal joint angle from neutral", "leg"),
+    "spherical_angle": Quantity("rad", "spherical joint angle from neutral", "leg"),
     "leg_distance": Quantity("m", "least distance between two leg axes"),
     "leg_force": Quantity("N", "largest static leg force under gravity"),
     "lowest_stiffness": Quantity("N m-1", "lowest stiffness against displacement of the reference point"),
-    "within_limits": Quantity("", "whether legs and joints are within the design's limits"),
+    "within_limits": Quantity("", "whether legs and joints are within the design's limits", dtype="bool"),
 }
 DEFAULT = ("omega_1", "cond_H")
 #: What else a quantity is called -> its name here.
@@ -72,7 +70,7 @@ _MEANINGS = {
 
 def statuses() -> dict[int, str]:
     """Names of the status codes."""
-    return {**dict(enumerate(_core.SWEEP_STATUS)), PENDING: "pending"}
+    return {**{status.value: status.name for status in _core.SweepStatus}, PENDING: "pending"}
 
 
 def chosen(quantities: str | Iterable[str]) -> tuple[str, ...]:
@@ -99,13 +97,15 @@ def evaluate(
 
     limits: `packed_limits(hexapod)`, for those who call often.
     """
-    mask = 0
-    for name in quantities:
-        mask |= _core.SWEEP[QUANTITIES[name].kernel or name]
-    found = _core.sweep(
-        hexapod.packed, is_universal(joint), rows, mask, packed_limits(hexapod) if limits is None else limits, threads
-    )
+    limits = packed_limits(hexapod) if limits is None else limits
+    found = _core.sweep(hexapod.packed, as_joint(joint), rows, _asked(quantities), limits, threads)
     return {name: found[name] for name in (*quantities, "status")}
+
+
+@cache
+def _asked(arrays: tuple[str, ...]) -> _core.SweepQuantity:
+    """What the kernel is asked for, so that it gives the arrays of these names."""
+    return reduce(or_, (_core.SWEEP_ARRAYS[name] for name in arrays))
 
 
 def index_and_gradient(hexapod: Hexapod, joint: JointModel) -> Callable[[Array], tuple[Array, Array]]:
@@ -113,11 +113,11 @@ def index_and_gradient(hexapod: Hexapod, joint: JointModel) -> Callable[[Array],
 
     Both are zero where omega_1 cannot be computed.
     """
-    mask = _core.SWEEP["omega_1"] | _core.SWEEP["omega_1_gradient"]
-    universal, packed, limits = is_universal(joint), hexapod.packed, packed_limits(hexapod)
+    wanted = _asked(("omega_1", "omega_1_gradient"))
+    model, packed, limits = as_joint(joint), hexapod.packed, packed_limits(hexapod)
 
     def found(rows: Array) -> tuple[Array, Array]:
-        at = _core.sweep(packed, universal, rows, mask, limits, 1)
+        at = _core.sweep(packed, model, rows, wanted, limits, 1)
         return np.nan_to_num(at["omega_1"]), np.nan_to_num(at["omega_1_gradient"])
 
     return found

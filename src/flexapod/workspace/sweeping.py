@@ -12,7 +12,7 @@ from flexapod.checks import thread_count
 from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import is_universal
+from flexapod.mechanics.inputs import as_joint
 from flexapod.pose import Pose
 from flexapod.workspace.pose_sets import GridPoses, PoseSet
 from flexapod.workspace.quantities import (
@@ -110,7 +110,7 @@ def sweep(
     (109.9, 3.28)
     """
     wanted = chosen(quantities)
-    is_universal(joint)
+    as_joint(joint)
     points = poses_of(hexapod, region, samples, seed)
     rows = points.rows(0, points.count)
     found = evaluate(hexapod, rows, wanted, joint, thread_count(threads))

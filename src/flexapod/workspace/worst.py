@@ -11,7 +11,7 @@ from flexapod.checks import thread_count, whole
 from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import as_hexapod, is_universal, states
+from flexapod.mechanics.inputs import as_hexapod, as_joint, states
 from flexapod.pose import Pose
 from flexapod.workspace.box import Box
 from flexapod.workspace.box_minimum import smooth_minimum
@@ -166,14 +166,14 @@ class SquaredFrequency:
     """The square of one of the six natural frequencies at x, y, z, roll, pitch, yaw, (6,), with exact derivatives."""
 
     def __init__(self, hexapod: Hexapod, joint: JointModel, mode: int) -> None:
-        self.hexapod, self.universal, self.mode = hexapod, is_universal(joint), mode - 1
+        self.hexapod, self.joint, self.mode = hexapod, as_joint(joint), mode - 1
         self.scale = 1.0  # largest omega_6 met, rad/s
 
     def __call__(self, six: Array) -> tuple[float, Array]:
         """omega^2 and its derivatives by the coordinates. A pose that no leg can take raises PoseError."""
         s = states(self.hexapod, Pose.from_rpy(*six))
-        omega = _core.natural_modes(self.hexapod.packed, self.universal, s.platform, s.base)[0][0]
-        by_twist = _core.frequency_derivatives(self.hexapod.packed, self.universal, s.platform, s.base)[1]
+        omega = _core.natural_modes(self.hexapod.packed, self.joint, s.platform, s.base)[0][0]
+        by_twist = _core.frequency_derivatives(self.hexapod.packed, self.joint, s.platform, s.base)[1]
         self.scale = max(self.scale, float(omega[-1]))
         return float(omega[self.mode] ** 2), by_twist[0, self.mode] @ twist_of_coordinates(six)
 

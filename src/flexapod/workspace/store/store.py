@@ -25,7 +25,7 @@ from flexapod import _core
 from flexapod.conventions import AXES, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import OutputError
-from flexapod.mechanics.inputs import is_universal
+from flexapod.mechanics.inputs import as_joint
 from flexapod.workspace.pose_sets import GivenPoses, GridPoses, PoseSet
 from flexapod.workspace.quantities import DEFAULT, PENDING, QUANTITIES, attributes, chosen, provenance
 from flexapod.workspace.region import RegionLike, poses_of
@@ -81,7 +81,7 @@ class SweepStore:
         Raises: OutputError where there is something already, or where nothing can be written; PoseError as `sweep`.
         """
         points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities)
-        is_universal(joint)
+        as_joint(joint)
         if chunk is not None and chunk < 1:
             raise OutputError(f"chunk is {chunk}; it must be at least 1 pose.")
         keep = _streams_poses(points) and (keep_poses or isinstance(points, GivenPoses))

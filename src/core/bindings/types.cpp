@@ -1,0 +1,107 @@
+// The names and layouts that Python takes from the core.
+#include "bindings/types.hpp"
+
+#include "bindings/arrays.hpp"
+#include "model/statics.hpp"
+#include "simulation/excitation.hpp"
+#include "simulation/task.hpp"
+#include "sweep/task.hpp"
+
+namespace flexapod {
+namespace {
+
+nb::tuple shape(const Field& f) {
+  nb::list sizes;
+  if (f.stride > 0) sizes.append(6);
+  if (f.rows() > 1) sizes.append(f.rows());
+  if (f.columns() > 1) sizes.append(f.columns());
+  return nb::tuple(sizes);
+}
+
+/// Where each of the field's numbers is, in the field's shape.
+nb::object index(const Field& f) {
+  nb::list places;
+  for (int leg = 0; leg < (f.stride > 0 ? 6 : 1); ++leg)
+    for (int row = 0; row < f.rows(); ++row)
+      for (int column = 0; column < f.columns(); ++column) places.append(f.at(leg, row, column));
+  const nb::module_ numpy = nb::module_::import_("numpy");
+  return numpy.attr("array")(places, numpy.attr("int64")).attr("reshape")(shape(f));
+}
+
+template <std::size_t n> nb::tuple rows_of(const std::array<Field, n>& fields) {
+  nb::list rows;
+  for (const Field& f : fields) rows.append(f);
+  return nb::tuple(rows);
+}
+
+void bind_layouts(nb::module_& m) {
+  nb::class_<Field>(m, "Field")
+      .def_prop_ro("name", [](const Field& f) { return f.name; })
+      .def_ro("offset", &Field::offset)
+      .def_ro("stride", &Field::stride)
+      .def_prop_ro("shape", &shape)
+      .def_prop_ro("unit", [](const Field& f) { return f.unit; })
+      .def_prop_ro("index", &index);
+  m.attr("DESIGN_LAYOUT") = rows_of(design_layout);
+  m.attr("MOTION_LAYOUT") = rows_of(motion_layout);
+  m.attr("design_size") = design_size;
+  m.attr("motion_size") = motion_size;
+}
+
+void bind_enums(nb::module_& m) {
+  nb::enum_<Joint>(m, "Joint").value("universal", Joint::universal).value("spin_free", Joint::spin_free);
+  nb::enum_<Rest>(m, "Rest")
+      .value("found", Rest::found)
+      .value("singular", Rest::singular)
+      .value("not_found", Rest::not_found);
+  nb::enum_<TermKind>(m, "TermKind")
+      .value("sinusoids", TermKind::sinusoids)
+      .value("chirp", TermKind::chirp)
+      .value("pieces", TermKind::pieces);
+
+  using simulation_task::Measure, simulation_task::Outcome;
+  nb::enum_<Measure>(m, "Measure")
+      .value("leg_length", Measure::leg_length)
+      .value("leg_rate", Measure::leg_rate)
+      .value("leg_force", Measure::leg_force)
+      .value("position", Measure::position)
+      .value("velocity", Measure::velocity)
+      .value("acceleration", Measure::acceleration);
+  nb::enum_<Outcome>(m, "Outcome")
+      .value("complete", Outcome::complete)
+      .value("singular", Outcome::singular)
+      .value("leg_collapsed", Outcome::leg_collapsed)
+      .value("joint_locked", Outcome::joint_locked)
+      .value("step_collapse", Outcome::step_collapse)
+      .value("not_finite", Outcome::not_finite)
+      .value("max_steps", Outcome::max_steps)
+      .value("stopped", Outcome::stopped);
+
+  using sweep_task::Quantity, sweep_task::Status;
+  nb::enum_<Quantity>(m, "SweepQuantity", nb::is_flag())
+      .value("omega_1", Quantity::omega_1)
+      .value("omega", Quantity::omega)
+      .value("cond_H", Quantity::cond_H)
+      .value("leg_length", Quantity::leg_length)
+      .value("leg_distance", Quantity::leg_distance)
+      .value("leg_force", Quantity::leg_force)
+      .value("lowest_stiffness", Quantity::lowest_stiffness)
+      .value("joint_angle", Quantity::joint_angle)
+      .value("within_limits", Quantity::within_limits)
+      .value("omega_1_gradient", Quantity::omega_1_gradient);
+  nb::enum_<Status>(m, "SweepStatus")
+      .value("ok", Status::ok)
+      .value("singular", Status::singular)
+      .value("no_leg", Status::no_leg)
+      .value("not_finite", Status::not_finite)
+      .value("no_inertia", Status::no_inertia);
+}
+
+}  // namespace
+
+void bind_types(nb::module_& m) {
+  bind_layouts(m);
+  bind_enums(m);
+}
+
+}  // namespace flexapod
