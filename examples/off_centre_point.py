@@ -19,15 +19,15 @@ def main(path: str | None = None) -> float:
     home = fx.home_pose(machine)
     omega = fx.natural_modes(machine, home).omega
     sweep = np.unique(np.concatenate([omega, *(np.linspace(0.5, 1.3, 400) * w for w in omega)]))  # peaks are narrow
-    center = fx.transmissibility(machine, home, sweep)
-    sensor = fx.transmissibility(machine, home, sweep, point=SENSOR)
+    center = fx.transmissibility(machine, home, omega=sweep)
+    sensor = fx.transmissibility(machine, home, omega=sweep, point=SENSOR)
     for output in ("x", "z"):
         for name, found in (("centre", center), ("sensor", sensor)):
             curve = np.abs(found.absolute.sel(output=output, base="x"))
             peak = int(np.argmax(curve.values))
             hertz = sweep[peak] / (2 * np.pi)
             print(f"floor x to {name} {output}: at most {float(curve[peak]):7.3f} m/m, at {hertz:.1f} Hz")
-    static = fx.transmissibility(machine, home, [0.0], point=SENSOR).compliance.sel(output="z", wrench="z")
+    static = fx.transmissibility(machine, home, omega=[0.0], point=SENSOR).compliance.sel(output="z", wrench="z")
     print(f"a hand that presses the sensor down with 10 N moves it by {1e6 * 10 * float(np.abs(static[0])):.2f} um")
     if path is not None:
         response.frequency_response(sensor, given="x", natural=omega).savefig(path)

@@ -14,7 +14,7 @@ def main() -> float:
     machine = fx.load("cubic-isolator")
     home = fx.home_pose(machine)
     floor = fx.vc_curve("VC-C")
-    response = fx.random_response(machine, home, {"x": floor, "y": floor, "z": floor})
+    response = fx.random_response(machine, home, psd={"x": floor, "y": floor, "z": floor})
     still = floor.rms()
     print(f"the floor moves with {1e6 * still:.1f} um/s RMS along each axis")
     for axis in ("x", "y", "z"):
@@ -25,7 +25,7 @@ def main() -> float:
         print(f"  {axis}: {1e3 * acceleration:.3f} mm/s2 and {1e6 * travel:.2f} um RMS, most of it at {peak:.2f} Hz")
 
     hertz = np.geomspace(1.0, 80.0, 500)
-    ratio = np.abs(fx.transmissibility(machine, home, 2 * np.pi * hertz).absolute.sel(output="z", base="z")).values
+    ratio = np.abs(fx.transmissibility(machine, home, frequency=hertz).absolute.sel(output="z", base="z")).values
     isolates = hertz[np.flatnonzero(ratio > 1)[-1] + 1]
     at = hertz[ratio.argmax()]
     print(f"answer: it resonates at {at:.2f} Hz, where it moves {ratio.max():.1f} times as far as the floor,")

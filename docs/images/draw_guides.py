@@ -38,7 +38,7 @@ def vibration() -> None:
     """docs/vibration.md: how much of the base's x reaches the positioner."""
     machine = fx.load("precision-positioner")
     pose = fx.Pose.from_rpy(0.002, 0, 0.244, 0, 0, np.radians(2))
-    passed = fx.transmissibility(machine, pose, np.geomspace(100, 5000, 1500), loss_factor=0.01)
+    passed = fx.transmissibility(machine, pose, omega=np.geomspace(100, 5000, 1500), loss_factor=0.01)
     natural = fx.natural_modes(machine, pose).omega
     save(response.frequency_response(passed, given="x", natural=natural), "response.png")
 

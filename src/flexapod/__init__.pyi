@@ -64,8 +64,8 @@ from .pose import Motion as Motion
 from .pose import Pose as Pose
 from .simulation.batch import simulate_many as simulate_many
 from .simulation.time_simulation import simulate as simulate
-from .vibration.frequency_response import random_response as random_response
 from .vibration.frequency_response import transmissibility as transmissibility
+from .vibration.random_vibration import random_response as random_response
 from .vibration.stepped import stepped_sine as stepped_sine
 from .workspace.box import Box as Box
 from .workspace.box import Workspace as Workspace

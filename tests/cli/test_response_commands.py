@@ -32,7 +32,7 @@ def test_response_prints_what_the_library_gives(result, arguments, variable, giv
     assert omega[-1] == pytest.approx(2000)
     hexapod = fx.load("mukherjee-ii")
     eta = found["loss_factor"]
-    expected = fx.transmissibility(hexapod, II, omega, loss_factor=eta)[variable].sel(given)
+    expected = fx.transmissibility(hexapod, II, omega=omega, loss_factor=eta)[variable].sel(given)
     for axis in AXES:
         complex_amplitude = np.array(found["amplitude"][axis]) * np.exp(1j * np.array(found["phase_rad"][axis]))
         np.testing.assert_allclose(complex_amplitude, expected.sel(output=axis), rtol=1e-9, atol=1e-300)
@@ -55,21 +55,21 @@ def test_response_writes_files_that_read_back(run, tmp_path):
     home = fx.home_pose(hexapod)
     with xr.open_dataset(out / "response.nc") as saved:
         read = saved.absolute_re.values + 1j * saved.absolute_im.values
-        expected = fx.transmissibility(hexapod, home, saved.omega.values)
+        expected = fx.transmissibility(hexapod, home, omega=saved.omega.values)
         np.testing.assert_allclose(read, expected.absolute, rtol=1e-14, atol=1e-14)
         assert saved.omega.attrs["units"] == "rad/s"
     table = pd.read_csv(out / "response.csv")
     np.testing.assert_allclose(table.frequency_hz * 2 * np.pi, table.omega_rad_s)
-    expected = fx.transmissibility(hexapod, home, table.omega_rad_s).absolute.sel(output="z", base="z")
+    expected = fx.transmissibility(hexapod, home, omega=table.omega_rad_s).absolute.sel(output="z", base="z")
     np.testing.assert_allclose(table.z_amplitude, np.abs(expected), rtol=1e-12)
     with xr.open_dataset(out / "random.nc") as saved:
         grid = np.array([1.0, 80.0]) * 2 * np.pi
         levels = np.zeros((2, 6))
         levels[:, 2], levels[:, 3] = 1e-6, [0, 1e-7]
-        expected = fx.random_response(hexapod, home, levels / (2 * np.pi), grid)
+        expected = fx.random_response(hexapod, home, psd=levels / (2 * np.pi), omega=grid)
         np.testing.assert_allclose(saved.rms_leg_force, expected.rms_leg_force, rtol=1e-12)
     stepped = pd.read_csv(out / "stepped.csv", index_col=0)
-    response = fx.transmissibility(hexapod, home, stepped.index.values).absolute.sel(output="z", base="z")
+    response = fx.transmissibility(hexapod, home, omega=stepped.index.values).absolute.sel(output="z", base="z")
     np.testing.assert_allclose(stepped.z, np.abs(response), rtol=1e-4)  # (amplitude / leg)^2 enlarged by resonance
     for name in ("response", "stepped", "random"):
         with Image.open(out / f"{name}.png") as picture:
@@ -142,7 +142,7 @@ def test_animate_command(result, run, tmp_path, monkeypatch):
 def test_figures_say_what_they_show():
     hexapod = fx.load("motion-base")
     pose = fx.home_pose(hexapod)
-    response = fx.transmissibility(hexapod, pose, np.geomspace(5, 200, 30))
+    response = fx.transmissibility(hexapod, pose, omega=np.geomspace(5, 200, 30))
     figure = plots_response.frequency_response(response, "absolute", "x")
     labels = [ax.get_ylabel() for ax in figure.axes]
     assert labels == ["amplitude, m/m", "amplitude, rad/m", "phase, deg", "phase, deg"]
@@ -150,6 +150,6 @@ def test_figures_say_what_they_show():
     assert legend == ["translation x", "translation y: none", "translation z: none"]  # none, where symmetry has it
     wrench = plots_response.frequency_response(response, "compliance", "roll")
     assert wrench.axes[0].get_ylabel() == "amplitude, m/(N m)"
-    random = plots_response.random_spectra(fx.random_response(hexapod, pose, [1.0, 1.0], [5, 200], axis="z"))
+    random = plots_response.random_spectra(fx.random_response(hexapod, pose, psd=[1.0, 1.0], omega=[5, 200], axis="z"))
     assert random.axes[0].get_ylabel() == "density, (m/s²)²/Hz"
     assert random.axes[2].get_xlabel() == "frequency, Hz"

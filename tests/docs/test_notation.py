@@ -61,9 +61,9 @@ def samples() -> dict[str, object]:
     returned = batch | {
         "linearise": tangent,
         "frequency_sensitivity": fx.frequency_sensitivity(h, home),
-        "transmissibility": fx.transmissibility(h, home, omega),
-        "random_response": fx.random_response(h, home, [1.0, 1.0], omega, axis="z"),
-        "stepped_sine": fx.stepped_sine(h, home, omega, 1e-6, "z"),
+        "transmissibility": fx.transmissibility(h, home, omega=omega),
+        "random_response": fx.random_response(h, home, psd=[1.0, 1.0], omega=omega, axis="z"),
+        "stepped_sine": fx.stepped_sine(h, home, omega=omega, amplitude=1e-6, axis="z"),
         "controlled_transmissibility": fx.control.controlled_transmissibility(h, home, law, omega),
         "simulate": fx.simulate(h, home, duration=0.01, samples=5),
         "sweep": fx.sweep(h, two),

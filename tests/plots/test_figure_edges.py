@@ -60,7 +60,7 @@ def test_a_mode_without_motion_stays_where_it_is():
 def test_spectra_of_leg_forces_are_in_newtons():
     hexapod = fx.load("mukherjee-ii")
     omega = np.geomspace(100, 2000, 60)
-    found = fx.random_response(hexapod, fx.home_pose(hexapod), np.full(60, 1e-4), omega=omega, axis="z")
+    found = fx.random_response(hexapod, fx.home_pose(hexapod), psd=np.full(60, 1e-4), omega=omega, axis="z")
     figure = response.random_spectra(found, "leg_force")
     assert [ax.get_ylabel() for ax in figure.axes] == ["density, N²/Hz"] * 2 + ["RMS below, N"] * 2
     assert "leg 1" in figure.axes[2].get_legend().get_texts()[0].get_text()

@@ -91,7 +91,7 @@ CASES = [
     ),
     (lambda: fx.simulate(machine(), NEAR, times=np.zeros((3, 4))), A, r"times have shape \(3, 4\)"),
     (
-        lambda: fx.random_response(machine(), NEAR, np.ones((2, 5)), omega=[1.0, 2.0]),
+        lambda: fx.random_response(machine(), NEAR, psd=np.ones((2, 5)), omega=[1.0, 2.0]),
         A,
         r"psd has shape \(2, 5\); for 2 frequencies give \(2,\), \(2, 6\) or \(2, 6, 6\)",
     ),

@@ -18,7 +18,6 @@ PENDING = {
     "mechanics",
     "workspace",
     "excitation",
-    "vibration",
     "paths",
     "optimisation",
     "control",

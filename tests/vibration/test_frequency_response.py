@@ -43,7 +43,7 @@ def vertical_mass(damping: float = 32.0) -> tuple[fx.Hexapod, fx.Pose, float, fl
 def test_one_degree_of_freedom_has_the_textbook_response(eta, measured):
     hexapod, pose, m, c, k = vertical_mass()
     omega = np.array([0.0, 1.0, 30.0, np.sqrt(k / m), 100.0, 1e4])
-    response = fx.transmissibility(hexapod, pose, omega, loss_factor=eta)
+    response = fx.transmissibility(hexapod, pose, omega=omega, loss_factor=eta)
     leg = k * (1 + 1j * eta) + 1j * omega * c
     z = {"output": "z", "base": "z"}
     # The home pose closes the symmetry to rounding, which cond(H) of a few raises to 1e-14.
@@ -86,7 +86,7 @@ def test_general_machine_against_many_digits(damped, eta, measured):
 
 
 def test_base_moved_slowly_carries_the_platform_and_its_weight_tilts(damped):
-    response = fx.transmissibility(damped, II, [0.0])
+    response = fx.transmissibility(damped, II, omega=[0.0])
     linear = fx.linearise(damped, II)
     absolute = response.absolute.values[0]
     np.testing.assert_allclose(absolute[:, :3], np.eye(6)[:, :3], atol=1e-15)
@@ -114,13 +114,13 @@ def test_rigid_motion_with_the_base_meets_nothing_but_turned_gravity():
 
 
 def test_reciprocity_and_output_points(damped, measured):
-    response = fx.transmissibility(damped, II, [10.0, 700.0, 9000.0], loss_factor=0.01)
+    response = fx.transmissibility(damped, II, omega=[10.0, 700.0, 9000.0], loss_factor=0.01)
     compliance = response.compliance.values
     size = np.abs(compliance).max(axis=(1, 2), keepdims=True)
     # No wrench at rest: K is symmetric, and so is the machine's compliance (Maxwell-Betti).
     measured("frequency/reciprocity", (compliance - compliance.transpose(0, 2, 1)) / size, 1e-10)
     point = np.array([0.01, -0.02, 0.03])
-    away = fx.transmissibility(damped, II, [10.0, 700.0, 9000.0], loss_factor=0.01, point=point)
+    away = fx.transmissibility(damped, II, omega=[10.0, 700.0, 9000.0], loss_factor=0.01, point=point)
     for name in ("absolute", "relative", "command"):
         here, there = response[name].values, away[name].values
         shifted = here[:, :3] + np.cross(here[:, 3:], point, axisa=1, axisb=0, axisc=1)
@@ -146,7 +146,7 @@ def test_compliance_of_a_published_hexapod():
         [legs]
         stiffness_N_per_um = 20
     """)
-    response = fx.transmissibility(hexapod, fx.Pose((0, 0, 0.06)), [0.0], point=(0, 0, 0.06))
+    response = fx.transmissibility(hexapod, fx.Pose((0, 0, 0.06)), omega=[0.0], point=(0, 0, 0.06))
     C = response.compliance.values[0].real
     # Printed digits of the recomputation, half a unit of the last.
     np.testing.assert_allclose(
@@ -160,7 +160,7 @@ def test_python_control_gives_the_same_frequency_response(damped, measured):
     hexapod = damped.replace(NO_GRAVITY)  # tilted gravity is what twelve states cannot hold
     omega = np.array([50.0, 492.5, 761.0, 8000.0, 20000.0])
     system = fx.linearise(hexapod, II).to_control()
-    response = fx.transmissibility(hexapod, II, omega)
+    response = fx.transmissibility(hexapod, II, omega=omega)
 
     def block(output: str, given: str) -> np.ndarray:
         values = system(1j * omega)
@@ -197,29 +197,29 @@ def test_undamped_resonance_is_infinite():
     hexapod, pose, m, _, k = vertical_mass(0.0)
     z = np.sqrt(k / m)
     omega = np.array([0.5 * z, *(z * (1 + np.arange(-8, 9) * 2.0**-52)), 2 * z])
-    peak = np.abs(fx.transmissibility(hexapod, pose, omega).absolute.sel(output="z", base="z").values)
+    peak = np.abs(fx.transmissibility(hexapod, pose, omega=omega).absolute.sel(output="z", base="z").values)
     assert peak[0] == pytest.approx(4 / 3)
     assert peak[-1] == pytest.approx(1 / 3)
     assert peak[1:-1].max() > 1e12
 
 
 def test_loss_factor_of_single_legs_adds_up(damped):
-    one = [fx.transmissibility(damped, II, [480.0], loss_factor=1e-6 * np.eye(6)[i]).absolute for i in range(6)]
-    none = fx.transmissibility(damped, II, [480.0]).absolute
-    both = fx.transmissibility(damped, II, [480.0], loss_factor=1e-6).absolute
+    one = [fx.transmissibility(damped, II, omega=[480.0], loss_factor=1e-6 * np.eye(6)[i]).absolute for i in range(6)]
+    none = fx.transmissibility(damped, II, omega=[480.0]).absolute
+    both = fx.transmissibility(damped, II, omega=[480.0], loss_factor=1e-6).absolute
     change = sum(each - none for each in one)
     np.testing.assert_allclose(change, both - none, atol=1e-4 * np.abs(both - none).max())  # second order: 1e-6 of peak
 
 
 def test_many_frequencies_are_the_same_as_few(damped):
     omega = np.linspace(0.0, 2e4, 10001)
-    many = fx.transmissibility(damped, II, omega).absolute
-    few = fx.transmissibility(damped, II, omega[::1000]).absolute
+    many = fx.transmissibility(damped, II, omega=omega).absolute
+    few = fx.transmissibility(damped, II, omega=omega[::1000]).absolute
     np.testing.assert_allclose(many[::1000], few, rtol=1e-13, atol=1e-13)
 
 
 def test_dataset_names_its_units(damped):
-    response = fx.transmissibility(damped, II, [1.0, 2.0])
+    response = fx.transmissibility(damped, II, omega=[1.0, 2.0])
     assert response.omega.attrs["units"] == "rad/s"
     assert dict(zip(response.output.values, response.output_unit.values, strict=True))["yaw"] == "rad"
     assert list(response.wrench_unit.values) == ["N"] * 3 + ["N m"] * 3
@@ -240,24 +240,24 @@ def test_dataset_names_its_units(damped):
 )
 def test_bad_frequencies(damped, omega, message):
     with pytest.raises(fx.ArgumentError, match=message):
-        fx.transmissibility(damped, II, omega)
+        fx.transmissibility(damped, II, omega=omega)
 
 
 def test_bad_arguments(damped):
     with pytest.raises(fx.ArgumentError, match="loss_factor"):
-        fx.transmissibility(damped, II, [1.0], loss_factor=-0.1)
+        fx.transmissibility(damped, II, omega=[1.0], loss_factor=-0.1)
     with pytest.raises(fx.ArgumentError, match="loss_factor"):
-        fx.transmissibility(damped, II, [1.0], loss_factor=[0.1, 0.2])
+        fx.transmissibility(damped, II, omega=[1.0], loss_factor=[0.1, 0.2])
     with pytest.raises(fx.PoseError, match="batch"):
-        fx.transmissibility(damped, fx.Pose([[0, 0, 0.08], [0, 0, 0.09]]), [1.0])
-    with pytest.raises(fx.PoseError, match="point"):
-        fx.transmissibility(damped, II, [1.0], point=[[0, 0, 1], [0, 0, 2]])
+        fx.transmissibility(damped, fx.Pose([[0, 0, 0.08], [0, 0, 0.09]]), omega=[1.0])
+    with pytest.raises(fx.ArgumentError, match="point"):
+        fx.transmissibility(damped, II, omega=[1.0], point=[[0, 0, 1], [0, 0, 2]])
     regular = fx.load("cubic-isolator").replace({})
     flat = regular.replace(
         {"base.joints": regular.platform_joints * [2, 2, 0], "platform.joints": regular.platform_joints * [1, 1, 0]}
     )
     with pytest.raises(fx.SingularPoseError):
-        fx.transmissibility(flat, fx.Pose((0, 0, 0.3)), [1.0])
+        fx.transmissibility(flat, fx.Pose((0, 0, 0.3)), omega=[1.0])
 
 
 # --- random response -----------------------------------------------------------------------------------------------
@@ -269,7 +269,7 @@ def test_white_base_acceleration_of_one_mass_has_the_closed_form(damping, measur
     natural, level = np.sqrt(k / m), 2.5
     zeta = c / (2 * np.sqrt(k * m))
     low, high = 1e-5 * natural, 1e5 * natural
-    found = fx.random_response(hexapod, pose, [level, level], [low, high], axis="z")
+    found = fx.random_response(hexapod, pose, psd=[level, level], omega=[low, high], axis="z")
     # Mean square of relative displacement: pi G / (4 zeta omega^3); the band leaves out low * G / omega^4 and less.
     expected = np.sqrt(np.pi * level / (4 * zeta * natural**3))
     left_out = low / natural * zeta
@@ -296,7 +296,7 @@ def test_rms_agrees_with_the_lyapunov_equation(paper, share, measured):
     root = rng.normal(size=(6, 6)) * np.repeat([1.0, 10.0], 3)[:, None]
     density = root @ root.T
     omega = [1e-6, 1e9]
-    found = fx.random_response(hexapod, II, np.tile(density, (2, 1, 1)), omega)
+    found = fx.random_response(hexapod, II, psd=np.tile(density, (2, 1, 1)), omega=omega)
     # Quadrature is good to 1e-9; the Lyapunov solver loses cond(A) eps over the damping ratio.
     expected = lyapunov(fx.linearise(hexapod, II), density)
     measured("frequency/lyapunov", apart(found.rms_relative, expected) / (1e-8 + 1e-11 / share), 1)
@@ -305,16 +305,16 @@ def test_rms_agrees_with_the_lyapunov_equation(paper, share, measured):
 def test_independent_axes_one_axis_and_a_matrix_agree(damped):
     omega = np.geomspace(10, 2e4, 20)
     level = omega**-1.0
-    one = fx.random_response(damped, II, level, omega, axis="y", of="velocity")
-    six = fx.random_response(damped, II, level[:, None] * np.eye(6)[1], omega, of="velocity")
+    one = fx.random_response(damped, II, psd=level, omega=omega, axis="y", of="velocity")
+    six = fx.random_response(damped, II, psd=level[:, None] * np.eye(6)[1], omega=omega, of="velocity")
     np.testing.assert_array_equal(one.rms_displacement, six.rms_displacement)
-    function = fx.random_response(damped, II, lambda w: 1 / w, omega, axis="y", of="velocity")
+    function = fx.random_response(damped, II, psd=lambda w: 1 / w, omega=omega, axis="y", of="velocity")
     np.testing.assert_allclose(function.rms_acceleration, one.rms_acceleration, rtol=1e-12)  # 1/w is a power law
 
     def matrix(w: np.ndarray) -> np.ndarray:
         return np.einsum("n,i,j->nij", 1 / w, np.eye(6)[1], np.eye(6)[1])
 
-    full = fx.random_response(damped, II, matrix, omega, of="velocity")
+    full = fx.random_response(damped, II, psd=matrix, omega=omega, of="velocity")
     for name in ("displacement", "relative", "acceleration", "leg_force"):
         np.testing.assert_allclose(full[f"rms_{name}"], one[f"rms_{name}"], rtol=1e-10)
 
@@ -322,9 +322,9 @@ def test_independent_axes_one_axis_and_a_matrix_agree(damped):
 def test_what_the_spectrum_is_of_does_not_matter(damped):
     omega = np.geomspace(10, 2e4, 30)
     by = {
-        "displacement": fx.random_response(damped, II, omega**-4.0, omega, axis="z", of="displacement"),
-        "velocity": fx.random_response(damped, II, omega**-2.0, omega, axis="z", of="velocity"),
-        "acceleration": fx.random_response(damped, II, np.ones(30), omega, axis="z"),
+        "displacement": fx.random_response(damped, II, psd=omega**-4.0, omega=omega, axis="z", of="displacement"),
+        "velocity": fx.random_response(damped, II, psd=omega**-2.0, omega=omega, axis="z", of="velocity"),
+        "acceleration": fx.random_response(damped, II, psd=np.ones(30), omega=omega, axis="z"),
     }
     for name in ("displacement", "acceleration", "leg_force"):
         for found in by.values():
@@ -337,13 +337,13 @@ def test_coherent_axes_interfere(damped):
     for sign in (1, -1, 1j):
         mix = np.array([1, sign, 0, 0, 0, 0])
         density = np.broadcast_to(np.outer(mix, mix.conj()), (10, 6, 6))
-        found = fx.random_response(damped, II, density, omega)
-        H = fx.transmissibility(damped, II, found.omega).absolute.values @ mix
+        found = fx.random_response(damped, II, psd=density, omega=omega)
+        H = fx.transmissibility(damped, II, omega=found.omega).absolute.values @ mix
         np.testing.assert_allclose(found.psd_acceleration, np.abs(H) ** 2, rtol=1e-10, atol=1e-13)
 
 
 def test_spectra_show_every_peak_and_cumulate_to_the_rms(paper):
-    found = fx.random_response(paper, II, np.ones((2, 6)), [100.0, 2e4])
+    found = fx.random_response(paper, II, psd=np.ones((2, 6)), omega=[100.0, 2e4])
     for pole in complex_poles(fx.linearise(paper, II)):
         assert np.abs(found.omega - pole.imag).min() <= 0.51 * abs(pole.real)
     for name in ("displacement", "leg_force"):
@@ -356,7 +356,9 @@ def test_structural_damping_alone_has_its_closed_form(measured):
     """One mass with a loss factor: the mean square of the relative motion is an elementary integral."""
     hexapod, pose, m, _, k = vertical_mass(0.0)
     natural, eta = np.sqrt(k / m), 1e-3
-    found = fx.random_response(hexapod, pose, [1.0, 1.0], [1e-6 * natural, 1e6 * natural], axis="z", loss_factor=eta)
+    found = fx.random_response(
+        hexapod, pose, psd=[1.0, 1.0], omega=[1e-6 * natural, 1e6 * natural], axis="z", loss_factor=eta
+    )
     # Integral of dw / |w_0^2 (1 + i eta) - w^2|^2 from zero = pi Re(1/sqrt(1 + i eta)) / (2 eta w_0^3).
     expected = np.sqrt(np.pi / (2 * eta * natural**3) * (1 / np.sqrt(1 + 1j * eta)).real)
     measured("frequency/structural", apart(found.rms_relative.sel(output="z"), expected), 1e-6)  # band starts at 1e-6
@@ -365,8 +367,8 @@ def test_structural_damping_alone_has_its_closed_form(measured):
 def test_undamped_or_growing_modes_have_no_stationary_response(paper):
     free = paper.replace({f"legs.damping.{joint}": 0.0 for joint in ("prismatic", "universal", "spherical")})
     with pytest.raises(fx.ArgumentError, match=r"mode 1 .* damping"):
-        fx.random_response(free, II, [1.0, 1.0], [100.0, 1e3], axis="z")
-    below = fx.random_response(free, II, [1.0, 1.0], [10.0, 400.0], axis="z")
+        fx.random_response(free, II, psd=[1.0, 1.0], omega=[100.0, 1e3], axis="z")
+    below = fx.random_response(free, II, psd=[1.0, 1.0], omega=[10.0, 400.0], axis="z")
     assert np.isfinite(below.rms_displacement).all()
 
 
@@ -374,15 +376,15 @@ def test_spectra_by_axis(damped):
     """Ready-made spectra give what their numbers give, and independent axes add their mean squares."""
     floor = fx.vc_curve("VC-C")
     grid = np.geomspace(floor.omega_min, floor.omega_max, 50)
-    by_name = fx.random_response(damped, II, floor, axis="z")
-    by_numbers = fx.random_response(damped, II, floor.density(grid), grid, of="velocity", axis="z")
+    by_name = fx.random_response(damped, II, psd=floor, axis="z")
+    by_numbers = fx.random_response(damped, II, psd=floor.density(grid), omega=grid, of="velocity", axis="z")
     np.testing.assert_allclose(by_name.rms_leg_force, by_numbers.rms_leg_force, rtol=1e-10)
-    below = fx.random_response(damped, II, floor, [floor.omega_min / 2, 100.0], axis="z")
+    below = fx.random_response(damped, II, psd=floor, omega=[floor.omega_min / 2, 100.0], axis="z")
     assert float(below.rms_acceleration.sel(output="z")) == pytest.approx(
         float(np.interp(100.0, by_name.omega, by_name.cumulative_acceleration.sel(output="z"))), rel=1e-6
     )
-    both = fx.random_response(damped, II, {"z": floor, "x": floor})
-    x = fx.random_response(damped, II, {"x": floor})
+    both = fx.random_response(damped, II, psd={"z": floor, "x": floor})
+    x = fx.random_response(damped, II, psd={"x": floor})
     np.testing.assert_allclose(both.rms_relative**2, by_name.rms_relative**2 + x.rms_relative**2, rtol=1e-10)
 
 

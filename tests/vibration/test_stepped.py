@@ -29,7 +29,9 @@ def apart(dataset) -> np.ndarray:
 def test_small_motion_is_the_tangents(paper, axis, joint, measured):
     # Away from resonances (492, 493, 762, 8635, 16159, 16208 rad/s). What remains is of the order of the amplitude
     # squared over the leg's length squared, 1e-9, and the tolerance of shooting.
-    found = fx.stepped_sine(paper, II, [100.0, 430.0, 550.136, 700.0, 900.0], 1e-6, axis, joint=joint, tolerance=1e-9)
+    found = fx.stepped_sine(
+        paper, II, omega=[100.0, 430.0, 550.136, 700.0, 900.0], amplitude=1e-6, axis=axis, joint=joint, tolerance=1e-9
+    )
     assert (found.status == "found").all()
     measured("frequency/stepped", apart(found), 3e-7)
     difference = np.abs(found.response - found.linear).values
@@ -39,8 +41,8 @@ def test_small_motion_is_the_tangents(paper, axis, joint, measured):
 
 def test_linear_is_the_transmissibility(paper):
     omega = [200.0, 600.0]
-    found = fx.stepped_sine(paper, II, omega, 1e-6, "pitch")
-    expected = fx.transmissibility(paper, II, omega).absolute.sel(base="pitch")
+    found = fx.stepped_sine(paper, II, omega=omega, amplitude=1e-6, axis="pitch")
+    expected = fx.transmissibility(paper, II, omega=omega).absolute.sel(base="pitch")
     np.testing.assert_array_equal(found.linear, expected)
     np.testing.assert_array_equal(found.ratio, np.abs(found.response))
     np.testing.assert_array_equal(found.harmonics.sel(harmonic=1), found.ratio)
@@ -49,7 +51,7 @@ def test_linear_is_the_transmissibility(paper):
 def test_difference_from_the_tangent_grows_with_the_amplitude_squared(paper, measured):
     """Three amplitudes: the fundamental of a motion x has no second-order part, so it differs by x^2."""
     amplitude = np.array([0.00125, 0.0025, 0.005])
-    steps = [fx.stepped_sine(paper, II, [550.136, 640.0, 755.0], a, "roll") for a in amplitude]
+    steps = [fx.stepped_sine(paper, II, omega=[550.136, 640.0, 755.0], amplitude=a, axis="roll") for a in amplitude]
     differences = np.array([apart(d) for d in steps])
     assert (differences[-1] > 3e-4).all()
     # The next term is of fourth order: a hundredth of the second where the difference is a hundredth.
@@ -64,7 +66,7 @@ def test_peaks_lie_at_the_tangents_damped_frequencies(paper, measured):
         damped = poles[mode].imag
         # 0.01 % apart; so small an amplitude that the motion of some 1e4 times it stays small beside a leg
         omega = damped * (1 + np.arange(-10, 11) * 1e-4 + 3e-6)
-        found = fx.stepped_sine(paper, II, omega, 1e-9, "z")
+        found = fx.stepped_sine(paper, II, omega=omega, amplitude=1e-9, axis="z")
         assert (found.status == "found").all()
         peak = float(omega[found.ratio.sel(output=output).values.argmax()])
         measured("frequency/peaks", peak / damped - 1, 1e-4)  # the nearest frequency of the grid
@@ -85,7 +87,7 @@ def settled(hexapod, omega: float, amplitude: float, axis: str) -> np.ndarray:
 def test_with_strong_damping_it_is_what_a_long_run_settles_to(paper, omega, share, measured):
     hexapod = paper.replace({key: share * value for key, value in STRONG.items()})
     for amplitude in (1e-4, 0.02):
-        found = fx.stepped_sine(hexapod, II, [omega], amplitude, "roll")
+        found = fx.stepped_sine(hexapod, II, omega=[omega], amplitude=amplitude, axis="roll")
         expected = settled(hexapod, omega, amplitude, "roll")
         # Shooting stops where its correction is below 1e-7 of the motion; the transient has died to e^-25.
         measured("frequency/settled", (found.response.values[0] - expected) / np.linalg.norm(expected), 3e-7)
@@ -105,29 +107,29 @@ def test_with_the_papers_friction_it_is_the_driven_part_of_a_run_from_rest(paper
     waves = np.exp(np.outer(times, rates))
     fitted = np.linalg.lstsq(np.hstack([waves.real, -waves.imag]), x, rcond=None)[0]
     driven = (fitted[0] + 1j * fitted[7]) * 1j / amplitude
-    found = fx.stepped_sine(paper, II, [omega], amplitude, "z")
+    found = fx.stepped_sine(paper, II, omega=[omega], amplitude=amplitude, axis="z")
     # The fit leaves the motion's second-order part, 1e-5 of it, which is nearly orthogonal to what is fitted.
     measured("frequency/fitted", (found.response.values[0] - driven) / np.abs(driven).max(), 1e-6)
 
 
 def test_too_large_a_motion_is_data_and_the_rest_completes(paper):
     resonance = fx.linearise(paper, II).modes().pole[2].imag
-    found = fx.stepped_sine(paper, II, [550.0, resonance], 1e-3, "yaw")
+    found = fx.stepped_sine(paper, II, omega=[550.0, resonance], amplitude=1e-3, axis="yaw")
     assert list(found.status.values) == ["found", "too_large"]
     assert np.isnan(found.ratio[1]).all()
     assert np.isfinite(found.ratio[0]).all()
 
 
 def test_frequencies_do_not_know_one_another(paper):
-    many = fx.stepped_sine(paper, II, np.linspace(500, 700, 7), 1e-6, "y")
-    one = fx.stepped_sine(paper, II, [many.omega.values[3]], 1e-6, "y")
+    many = fx.stepped_sine(paper, II, omega=np.linspace(500, 700, 7), amplitude=1e-6, axis="y")
+    one = fx.stepped_sine(paper, II, omega=[many.omega.values[3]], amplitude=1e-6, axis="y")
     # Products of many small matrices at once round otherwise than of one.
     np.testing.assert_allclose(many.response[3], one.response[0], atol=1e-12)
 
 
 def test_progress_ends_at_one(paper):
     seen: list[float] = []
-    fx.stepped_sine(paper, II, [500.0, 600.0], 1e-6, "z", progress=seen.append)
+    fx.stepped_sine(paper, II, omega=[500.0, 600.0], amplitude=1e-6, axis="z", progress=seen.append)
     assert seen == sorted(seen)
     assert seen[-1] == 1.0
 

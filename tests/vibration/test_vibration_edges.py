@@ -136,7 +136,9 @@ def test_a_way_without_a_smooth_path_is_said_so(machine, monkeypatch):
 def test_a_stepped_sine_that_runs_out_of_tries_says_so(monkeypatch):
     hexapod = fx.load("mukherjee-ii")
     monkeypatch.setattr(stepped, "_ITERATIONS", 1)
-    found = fx.stepped_sine(hexapod, fx.home_pose(hexapod), [300.0, 400.0], 1e-4, "z", tolerance=1e-14)
+    found = fx.stepped_sine(
+        hexapod, fx.home_pose(hexapod), omega=[300.0, 400.0], amplitude=1e-4, axis="z", tolerance=1e-14
+    )
     assert found.status.values.tolist() == ["not_found"] * 2
 
 

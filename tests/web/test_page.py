@@ -170,7 +170,7 @@ def test_response_panels_and_the_shaken_base(opened: Any) -> None:
     words.wait_for()
     shown = number(re.search(r"moves (\S+) times", words.text_content())[1])
     home = fx.home_pose(machine)
-    data = fx.transmissibility(machine, home, [2 * np.pi * 14.9])
+    data = fx.transmissibility(machine, home, omega=[2 * np.pi * 14.9])
     assert shown == pytest.approx(abs(data["absolute"].sel(output="z", base="z").values[0]), rel=6e-3)
     frames = int(page.locator(".scene").get_attribute("data-frames"))
     page.wait_for_timeout(1500)

@@ -145,7 +145,7 @@ def test_the_worst_pose_is_no_better_than_any_other(client: TestClient) -> None:
 
 def test_a_response_is_the_library_s(client: TestClient) -> None:
     answer = client.post("/api/response", json=ASKED | {"quantity": "compliance", "loss_factor": 0.01}).json()
-    data = fx.transmissibility(MACHINE, POSE, answer["omega"], loss_factor=0.01)["compliance"].to_numpy()
+    data = fx.transmissibility(MACHINE, POSE, omega=answer["omega"], loss_factor=0.01)["compliance"].to_numpy()
     np.testing.assert_allclose(np.moveaxis(answer["magnitude"], -1, 0), np.abs(data), rtol=6e-5)  # five digits are sent
     assert answer["output_units"] == ["m"] * 3 + ["rad"] * 3
     assert len(answer["modes"]) == 6

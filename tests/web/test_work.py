@@ -230,7 +230,7 @@ def test_a_process_that_dies_is_told_or_replaced(when: str) -> None:
 def test_shaking_the_base_moves_the_platform_as_the_library_says() -> None:
     omega = 0.7 * float(fx.stability_index(MACHINE, POSE))
     found = response.shake(ASKED | {"axis": "y", "omega": omega})
-    moved = fx.transmissibility(MACHINE, POSE, [omega])["absolute"].to_numpy()[0, :, 1]
+    moved = fx.transmissibility(MACHINE, POSE, omega=[omega])["absolute"].to_numpy()[0, :, 1]
     np.testing.assert_array_equal(found["platform"]["real"] + 1j * found["platform"]["imag"], moved)
     np.testing.assert_array_equal(found["base"], np.eye(6)[1])
     assert found["ratio"] == abs(moved[1]) > 1

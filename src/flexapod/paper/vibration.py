@@ -103,9 +103,9 @@ def _ratio(settings: Settings) -> Part:
     resonances = complex_poles(linearise(hexapod, pose, joint=joint)).imag[:3]
     near = resonances[:, None] * (1 + np.array([-4, -2, -1, -0.5, -0.2, 0.2, 0.5, 1, 2, 4]) * 1e-3)
     omega = np.sort(np.concatenate([np.linspace(50.0, 800.0, 170), near.ravel()]))
-    stepped = stepped_sine(hexapod, pose, omega, AMPLITUDE, "z", joint=joint)
+    stepped = stepped_sine(hexapod, pose, omega=omega, amplitude=AMPLITUDE, axis="z", joint=joint)
     fine = np.union1d(omega, np.concatenate([np.linspace(50, 800, 4000), resonances]))
-    line = transmissibility(hexapod, pose, fine, joint=joint).absolute.sel(base="z")
+    line = transmissibility(hexapod, pose, omega=fine, joint=joint).absolute.sel(base="z")
     figure = response.stepped_ratio(stepped, resonances, line)
     title = "Fig. 9: ratio of response to base amplitude, base z, 1 µm"
     figure.suptitle(f"{title}; dotted: the tangent's modes", fontsize=12)

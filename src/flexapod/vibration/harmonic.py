@@ -27,23 +27,6 @@ class SteadyResponse(NamedTuple):
     command: Complex
 
 
-def frequencies(omega: ArrayLike) -> Array:
-    """`omega` as float64 (n,) rad/s; raises ArgumentError unless non-empty, finite and not negative."""
-    try:
-        array = np.atleast_1d(np.asarray(omega, dtype=np.float64))
-    except (TypeError, ValueError) as error:
-        raise ArgumentError(f"omega is {omega!r}; frequencies in rad/s are needed") from error
-    if array.ndim != 1 or array.size == 0:
-        raise ArgumentError(f"omega has shape {array.shape}; give a non-empty row of frequencies in rad/s")
-    wrong = np.flatnonzero(~(np.isfinite(array) & (array >= 0)))
-    if wrong.size:
-        raise ArgumentError(
-            f"omega[{wrong[0]}] is {array[wrong[0]]} rad/s; frequencies must be finite and not negative. "
-            "The response at -omega is the complex conjugate of that at omega."
-        )
-    return array
-
-
 def loss_factors(value: ArrayLike) -> Array:
     """One loss factor for all legs or one for each, as (6,); raises ArgumentError unless finite and not negative."""
     try:

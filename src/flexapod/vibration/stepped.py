@@ -1,4 +1,4 @@
-"""Fig. 9's experiment on the complete non-linear machine: the base shaken at one frequency after the other."""
+"""The steady response of the complete non-linear machine to a base shaken at one frequency after the other."""
 
 from __future__ import annotations
 
@@ -12,18 +12,20 @@ from numpy.typing import ArrayLike
 from scipy.linalg import eigh, expm
 from scipy.spatial.transform import Rotation
 
-from flexapod.conventions import AXES, Array, Complex, JointModel
+from flexapod.checks import one_of, positive
+from flexapod.conventions import AXES, TWO_PI, Array, Complex, JointModel, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.excitation.excitation import harmonic
+from flexapod.mechanics.inputs import single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
-from flexapod.pose import Motion, Pose
+from flexapod.pose import Motion, Pose, PoseLike
 from flexapod.simulation.integrator import IntegratorOptions, integrate
 from flexapod.simulation.run import SimulationRun
-from flexapod.vibration.harmonic import frequencies, steady_response
+from flexapod.vibration.grid import asked, grid_around
+from flexapod.vibration.harmonic import complex_poles, steady_response
 
-__all__ = ["stepped_sine"]
-
+_STEPS = 100  # of the default grid, beside the points around resonances
 _SAMPLES = 64  # of a period
 _HARMONICS = 6
 _ITERATIONS = 12
@@ -35,41 +37,100 @@ STATUS = ("found", "not_found", "too_large")
 
 def stepped_sine(
     hexapod: Hexapod,
-    pose: Pose,
-    omega: ArrayLike,
-    amplitude: float,
-    axis: str,
+    pose: PoseLike | None = None,
     *,
+    axis: str,
+    amplitude: float,
+    omega: ArrayLike | None = None,
+    frequency: ArrayLike | None = None,
     joint: JointModel = "universal",
     tolerance: float = 1e-7,
     progress: Callable[[float], object] | None = None,
 ) -> xr.Dataset:
-    """Steady response of the non-linear machine to a base moved by `amplitude * sin(omega t)` along one axis.
+    """Compute the steady response of the non-linear machine to a base shaken at one frequency after the other.
 
-    omega: (n,) rad/s, > 0. amplitude: m, or rad for "roll", "pitch", "yaw". At every frequency the periodic motion is
-    found by shooting: a start on the tangent's steady state, one period of the full equations of motion (Eq. 35), then
-    a correction of the twelve start values by the period's closing error through I - e^{AT} of the tangent, improved by
-    Broyden's updates, until the correction is below `tolerance` of the motion, or shrinks no more (`closing_error` says
-    where). So there is no transient that friction would have to end. All frequencies run at once on all threads.
+    The base moves by ``amplitude * sin(omega t)`` along one axis.
 
-    Dataset over omega and output (inertial axes, from the equilibrium): response, complex fundamental per base
-    amplitude (`x = Re(response * amplitude * e^{i omega t})` for a base at `Re(amplitude * e^{i omega t})`); ratio, its
-    modulus; linear, the tangent's response; peak, largest displacement per base amplitude; harmonics, moduli of the
-    first six (the first is ratio). status (omega): "found"; "not_found" where shooting ends without a periodic motion;
-    "too_large" where the tangent moves a joint by more than a tenth of a leg's length. Other values are NaN there.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The design.
+    pose : Pose or array_like, optional
+        Pose of the platform at rest, a Pose or x, y, z (m), roll, pitch, yaw (rad); the home pose by default.
+    axis : {"x", "y", "z", "roll", "pitch", "yaw"}
+        Axis along or about which the base moves.
+    amplitude : float
+        Amplitude of the base, m, or rad for a rotation.
+    omega : array_like, optional
+        Frequencies, (n,) rad/s, > 0; by default the grid of `vibration.frequency_grid` with 100 samples.
+    frequency : array_like, optional
+        The same in Hz, in place of `omega`.
+    joint : {"universal", "spin_free"}, optional
+        Model of the joint between a leg and the base.
+    tolerance : float, optional
+        Largest last correction of a periodic motion, relative to the motion.
+    progress : callable, optional
+        Called with the share done, 0 to 1.
 
-    Raises: ArgumentError for frequencies that are not positive, an unknown axis or a wrong amplitude; PoseError for a
-    batch of poses; SingularPoseError where no leg forces hold the pose.
-    Source: Section 5, Fig. 9; C. G. Broyden, Math. Comp. 19 (1965), for the updates.
+    Returns
+    -------
+    xarray.Dataset
+        Over `omega` (rad/s) and `output` (x, y, z, roll, pitch, yaw; from the equilibrium, inertial axes):
+
+        - response: complex fundamental per base amplitude, x = Re(response * amplitude * exp(i omega t)) for a base at
+          Re(amplitude * exp(i omega t))
+        - ratio: its modulus
+        - linear: response of the machine linearised at rest
+        - peak: largest displacement per base amplitude
+        - harmonics (omega, harmonic, output): moduli of the first six harmonics, per base amplitude
+        - status (omega): "found"; "not_found" where no periodic motion was found; "too_large" where the linear response
+          moves a joint by more than a tenth of a leg's length. The other values are NaN there.
+        - closing_error (omega): last correction, relative to the motion; periods (omega): periods integrated
+
+    Raises
+    ------
+    ArgumentError
+        If a frequency or the amplitude is not > 0, or the axis is unknown.
+    PoseError
+        If `pose` is not one pose that the legs can take.
+    SingularPoseError
+        If no leg forces hold the pose.
+
+    See Also
+    --------
+    transmissibility : the linear response, at once for all axes.
+
+    Notes
+    -----
+    It is the experiment of Fig. 9 of [1]_. The periodic motion at each frequency is found by shooting: from the linear
+    steady state, one period of the full equations of motion (Eq. 35) is integrated, and the twelve start values are
+    corrected by the period's closing error through I - exp(A T) of the linearised machine, improved by Broyden's
+    updates [2]_, until the correction is below `tolerance` or shrinks no more. So there is no transient for friction to
+    end. All frequencies run at once on all threads.
+
+    References
+    ----------
+    .. [1] P. Mukherjee, B. Dasgupta and A. K. Mallik, "Dynamic stability index and vibration analysis of a flexible
+       Stewart platform", Journal of Sound and Vibration (2007).
+    .. [2] C. G. Broyden, "A class of methods for solving nonlinear simultaneous equations", Mathematics of Computation
+       19 (1965).
+
+    Examples
+    --------
+    >>> response = fx.stepped_sine(fx.load("cubic-isolator"), axis="z", amplitude=1e-6, omega=[20.0, 40.0])
+    >>> response.status.values.tolist()
+    ['found', 'found']
     """
-    w = frequencies(omega)
+    one_of(axis, "axis", AXES)
+    positive(amplitude, "amplitude", unit_of(axis))
+    pose = single_pose(hexapod, pose)
+    tangent = linearise(hexapod, pose, joint=joint)
+    w = asked(omega, frequency)
+    if w is None:
+        w = grid_around(complex_poles(tangent), samples=_STEPS)
     if (w == 0).any():
         raise ArgumentError("omega holds zero; a stepped sine needs frequencies > 0. Use transmissibility at zero.")
-    if axis not in AXES:
-        raise ArgumentError(f"axis is {axis!r}; the base moves along one of {', '.join(AXES)}")
-    if not (np.isfinite(amplitude) and amplitude > 0):
-        raise ArgumentError(f"amplitude is {amplitude!r}; it must be finite and > 0 (m, or rad about an axis)")
-    shaker = _Shaker(hexapod, pose, linearise(hexapod, pose, joint=joint), float(amplitude), axis, joint)
+    shaker = _Shaker(hexapod, pose, tangent, float(amplitude), axis, joint)
     linear = shaker.linear_response(w)
     found = _shoot(shaker, w, linear, tolerance, progress)
     return _dataset(shaker, w, linear, found)
@@ -110,7 +171,7 @@ class _Shaker:
             SimulationRun(self.hexapod, self.pose, base_motion=motion, start=self._motion(z))
             for motion, z in zip(shaken, state, strict=True)
         ]
-        times = (2 * np.pi / omega)[:, None] * np.arange(_SAMPLES + 1) / _SAMPLES
+        times = (TWO_PI / omega)[:, None] * np.arange(_SAMPLES + 1) / _SAMPLES
         path = integrate(runs, times, joint=self.joint, options=IntegratorOptions(rtol=1e-11))
         end = np.concatenate([path.displacement[:, -1], path.platform[:, -1, 12:18]], axis=1)
         return path.displacement[:, :-1], end, path.status == "complete"
@@ -134,7 +195,7 @@ class _ModalState:
 
     def closing(self, omega: Array) -> Array:
         """(n, 12, 12): the change of start values that closes a period, per closing error, by the tangent."""
-        free = expm(self.rate * (2 * np.pi / omega)[:, None, None])
+        free = expm(self.rate * (TWO_PI / omega)[:, None, None])
         return np.linalg.pinv(np.eye(12) - free, rcond=1e-15)
 
 
@@ -204,7 +265,7 @@ def _dataset(shaker: _Shaker, omega: Array, linear: Complex, found: _Found) -> x
         {
             "omega": ("omega", omega, {"units": "rad/s", "long_name": "base frequency"}),
             "output": list(AXES),
-            "output_unit": ("output", ["m", "m", "m", "rad", "rad", "rad"]),
+            "output_unit": ("output", [unit_of(axis) for axis in AXES]),
             "harmonic": np.arange(1, _HARMONICS + 1),
         },
         {
@@ -212,7 +273,7 @@ def _dataset(shaker: _Shaker, omega: Array, linear: Complex, found: _Found) -> x
             "digest": shaker.hexapod.digest,
             "axis": shaker.axis,
             "amplitude": shaker.amplitude,
-            "amplitude_unit": "m" if AXES.index(shaker.axis) < 3 else "rad",
+            "amplitude_unit": unit_of(shaker.axis),
             "joint": shaker.joint,
             "position_m": shaker.pose.position.tolist(),
             "rpy_rad": shaker.pose.rpy.tolist(),

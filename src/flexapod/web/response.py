@@ -9,11 +9,14 @@ import numpy as np
 from flexapod.conventions import AXES, LEGS, Array
 from flexapod.mechanics.linearisation import linearise
 from flexapod.vibration.frequency_response import transmissibility
+from flexapod.vibration.grid import grid_around
+from flexapod.vibration.harmonic import complex_poles
 from flexapod.web import requests
 from flexapod.web.answers import FrequencyResponse, ShakenBase
 
 QUANTITIES = ("absolute", "relative", "compliance", "command", "leg_force")
 POINTS = 400  #: frequencies over the range, beside those at the resonances
+ABOVE = 3.0  #: highest frequency, over the highest natural frequency
 DRAWN = 0.15  #: greatest displacement drawn, as a share of the platform's size
 
 
@@ -21,9 +24,10 @@ def response(asked: dict[str, Any]) -> FrequencyResponse:
     """Magnitude and phase of one quantity by output, input and frequency."""
     question, quantity = requests.question(asked), requests.choice(asked, "quantity", QUANTITIES)
     loss = requests.number(asked, "loss_factor", 0.0, 0.0, 2.0)
-    modes = linearise(question.hexapod, question.pose, joint=question.joint).modes()
-    omega = _frequencies(modes.omega, modes.damping_ratio)
-    data = transmissibility(question.hexapod, question.pose, omega, loss_factor=loss, joint=question.joint)
+    linear = linearise(question.hexapod, question.pose, joint=question.joint)
+    modes = linear.modes()
+    omega = grid_around(complex_poles(linear, loss), omega_max=ABOVE * modes.omega.max(), samples=POINTS)
+    data = transmissibility(question.hexapod, question.pose, omega=omega, loss_factor=loss, joint=question.joint)
     values = data[quantity]
     _, outputs, inputs = values.dims
     z = np.moveaxis(values.to_numpy(), 0, -1)
@@ -54,23 +58,11 @@ def _short(values: Array) -> Array:
         return np.where(np.isfinite(scale), np.round(values * scale) / scale, values)
 
 
-def _frequencies(omega: Array, ratio: Array) -> Array:
-    """From a fifth of the lowest mode to three times the highest, dense about each resonance as its damping asks."""
-    real = omega[omega > 0]
-    low, high = 0.2 * real.min(), 3.0 * real.max()
-    grid = [np.geomspace(low, high, POINTS)]
-    for w, zeta in zip(omega, ratio, strict=True):
-        if w > 0:
-            near = np.geomspace(max(abs(zeta), 1e-6) / 8, 0.05, 14)
-            grid += [w * (1 - near), w * (1 + near), np.array([w * np.sqrt(max(1 - 2 * zeta**2, 0.5))])]
-    return np.unique(np.concatenate(grid))
-
-
 def shake(asked: dict[str, Any]) -> ShakenBase:
     """The platform's complex displacement for a unit motion of the base along one axis."""
     question, axis = requests.question(asked), requests.choice(asked, "axis", AXES)
     omega = requests.number(asked, "omega", 1.0, 1e-9, 1e9)
-    data = transmissibility(question.hexapod, question.pose, [omega], joint=question.joint)
+    data = transmissibility(question.hexapod, question.pose, omega=[omega], joint=question.joint)
     moved = data["absolute"].to_numpy()[0, :, AXES.index(axis)]
     base = np.eye(6)[AXES.index(axis)]
     hexapod = question.hexapod

@@ -9,6 +9,7 @@ import click
 
 from flexapod.cli.options import common
 from flexapod.conventions import AXES, LEGS
+from flexapod.errors import ArgumentError
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -99,6 +100,10 @@ class _Case(NamedTuple):
         return self.given["axis"] or ("1" if self.given["source"] == "command" else "z")
 
     @property
+    def ends(self) -> tuple[float | None, float | None]:
+        return self.given["omega_min"], self.given["omega_max"]
+
+    @property
     def options(self) -> dict[str, Any]:
         keys = ("point", "loss_factor", "joint")
         return {key: self.given[key] for key in keys}
@@ -132,6 +137,7 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
 
 def _case(hexapod: Hexapod, pose: Pose, given: dict[str, Any]) -> _Case:
     from flexapod.mechanics.linearisation import linearise
+    from flexapod.vibration.grid import band
     from flexapod.vibration.harmonic import complex_poles
 
     axis, legs = given["axis"], given["source"] == "command"
@@ -147,28 +153,19 @@ def _case(hexapod: Hexapod, pose: Pose, given: dict[str, Any]) -> _Case:
         )
     poles = complex_poles(linearise(hexapod, pose, joint=given["joint"]), given["loss_factor"])
     case = _Case(hexapod, pose, given, poles)
-    low, high = _band(case)
-    if low >= high:
-        raise click.UsageError(f"--omega-min {low:g} must be less than --omega-max {high:g} (rad/s)")
+    try:
+        band(poles, *case.ends)
+    except ArgumentError as error:
+        raise click.UsageError(f"--omega-min and --omega-max: {error}") from error
     return case
 
 
-def _band(case: _Case) -> tuple[float, float]:
-    low, high = case.given["omega_min"], case.given["omega_max"]
-    size = abs(case.poles)
-    return low or 0.2 * size.min(), high or 1.5 * size.max()
-
-
 def _linear(case: _Case) -> xr.Dataset:
-    import numpy as np
-
     from flexapod.vibration.frequency_response import transmissibility
+    from flexapod.vibration.grid import grid_around
 
-    low, high = _band(case)
-    around = np.concatenate([[0.0], *([s, -s] for s in 2.0 ** np.arange(-2, 4))])
-    near = (case.poles.imag[:, None] + np.abs(case.poles.real)[:, None] * around).ravel()
-    omega = np.union1d(np.geomspace(low, high, case.given["points"]), near[(near > low) & (near < high)])
-    return transmissibility(case.hexapod, case.pose, omega, **case.options)
+    omega = grid_around(case.poles, *case.ends, case.given["points"])
+    return transmissibility(case.hexapod, case.pose, omega=omega, **case.options)
 
 
 def _stepped(case: _Case, quiet: bool) -> xr.Dataset:
@@ -176,34 +173,33 @@ def _stepped(case: _Case, quiet: bool) -> xr.Dataset:
     from rich.console import Console
     from rich.progress import Progress
 
+    from flexapod.vibration.grid import band
     from flexapod.vibration.stepped import stepped_sine
 
-    omega = np.geomspace(*_band(case), case.given["steps"])
+    omega = np.geomspace(*band(case.poles, *case.ends), case.given["steps"])
     amplitude, joint = case.given["amplitude"], case.given["joint"]
     with Progress(console=Console(stderr=True), disable=quiet, transient=True) as bar:
         task = bar.add_task(f"stepped sine, {omega.size} frequencies", total=1.0)
         return stepped_sine(
             case.hexapod,
             case.pose,
-            omega,
-            amplitude,
-            case.axis,
+            omega=omega,
+            amplitude=amplitude,
+            axis=case.axis,
             joint=joint,
             progress=lambda done: bar.update(task, completed=done),
         )
 
 
 def _random(case: _Case) -> xr.Dataset:
-    import numpy as np
+    from flexapod.vibration.random_vibration import random_response
 
-    from flexapod.vibration.frequency_response import random_response
-
-    omega, per_hertz = _read_psd(case.given["psd"])
-    return random_response(case.hexapod, case.pose, per_hertz / (2 * np.pi), omega, **case.options)
+    frequency, psd = _read_psd(case.given["psd"])
+    return random_response(case.hexapod, case.pose, psd=psd, frequency=frequency, **case.options)
 
 
 def _read_psd(path: Path) -> tuple[Array, Array]:
-    """Frequencies in rad/s and densities per Hz (n, 6) of a CSV file."""
+    """Frequencies in Hz and densities per Hz (n, 6) of a CSV file."""
     import numpy as np
     import pandas as pd
 
@@ -222,7 +218,7 @@ def _read_psd(path: Path) -> tuple[Array, Array]:
     except ValueError as error:
         raise click.UsageError(f"{path} holds something that is no number: {error}") from error
     density = np.stack([numbers.get(axis, np.zeros(len(table))) for axis in AXES], axis=1)
-    return 2 * np.pi * numbers["frequency_hz"], density
+    return numbers["frequency_hz"], density
 
 
 def _write(case: _Case, studies: dict[str, xr.Dataset], directory: Path) -> list[Path]:
@@ -303,7 +299,7 @@ def _peaks(case: _Case) -> Array:
     found = np.full((6, 6), np.nan)
     moving = case.poles.imag > 0
     if moving.any():
-        at = transmissibility(case.hexapod, case.pose, case.poles.imag[moving], **case.options)
+        at = transmissibility(case.hexapod, case.pose, omega=case.poles.imag[moving], **case.options)
         found[moving] = np.abs(at[case.variable].sel({case.dimension: case.axis}).values)
     return found
 
