@@ -1,6 +1,7 @@
 """The folders are the architecture: imports only point down, files and functions stay small."""
 
 import ast
+import re
 from pathlib import Path
 
 import pytest
@@ -35,10 +36,14 @@ ORDER = [
 ]
 #: The same for the folders of the core.
 CORE_ORDER = ("numbers", "simd", "decomposition", "model", "sweep", "simulation", "bench", "bindings")
+#: And for those of the page.
+PAGE_ORDER = ("state", "widgets", "charts", "machine3d", "panels", "app")
 
 FILES = sorted(SOURCE.rglob("*.py"))
 IDS = [str(path.relative_to(SOURCE)) for path in FILES]
 SOURCES = sorted(CORE.rglob("*.[hc]pp"))
+PAGE = SOURCE.parents[1] / "web" / "src"
+PAGE_SOURCES = sorted(PAGE.rglob("*.ts"))
 
 
 def place(path: Path) -> str:
@@ -81,6 +86,7 @@ def test_every_folder_has_its_place_in_the_order():
     there = {path.stem for path in SOURCE.iterdir() if path.name not in ("__pycache__", "__init__.py", "__init__.pyi")}
     assert {name.split(".")[0] for name in there} - {"py"} == set(ORDER)
     assert {path.name for path in CORE.iterdir()} - {"README.md"} == set(CORE_ORDER)
+    assert {path.name for path in PAGE.iterdir()} == set(PAGE_ORDER)
 
 
 @pytest.mark.parametrize("path", FILES, ids=IDS)
@@ -123,3 +129,14 @@ def test_the_core_includes_downwards_and_knows_python_in_its_bindings_only(path)
             assert CORE_ORDER.index(folder) <= here, f"{path.parent.name} includes {line}"
     if path.parent.name != "bindings":
         assert "nanobind" not in text
+
+
+@pytest.mark.parametrize("path", PAGE_SOURCES, ids=lambda path: str(path.relative_to(PAGE)))
+def test_the_page_imports_downwards(path):
+    """Biome holds the sizes of its functions (`make web-check`)."""
+    text = path.read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 250
+    assert all(len(line) <= 120 for line in text.splitlines())
+    here = PAGE_ORDER.index(path.parent.name)
+    for target in re.findall(r"(?:from|import|import\()\s*'\.\./([\w-]+)/", text):
+        assert PAGE_ORDER.index(target) < here, f"{path.parent.name} imports {target}"

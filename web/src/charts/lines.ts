@@ -2,19 +2,11 @@
 
 import uPlot from 'uplot'
 import 'uplot/dist/uPlot.min.css'
-import { lineFigure, tickText, ticks, type Scale, type Series } from './chart'
-import { theme } from './colours'
 import { h } from '../widgets/dom'
 import { sig } from '../widgets/format'
-
-export interface Lines {
-  title: string
-  x: Scale
-  y: Scale
-  at: ArrayLike<number>
-  series: Series[]
-  marks: { at: number; name: string }[]
-}
+import { type Lines, lineFigure, type Series } from './line-figure'
+import { type Scale, ticks, tickText } from './scale'
+import { type Theme, theme } from './theme'
 
 export class LinePlot {
   readonly element = h('figure', { class: 'lines', role: 'group' })
@@ -34,19 +26,13 @@ export class LinePlot {
   }
 
   show(lines: Lines): void {
-    const same =
-      this.plot &&
-      this.shown &&
-      this.shown.title === lines.title &&
-      this.shown.series.length === lines.series.length &&
-      this.shown.x.log === lines.x.log &&
-      this.shown.y.label === lines.y.label
+    const { plot, shown } = this
     this.shown = lines
-    if (same) {
-      this.plot!.setData(this.data(lines), false)
-      this.plot!.batch(() => {
-        this.plot!.setScale('x', { min: lines.x.min, max: lines.x.max })
-        this.plot!.setScale('y', { min: lines.y.min, max: lines.y.max })
+    if (plot && shown && alike(shown, lines)) {
+      plot.setData(this.data(lines), false)
+      plot.batch(() => {
+        plot.setScale('x', { min: lines.x.min, max: lines.x.max })
+        plot.setScale('y', { min: lines.y.min, max: lines.y.max })
       })
     } else this.build()
   }
@@ -80,51 +66,21 @@ export class LinePlot {
 
   private options(lines: Lines): uPlot.Options {
     const t = theme()
-    const axis = (scale: Scale, wanted: number): uPlot.Axis => ({
-      label: scale.label,
-      labelSize: 18,
-      labelFont: '11px system-ui, sans-serif',
-      font: '11px system-ui, sans-serif',
-      stroke: t.muted,
-      grid: { stroke: t.grid, width: 1 },
-      ticks: { show: false },
-      splits: (_u, _i, min, max) => ticks({ ...scale, min, max }, wanted),
-      values: (_u, splits) => splits.map((v) => tickText(v, scale)),
-      filter: (_u, splits) => splits,
-    })
+    const { clientWidth: width } = this.element
     return {
-      width: this.element.clientWidth,
+      width,
       height: this.height(),
       padding: [8, 24, 0, 0],
       cursor: { drag: { x: true, y: false }, points: { size: 6 }, ...(this.sync ? { sync: { key: this.sync } } : {}) },
       legend: { show: this.legend },
-      scales: {
-        x: {
-          time: false,
-          distr: lines.x.log ? 3 : 1,
-          min: lines.x.min,
-          max: lines.x.max,
-          range: (_u, min, max) => [min ?? lines.x.min, max ?? lines.x.max],
-        },
-        y: { distr: lines.y.log ? 3 : 1, min: lines.y.min, max: lines.y.max, range: (_u, min, max) => [min, max] },
-      },
+      scales: scales(lines),
       axes: [
-        { ...axis(lines.x, Math.max(2, this.element.clientWidth / 90)), size: 26 },
-        { ...axis(lines.y, Math.max(2, this.height() / 45)), size: 58 },
+        { ...axis(lines.x, Math.max(2, width / 90), t), size: 26 },
+        { ...axis(lines.y, Math.max(2, this.height() / 45), t), size: 58 },
       ],
       series: [
         { label: lines.x.label, value: (_u, v) => sig(v, 4) },
-        ...lines.series.map(
-          (s): uPlot.Series => ({
-            label: s.name,
-            stroke: s.colour,
-            dash: s.dash,
-            width: 1.5,
-            points: { show: false },
-            show: !this.hidden.has(s.name),
-            value: (_u, v) => sig(v, 3),
-          }),
-        ),
+        ...lines.series.map((s) => line(s, !this.hidden.has(s.name))),
       ],
       hooks: {
         draw: [(u) => this.marks(u, lines, t.muted)],
@@ -184,10 +140,7 @@ export class LinePlot {
   figure(): SVGSVGElement {
     const lines = this.shown!
     const seen = lines.series.filter((s) => !this.hidden.has(s.name))
-    return lineFigure(lines.title, { ...lines.x, values: lines.at }, lines.y, seen, lines.marks, {
-      ...theme(),
-      size: 12,
-    })
+    return lineFigure({ ...lines, series: seen }, { ...theme(), size: 12 })
   }
 
   get ready(): boolean {
@@ -195,32 +148,47 @@ export class LinePlot {
   }
 }
 
-/** Least and greatest of several series, with a little room; logarithmic axes span at most some decades, others at least `least`. */
-export function span(series: ArrayLike<number | null>[], log: boolean, decades = 7, least = 0): [number, number] {
-  let [low, high] = [Infinity, -Infinity]
-  for (const values of series) {
-    for (let i = 0; i < values.length; i++) {
-      const v = values[i]
-      if (v === null || !Number.isFinite(v) || (log && v <= 0)) continue
-      if (v < low) low = v
-      if (v > high) high = v
-    }
+/** Whether a plot of one can show the other by new data alone. */
+function alike(a: Lines, b: Lines): boolean {
+  return a.title === b.title && a.series.length === b.series.length && a.x.log === b.x.log && a.y.label === b.y.label
+}
+
+function axis(scale: Scale, wanted: number, t: Theme): uPlot.Axis {
+  return {
+    label: scale.label,
+    labelSize: 18,
+    labelFont: '11px system-ui, sans-serif',
+    font: '11px system-ui, sans-serif',
+    stroke: t.muted,
+    grid: { stroke: t.grid, width: 1 },
+    ticks: { show: false },
+    splits: (_u, _i, min, max) => ticks({ ...scale, min, max }, wanted),
+    values: (_u, splits) => splits.map((v) => tickText(v, scale)),
+    filter: (_u, splits) => splits,
   }
-  if (!(high >= low)) return log ? [0.1, 10] : [-1, 1]
-  if (log) {
-    const sorted = series.map((values) =>
-      Array.from(values)
-        .filter((v): v is number => v !== null && Number.isFinite(v) && v > 0)
-        .sort((a, b) => a - b),
-    )
-    const usual = Math.max(...sorted.map((values) => values[values.length >> 1] ?? 0))
-    const top = Math.min(high * 1.5, usual * 1e4) // an undamped peak has no top worth showing
-    const seen = sorted
-      .flat()
-      .filter((v) => v > top / 10 ** decades)
-      .sort((a, b) => a - b)
-    return [(seen[Math.floor(seen.length / 50)] ?? low) / 2, Math.max(top, low * 4)]
+}
+
+function scales({ x, y }: Lines): uPlot.Scales {
+  return {
+    x: {
+      time: false,
+      distr: x.log ? 3 : 1,
+      min: x.min,
+      max: x.max,
+      range: (_u, min, max) => [min ?? x.min, max ?? x.max],
+    },
+    y: { distr: y.log ? 3 : 1, min: y.min, max: y.max, range: (_u, min, max) => [min, max] },
   }
-  const room = Math.max(0.06 * (high - low), least) || 0.1 * Math.abs(high) || 1
-  return [low - room, high + room]
+}
+
+function line(series: Series, show: boolean): uPlot.Series {
+  return {
+    label: series.name,
+    stroke: series.colour,
+    dash: series.dash,
+    width: 1.5,
+    points: { show: false },
+    show,
+    value: (_u, v) => sig(v, 3),
+  }
 }

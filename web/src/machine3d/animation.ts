@@ -1,8 +1,7 @@
 // Motions of the drawn machine: a mode, the shaken base, a simulation played back. One at a time.
 
-import * as THREE from 'three'
-import { noTwist, type Twist } from './machine'
 import type { Scene } from './scene'
+import { noTwist, type Twist } from './twist'
 
 /** What moves: the twists of platform and base at a time of the page, s. */
 export type Motion = (seconds: number) => [Twist, Twist]
@@ -46,26 +45,4 @@ export class Animation {
     this.motion = null
     this.scene.draw()
   }
-}
-
-export function twist(numbers: number[], factor: number): Twist {
-  return {
-    along: new THREE.Vector3(numbers[0], numbers[1], numbers[2]).multiplyScalar(factor),
-    about: new THREE.Vector3(numbers[3], numbers[4], numbers[5]).multiplyScalar(factor),
-  }
-}
-
-/** How far a twist moves the farthest of some points given from the body's reference point, m. */
-export function reach(numbers: number[], points: number[][]): number {
-  const along = new THREE.Vector3(numbers[0], numbers[1], numbers[2])
-  const about = new THREE.Vector3(numbers[3], numbers[4], numbers[5])
-  return Math.max(
-    ...points.map((p) =>
-      about
-        .clone()
-        .cross(new THREE.Vector3(p[0], p[1], p[2]))
-        .add(along)
-        .length(),
-    ),
-  )
 }

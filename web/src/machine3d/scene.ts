@@ -2,7 +2,7 @@
 
 import * as THREE from 'three'
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js'
-import { onTheme, theme } from '../charts/colours'
+import { onTheme, theme } from '../charts/theme'
 import { h, perFrame } from '../widgets/dom'
 import { saveCanvas, saveText } from '../widgets/download'
 import { Machine } from './machine'
@@ -21,7 +21,7 @@ interface Graphics {
   parameters: THREE.WebGLRendererParameters
 }
 
-/** Whether WebGL works, and whether a graphics card does it; in software the one context that is costly to make serves. */
+/** Whether WebGL works, and by a graphics card or in software. There the context, costly to make, is kept for use. */
 function graphics(): Graphics {
   const canvas = document.createElement('canvas')
   const context = canvas.getContext('webgl2', { antialias: false, alpha: true })

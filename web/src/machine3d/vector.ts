@@ -1,8 +1,8 @@
 // The 3-D view as SVG: faces painted from far to near, and labels as text.
 
 import * as THREE from 'three'
+import { theme } from '../charts/theme'
 import { svg } from '../widgets/dom'
-import { theme } from '../charts/colours'
 
 interface Face {
   depth: number

@@ -1,9 +1,9 @@
 // The six pose inputs. The pose lives in the page's state: a slider only shows it, and writes it when moved.
 
+import { COORDINATES } from '../state/answers'
+import { page, store } from '../state/store'
 import { button, freshId, h, select } from '../widgets/dom'
 import { field, parsed } from '../widgets/format'
-import { page, store } from '../state/store'
-import { COORDINATES } from '../state/answers'
 
 const isLength = (i: number) => i < 3
 const factor = (i: number) => (isLength(i) && page.unit === 'mm' ? 1000 : 1)
@@ -85,7 +85,9 @@ function row(i: number): Row {
 
 export function posePanel(): HTMLElement {
   const rows = COORDINATES.map((_, i) => row(i))
-  const show = () => rows.forEach((r) => r.show())
+  const show = () => {
+    for (const row of rows) row.show()
+  }
   const units = select(
     'Unit of lengths',
     [

@@ -1,13 +1,14 @@
 // Talking to the server: one question in flight with the latest one next, and streams of binary points.
 
-import type { FieldError } from './answers'
+import type { FieldError, JobFailure, JobMessage, Refusal } from './answers'
 
+/** The server refuses a request; `errors` stand at the fields that are wrong. */
 export class Refused extends Error {
-  constructor(
-    message: string,
-    readonly fields: FieldError[] = [],
-  ) {
+  readonly errors: FieldError[]
+
+  constructor(message: string, fields: FieldError[] = []) {
     super(message)
+    this.errors = fields.length ? fields : [{ key: '', message, line: 0 }]
   }
 }
 
@@ -25,7 +26,9 @@ async function send(path: string, body: unknown, signal?: AbortSignal): Promise<
     throw new Refused('The server does not answer. Is `flexapod serve` still running?')
   }
   if (response.ok) return response
-  const answer = await response.json().catch(() => ({ error: `the server answered ${response.status}`, fields: [] }))
+  const answer: Refusal = await response
+    .json()
+    .catch(() => ({ error: `the server answered ${response.status}`, fields: [] }))
   throw new Refused(answer.error, answer.fields)
 }
 
@@ -73,17 +76,13 @@ export class Live<T> {
   }
 }
 
-export interface JobMessage {
-  type: string
-  [key: string]: unknown
-}
+/** A message of a job that goes well: a failure is thrown as Refused. */
+export type Message = Exclude<JobMessage, JobFailure>
 
-/** A long job's messages as they come. Aborting the signal stops the job on the server too. */
-export async function* job(kind: string, spec: unknown, signal: AbortSignal): AsyncGenerator<[JobMessage, Uint8Array]> {
-  const response = await send(`api/jobs/${kind}`, spec, signal)
-  const reader = response.body!.getReader()
+/** Reads a stream in pieces of given lengths; null at its end. */
+function pieces(reader: ReadableStreamDefaultReader<Uint8Array>): (length: number) => Promise<Uint8Array | null> {
   let held: Uint8Array = new Uint8Array(0)
-  const take = async (length: number): Promise<Uint8Array | null> => {
+  return async (length) => {
     const parts: Uint8Array[] = [held]
     let have = held.length
     while (have < length) {
@@ -96,6 +95,12 @@ export async function* job(kind: string, spec: unknown, signal: AbortSignal): As
     held = all.subarray(length)
     return all.subarray(0, length)
   }
+}
+
+/** A long job's messages as they come. Aborting the signal stops the job on the server too. */
+export async function* job(kind: string, spec: unknown, signal: AbortSignal): AsyncGenerator<[Message, Uint8Array]> {
+  const response = await send(`api/jobs/${kind}`, spec, signal)
+  const take = pieces(response.body!.getReader())
   for (;;) {
     const head = await take(8)
     if (!head) return
@@ -103,8 +108,8 @@ export async function* job(kind: string, spec: unknown, signal: AbortSignal): As
     const text = await take(sizes.getUint32(0, true))
     const data = await take(sizes.getUint32(4, true))
     if (!text || !data) throw new Refused('the answer of a job broke off')
-    const message = JSON.parse(new TextDecoder().decode(text)) as JobMessage
-    if (message.type === 'failed') throw new Refused(message.error as string)
+    const message = JSON.parse(new TextDecoder().decode(text)) as Message | JobFailure
+    if (message.type === 'failed') throw new Refused(message.error)
     yield [message, data]
   }
 }

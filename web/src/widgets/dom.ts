@@ -1,7 +1,7 @@
 // Elements without templates: nothing here or elsewhere sets HTML from text.
 
-type Child = Node | string | number | null | undefined | false
-type Attributes = Record<string, unknown>
+export type Child = Node | string | number | null | undefined | false
+export type Attributes = Record<string, unknown>
 
 function fill(element: Element, attributes: Attributes, children: Child[]): void {
   for (const [name, value] of Object.entries(attributes)) {

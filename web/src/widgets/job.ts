@@ -1,6 +1,7 @@
 // A long job on the page: progress, time left, cancelling, and its error.
 
-import { job, Refused, type JobMessage } from '../state/api'
+import type { Progress } from '../state/answers'
+import { job, type Message, Refused } from '../state/api'
 import { button, h, status } from './dom'
 import { duration } from './format'
 
@@ -17,7 +18,7 @@ export class Runner {
   }
 
   /** Run a job; one that still runs is stopped first. Resolves to whether it came to its end. */
-  async run(kind: string, spec: unknown, message: (message: JobMessage, data: Uint8Array) => void): Promise<boolean> {
+  async run(kind: string, spec: unknown, message: (message: Message, data: Uint8Array) => void): Promise<boolean> {
     this.running?.abort()
     const mine = new AbortController()
     this.running = mine
@@ -29,7 +30,7 @@ export class Runner {
     try {
       for await (const [head, data] of job(kind, spec, mine.signal)) {
         if (head.type === 'job' && head.waiting) this.words.textContent = 'Waiting for other jobs to end…'
-        if (typeof head.total === 'number') this.progress(head.done as number, head.total, head.seconds as number)
+        if ('total' in head) this.progress(head)
         message(head, data)
       }
       return true
@@ -47,7 +48,7 @@ export class Runner {
     }
   }
 
-  private progress(done: number, total: number, seconds: number): void {
+  private progress({ done, total, seconds }: Progress): void {
     this.bar.value = done / total
     const left = (seconds / Math.max(done, 1e-9)) * (total - done)
     this.words.textContent = `${Math.round((100 * done) / total)} %${left > 1 ? `, ${duration(left)} left` : ''}`

@@ -1,7 +1,7 @@
 // Panels behind tabs, by the usual keys: arrows, Home and End.
 
-import { h } from './dom'
 import { page, store } from '../state/store'
+import { h } from './dom'
 
 export function tabs(panels: [string, string, HTMLElement][]): HTMLElement {
   const names = panels.map(([name]) => name)
@@ -28,7 +28,9 @@ export function tabs(panels: [string, string, HTMLElement][]): HTMLElement {
       head.setAttribute('aria-selected', String(i === at))
       head.tabIndex = i === at ? 0 : -1
     })
-    bodies.forEach((body, i) => (body.hidden = i !== at))
+    bodies.forEach((body, i) => {
+      body.hidden = i !== at
+    })
   }
   list.addEventListener('keydown', (event) => {
     const at = names.indexOf(page.tab)

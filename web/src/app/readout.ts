@@ -1,0 +1,58 @@
+// The main results, always in view, and spoken when they settle.
+
+import type { Snapshot } from '../state/answers'
+import { page, store } from '../state/store'
+import { h, settled, status } from '../widgets/dom'
+import { sig } from '../widgets/format'
+
+interface Result {
+  name: string
+  id: string
+  unit: string
+  text(s: Snapshot): string
+}
+
+const RESULTS: Result[] = [
+  { name: 'Index ω₁', id: 'index', unit: 'rad/s', text: (s) => sig(s.index) },
+  { name: 'f₁', id: 'frequency', unit: 'Hz', text: (s) => sig(s.frequency[0]) },
+  { name: 'cond(H)', id: 'condition', unit: '', text: (s) => sig(s.condition, 4) },
+  { name: 'Max force', id: 'force', unit: 'N', text: largestForce },
+  { name: 'Limits', id: 'limits', unit: '', text: limits },
+]
+
+function largestForce({ legs }: Snapshot): string {
+  return legs.force ? sig(Math.max(...legs.force.map((f) => Math.abs(f ?? 0))), 4) : '–'
+}
+
+function limits({ limits: { any, ok, exceeded } }: Snapshot): string {
+  if (!any) return 'none set'
+  return ok ? 'within' : `${exceeded.length} exceeded`
+}
+
+function spokenWords(s: Snapshot): string {
+  const numbers = `Index ${sig(s.index, 4)} radians per second, condition number ${sig(s.condition, 3)}.`
+  return `${numbers} ${s.limits.exceeded.join('. ')}`
+}
+
+export function readout(): HTMLElement {
+  const cells = RESULTS.map(({ name, id, unit, text }) => {
+    const value = h('output', { id })
+    const title = h('span', { class: 'name' }, name, unit && `, ${unit}`)
+    return { id, text, value, element: h('div', { class: 'figure' }, title, value) }
+  })
+  const spoken = status({ class: 'hidden' })
+  const speak = settled(900, () => {
+    if (page.snapshot) spoken.textContent = spokenWords(page.snapshot)
+  })
+  store.on(['snapshot'], () => {
+    const s = page.snapshot
+    if (!s) return
+    for (const { id, text, value, element } of cells) {
+      value.textContent = text(s)
+      element.classList.toggle('exceeded', id === 'limits' && !s.limits.ok)
+    }
+    speak()
+  })
+  const elements = cells.map((cell) => cell.element)
+  return h('div', { class: 'readout', role: 'group', 'aria-label': 'Main results' }, ...elements, spoken)
+}

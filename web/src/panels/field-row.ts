@@ -1,0 +1,97 @@
+// One field of the design's form: its numbers, one for all legs or one for each, and what is wrong with them.
+
+import type { Field } from '../state/answers'
+import { button, freshId, h } from '../widgets/dom'
+import { field, parsed } from '../widgets/format'
+import { spring } from '../widgets/layout'
+import { flat, type Nested, put, shaped } from './nested'
+import { change } from './parameters'
+
+type Write = (path: number[], text: string) => void
+
+export class FieldRow {
+  readonly element: HTMLElement
+  private readonly cells = h('div', { class: 'cells' })
+  private readonly wrong = h('p', { class: 'wrong', role: 'alert', hidden: true, id: freshId('wrong') })
+  private each = false
+  private value: Nested | undefined
+
+  constructor(private readonly rule: Field) {
+    const name = rule.key
+      .replace(/^\w+\./, '')
+      .replace(/_deg$/, '')
+      .replace(/[._]/g, ' ')
+    const perLeg = rule.key.startsWith('legs.') || rule.shapes.length > 1
+    const each = button('Each leg', () => this.turn(), { class: 'quiet each', 'aria-pressed': 'false' })
+    const [unit, meaning] = [h('span', { class: 'unit' }, rule.unit), h('span', { class: 'meaning' }, rule.meaning)]
+    const bar = h('div', { class: 'bar' }, h('strong', {}, name), unit, meaning, spring(), perLeg && each)
+    this.element = h('div', { class: 'field-row', 'data-key': rule.key }, bar, this.cells, this.wrong)
+  }
+
+  private turn(): void {
+    this.each = !this.each
+    this.element.querySelector('.each')!.setAttribute('aria-pressed', String(this.each))
+    this.draw()
+  }
+
+  fail(message: string): void {
+    this.wrong.textContent = message
+    this.wrong.hidden = !message
+    for (const cell of this.cells.querySelectorAll('input')) {
+      cell.setAttribute('aria-invalid', String(message !== ''))
+      if (message) cell.setAttribute('aria-describedby', this.wrong.id)
+    }
+  }
+
+  show(value: Nested | undefined): void {
+    this.fail('')
+    if (JSON.stringify(value) === JSON.stringify(this.value) && this.cells.childElementCount) return
+    this.value = value
+    if (!this.cells.contains(document.activeElement)) this.draw()
+  }
+
+  private draw(): void {
+    const value = shaped(this.value, this.rule.shapes, this.each)
+    let whole = structuredClone(value) // what the cells say, finished or not
+    const write = (path: number[], text: string) => {
+      whole = put(whole, path, parsed(text))
+      const missing = flat(whole).filter(Number.isNaN).length
+      if (this.rule.optional && missing === flat(whole).length) change(this.rule.key, null)
+      else if (missing) this.fail(text.trim() ? `“${text}” is not a number.` : 'Fill in all the numbers of this field.')
+      else change(this.rule.key, structuredClone(whole))
+    }
+    this.cells.replaceChildren(grid(value, (v, path) => input(this.rule, v, path, write)))
+  }
+}
+
+function input(rule: Field, value: number, path: number[], write: Write): HTMLInputElement {
+  const place = path.map((i) => `[${i}]`).join('')
+  const element = h('input', {
+    type: 'text',
+    class: 'number',
+    inputmode: 'decimal',
+    value: Number.isNaN(value) ? '' : field(Number(value.toPrecision(9))),
+    'aria-label': `${rule.key}${place} ${rule.unit}`,
+    placeholder: rule.optional ? 'none' : '',
+  })
+  element.addEventListener('change', () => write(path, element.value))
+  return element
+}
+
+/** Cells for a number, a list or a matrix; those of a list of matrices one below the other. */
+function grid(value: Nested, cell: (value: number, path: number[]) => HTMLElement): HTMLElement {
+  const line = (values: Nested, path: number[]) => {
+    const numbers = Array.isArray(values) ? (values as number[]) : [values]
+    const at = (i: number) => (Array.isArray(values) ? [...path, i] : path)
+    return h('div', { class: 'line' }, ...numbers.map((v, i) => cell(v, at(i))))
+  }
+  if (!isList(value) || !isList(value[0])) return line(value, [])
+  if (!isList(value[0][0])) return h('div', { class: 'matrix' }, ...value.map((row, i) => line(row, [i])))
+  const matrices = (value as Nested[][]).map((matrix, k) => {
+    const name = h('span', { class: 'hint' }, `leg ${k + 1}`)
+    return h('div', { class: 'matrix' }, name, ...matrix.map((row, i) => line(row, [k, i])))
+  })
+  return h('div', { class: 'matrices' }, ...matrices)
+}
+
+const isList = (value: Nested): value is Nested[] => Array.isArray(value)

@@ -1,0 +1,57 @@
+// What colours the legs: the chosen quantity, its colour map and its colour bar.
+
+import { type ColourMap, cividis, css, signed } from '../charts/colourmaps'
+import { theme } from '../charts/theme'
+import type { OptionalNumber, Snapshot } from '../state/answers'
+import { page } from '../state/store'
+import { h } from '../widgets/dom'
+import { sig } from '../widgets/format'
+
+export interface LegColours {
+  colours: string[]
+  label: string
+  low: number
+  high: number
+  map: ColourMap
+}
+
+/** The chosen quantity of each leg and its name; null where it does not exist. */
+function quantity(s: Snapshot): [OptionalNumber[] | null, string] {
+  if (page.colour === 'force') return [s.legs.force, 'static force, N (+ compression)']
+  if (page.colour === 'energy') return [s.legs.energy, 'static strain energy, J']
+  if (page.colour === 'strain') return [s.strain[page.mode] ?? null, `strain energy share, mode ${page.mode + 1}`]
+  return [null, '']
+}
+
+export function legColours(s: Snapshot): LegColours | null {
+  const [values, label] = quantity(s)
+  if (!values || values.some((v) => v === null)) return null
+  const numbers = values as number[]
+  const most = Math.max(...numbers.map(Math.abs)) || 1
+  const both = page.colour === 'force' && Math.min(...numbers) < 0
+  const [low, high] = both ? [-most, most] : [0, most]
+  const sequential: ColourMap = theme().dark ? (t) => cividis(0.22 + 0.78 * t) : cividis // not lost in a dark ground
+  const map = both ? signed : sequential
+  return { colours: numbers.map((v) => css(map((v - low) / (high - low)))), label, low, high, map }
+}
+
+export function colourBar(): { element: HTMLElement; show(shown: LegColours | null): void } {
+  const strip = h('canvas', { width: 128, height: 1, 'aria-hidden': 'true' })
+  const [low, high, label] = [h('span'), h('span'), h('span', { class: 'label' })]
+  const element = h('div', { class: 'legend' }, label, h('div', { class: 'strip' }, low, strip, high))
+  return {
+    element,
+    show(shown) {
+      element.hidden = !shown
+      if (!shown) return
+      const context = strip.getContext('2d')!
+      for (let i = 0; i < 128; i++) {
+        context.fillStyle = css(shown.map(i / 127))
+        context.fillRect(i, 0, 1, 1)
+      }
+      low.textContent = sig(shown.low, 3)
+      high.textContent = sig(shown.high, 3)
+      label.textContent = shown.label
+    },
+  }
+}
