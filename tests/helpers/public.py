@@ -19,7 +19,11 @@ def _all() -> dict[str, Any]:
             thing = getattr(place, name)
             if not isinstance(thing, ModuleType):
                 assert found.setdefault(name, thing) is thing, f"{name} is two things"
-    errors = {name: thing for name, thing in vars(fx.errors).items() if inspect.isclass(thing) and name != "Any"}
+    errors = {
+        name: thing
+        for name, thing in vars(fx.errors).items()
+        if inspect.isclass(thing) and issubclass(thing, BaseException)
+    }
     return found | errors
 
 

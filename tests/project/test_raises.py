@@ -5,6 +5,7 @@ at a singular pose where they name SingularPoseError. All other pairs of functio
 SHOWN with the test that shows them where a call takes long.
 """
 
+import inspect
 import re
 import sys
 from pathlib import Path
@@ -107,6 +108,7 @@ PROVOKED = {
     ),
     ("flat_spectrum", "ArgumentError"): lambda: fx.excitation.flat_spectrum(-1.0, 1.0, 2.0),
     ("forward_kinematics", "KinematicsError"): lambda: fx.forward_kinematics(MACHINE, LEGS * [10, 1, 1, 1, 1, 1]),
+    ("condition_number", "ArgumentError"): lambda: fx.condition_number(MACHINE, HOME, characteristic_length=0.0),
     ("forward_kinematics", "ArgumentError"): lambda: fx.forward_kinematics(MACHINE, [0.2, 0.2]),
     ("forward_kinematics", "PoseError"): lambda: fx.forward_kinematics(MACHINE, LEGS, start=BATCH),
     ("frequency_grid", "ArgumentError"): lambda: fx.vibration.frequency_grid(MACHINE, omega_min=2.0, omega_max=1.0),
@@ -185,6 +187,7 @@ PROVOKED = {
     ),
     ("sine_sweep", "ArgumentError"): lambda: fx.sine_sweep("z", 1.0, 1.0, 2.0, 1.0, law="cubic"),
     ("smooth_step", "ArgumentError"): lambda: fx.excitation.smooth_step("z", 1.0, 0.0),
+    ("static_equilibrium", "ArgumentError"): lambda: fx.static_equilibrium(MACHINE, [1.0, 2.0]),
     ("static_equilibrium", "KinematicsError"): lambda: fx.static_equilibrium(MACHINE, -LEGS),
     ("static_equilibrium", "SingularPoseError"): lambda: fx.static_equilibrium(
         MACHINE.replace({"gravity": [0, 0, 0]}), fx.inverse_kinematics(MACHINE, SINGULAR), start=SINGULAR
@@ -231,6 +234,8 @@ def provocation(name, error):
     where = {"PoseError": MEETING, "SingularPoseError": SINGULAR}.get(error)
     if name in CALLS and where is not None:
         return lambda: CALLS[name](MACHINE, where)
+    if error == "ArgumentError" and name in CALLS and "joint" in inspect.signature(PUBLIC[name]).parameters:
+        return lambda: PUBLIC[name](MACHINE, HOME, joint="ball")
     assert (name, error) in SHOWN, (
         f"the docstring of {name} names {error}: put a call that raises it into PROVOKED[{name!r}, {error!r}]"
     )

@@ -16,7 +16,7 @@ from tests.oracles.exact_modes import exact_modes
 
 import flexapod as fx
 from flexapod import _core
-from flexapod.mechanics.kinematics import limit_excess, neutral_directions
+from flexapod.mechanics.joint_limits import limit_excess, neutral_directions
 
 EPS = np.finfo(float).eps
 ALL = reduce(or_, _core.SweepQuantity)

@@ -18,10 +18,21 @@ _TEMPLATE = "template"
 
 
 def packaged_designs() -> list[str]:
-    """Names of the designs that come with Flexapod.
+    """List the designs that come with Flexapod.
 
-    Raises: nothing of its own.
-    Source: own.
+    Returns
+    -------
+    list of str
+        Names that `flexapod.load` takes.
+
+    Notes
+    -----
+    Their files are in the folder `design/machines` of the package and say where the numbers are from.
+
+    Examples
+    --------
+    >>> fx.packaged_designs()
+    ['cubic-isolator', 'motion-base', 'mukherjee-i', 'mukherjee-ii', 'precision-positioner']
     """
     return sorted(path.stem for path in _DESIGNS.glob("*.toml") if path.stem != _TEMPLATE)
 
@@ -52,10 +63,30 @@ def find(name_or_path: str | Path) -> Path:
 
 
 def template(name: str) -> str:
-    """A complete, commented design file (TOML text, SI units) for a new machine called `name`.
+    """Write the text of a complete, commented design file for a new machine.
 
-    Raises: nothing of its own.
-    Source: own.
+    Parameters
+    ----------
+    name : str
+        What the machine is called.
+
+    Returns
+    -------
+    str
+        TOML text, in SI units, to be changed by hand.
+
+    See Also
+    --------
+    flexapod.Hexapod.from_toml : Read such a text.
+
+    Notes
+    -----
+    The numbers are those of a machine of no special purpose, with a platform of 60 kg.
+
+    Examples
+    --------
+    >>> fx.Hexapod.from_toml(fx.design.template("my machine")).platform_mass
+    60.0
     """
     import tomlkit  # slow to import, and only writing needs it
 

@@ -201,7 +201,7 @@ class Hexapod(Value):
         ...     platform_mass=60.0, platform_inertia=[2, 2, 4], stiffness=2e7,
         ... )
         >>> fx.inverse_kinematics(machine).round(4).tolist()
-        [0.6186, 0.6186, 0.6186, 0.6186, 0.6186, 0.6186]
+        [0.6002, 0.6002, 0.6002, 0.6002, 0.6002, 0.6002]
         """
         tables = {
             "name": name,

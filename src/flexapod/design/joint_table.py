@@ -14,7 +14,7 @@ import numpy as np
 from flexapod.conventions import Array
 from flexapod.design.units import UNITS, to_si
 from flexapod.errors import DesignError
-from flexapod.pose import Pose
+from flexapod.pose import PoseLike, as_pose
 
 GROUPS = {
     "base": "base",
@@ -33,18 +33,43 @@ LEFT_OUT = ("name", "note", "comment", "part")
 HEADER = "leg, base_x_mm, base_y_mm, base_z_mm, platform_x_mm, platform_y_mm, platform_z_mm"
 
 
-def read_joints(path: str | Path, home: Pose | None = None) -> dict[str, Array | None]:
-    """Joints of six legs from the CSV file at `path`: changes for `Hexapod.replace`, all (6, 3), m and unit-free axes.
+def read_joints(path: str | Path, home: PoseLike | None = None) -> dict[str, Array | None]:
+    """Read the joints of six legs from a CSV file.
 
-    One line for each leg below a header. Columns: `leg` (1 to 6, may be left out), `base_x`, `base_y`, `base_z` (short:
-    `bx`), and either `platform_x`, ... (`px`) in the platform frame, or `home_x`, ... (`hx`): the platform joints where
-    they stand at home, in the base frame, which needs `home`. `axis_x`, ... (`kx`) are the universal joints' axes; left
-    out, they become tangent to the base circle. Lengths are in m unless the column says otherwise: `base_x_mm` or
-    `Base X [mm]`. Semicolons and tabs separate as well, and then numbers may have decimal commas. Lines
+    Parameters
+    ----------
+    path : str or Path
+        The file: a header and one line for each leg.
+    home : Pose, optional
+        Home pose of the platform; needed where the file gives the platform joints as they stand at home.
+
+    Returns
+    -------
+    dict
+        Changes for `Hexapod.replace`: base.joints and platform.joints, (6, 3) m, and base.universal_axes, (6, 3), which
+        is None where the file has no axes: they then become tangent to the base circle.
+
+    Raises
+    ------
+    DesignError
+        For a file that cannot be read or makes no joints, with the line, column and value.
+
+    Notes
+    -----
+    Columns: `leg` (1 to 6, may be left out), `base_x`, `base_y`, `base_z` (short: `bx`), and either `platform_x`, ...
+    (`px`) in the platform frame, or `home_x`, ... (`hx`): the platform joints where they stand at home, in the base
+    frame. `axis_x`, ... (`kx`) are the axes of the universal joints. Lengths are in m unless the column says otherwise:
+    `base_x_mm` or `Base X [mm]`. Semicolons and tabs separate as well, and then numbers may have decimal commas. Lines
     that begin with `#` are left out, and columns name, note, comment, part.
 
-    Raises: DesignError that names the line, column and value.
-    Source: own.
+    Examples
+    --------
+    >>> machine = fx.load("mukherjee-ii")
+    >>> rows = np.hstack([machine.base_joints, machine.platform_joints])
+    >>> names = "base_x,base_y,base_z,platform_x,platform_y,platform_z"
+    >>> np.savetxt("joints.csv", rows, delimiter=",", header=names, comments="")
+    >>> sorted(fx.design.read_joints("joints.csv"))
+    ['base.joints', 'base.universal_axes', 'platform.joints']
     """
     file = Path(path)
     try:
@@ -69,7 +94,7 @@ class _Column(NamedTuple):
     unit: str
 
 
-def _joints(points: dict[str, Array], home: Pose | None) -> dict[str, Array | None]:
+def _joints(points: dict[str, Array], home: PoseLike | None) -> dict[str, Array | None]:
     platform = points.get("platform")
     if platform is None:
         if home is None:
@@ -78,6 +103,7 @@ def _joints(points: dict[str, Array], home: Pose | None) -> dict[str, Array | No
                 "Add a [home] table with position to the design (in Python, give home), or give platform_x, ... in "
                 "the platform frame."
             )
+        home = as_pose(home, "home")
         platform = (points["home"] - home.position) @ home.matrix + 0.0
     return {"base.joints": points["base"], "platform.joints": platform, "base.universal_axes": points.get("axis")}
 

@@ -10,7 +10,8 @@ import numpy as np
 
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.mechanics.kinematics import check_limits, condition_number
+from flexapod.mechanics.joint_limits import check_limits
+from flexapod.mechanics.kinematics import condition_number
 from flexapod.mechanics.linearisation import DampedModes
 from flexapod.mechanics.modes import near_repeated
 from flexapod.pose import Pose

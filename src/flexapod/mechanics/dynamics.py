@@ -1,4 +1,4 @@
-"""Equations of motion of the machine on a moving base (Section 4), and what the joints carry."""
+"""Equations of motion of the machine on a moving base (Section 4 of the paper), solved forwards and backwards."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
-from flexapod.checks import number
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
@@ -17,49 +16,27 @@ from flexapod.pose import MotionLike
 
 
 class EquationsOfMotion(NamedTuple):
-    """J_p [a; alpha] - J_b [a_b; alpha_b] + eta = H F + [R F_ext; R M_ext], in inertial axes.
+    """Terms of J_p [a; alpha] - J_b [a_b; alpha_b] + eta = H F + [R F_ext; R M_ext], in inertial axes.
 
-    J_p, J_b, H: (..., 6, 6); eta: (..., 6). Rows 1-3 are forces in N, rows 4-6 moments in N m about the platform's
-    reference point.
+    Rows 1 to 3 are forces in N, rows 4 to 6 moments in N m about the platform's reference point. a, alpha are the
+    accelerations of the platform's reference point, a_b, alpha_b those of the base.
 
-    Source: Eq. 34; E1 to E5, part B.
+    Attributes
+    ----------
+    J_p : ndarray
+        Mass matrix of platform and legs, (..., 6, 6).
+    J_b : ndarray
+        Coupling to the acceleration of the base, (..., 6, 6).
+    eta : ndarray
+        Gravity, velocity terms and joint friction, (..., 6), without leg forces.
+    H : ndarray
+        Force transformation, (..., 6, 6).
     """
 
     J_p: Array
     J_b: Array
     eta: Array
     H: Array
-
-
-class Reactions(NamedTuple):
-    """Forces (N) and moments (N m) in the joints, inertial axes; see `joint_reactions` for what acts on what.
-
-    spherical_force, spherical_moment, prismatic_force, prismatic_moment, universal_force, universal_moment:
-    (..., 6, 3), leg by leg. base_force, base_moment: (..., 3).
-
-    Source: Section 4.1; E1 to E5, part B.
-    """
-
-    spherical_force: Array
-    spherical_moment: Array
-    prismatic_force: Array
-    prismatic_moment: Array
-    universal_force: Array
-    universal_moment: Array
-    base_force: Array
-    base_moment: Array
-
-
-class Energy(NamedTuple):
-    """kinetic, gravitational, elastic: energies, J. dissipation: the power lost to friction, W. Each (...).
-
-    Source: own.
-    """
-
-    kinetic: Array | float
-    gravitational: Array | float
-    elastic: Array | float
-    dissipation: Array | float
 
 
 def equations_of_motion(
@@ -69,13 +46,47 @@ def equations_of_motion(
     base: MotionLike | None = None,
     joint: JointModel = "universal",
 ) -> EquationsOfMotion:
-    """The terms of Eq. 34 for motions of platform and base (default: base fixed at the origin), in SI units.
+    """Compute the terms of the equations of motion for motions of platform and base.
 
-    eta holds gravity, velocity terms and joint friction, and no leg forces. joint="spin_free" gives the paper's model
-    W.s = 0.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose, Motion or array_like, optional
+        Pose or motion of the platform, one or many; six numbers are x, y, z in m and roll, pitch, yaw in rad. Left out,
+        the home pose. Without a motion the platform is at rest.
+    base : Pose, Motion or array_like, optional
+        The same of the base, in the inertial frame. Left out, the base is at rest at the inertial frame's origin.
+    joint : {"universal", "spin_free"}
+        Model of the base joints: exact universal joints, or the paper's legs that do not spin.
 
-    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for an unknown joint model.
-    Source: Eq. 34; E1 to E5, part B.
+    Returns
+    -------
+    EquationsOfMotion
+        `J_p`, `J_b`, `eta` and `H`, SI units, inertial axes. J_p is the mass matrix of platform and legs.
+
+    Raises
+    ------
+    PoseError
+        At a single pose that no leg can take; in a batch such a pose gives NaN.
+    ArgumentError
+        For an unknown joint model.
+
+    See Also
+    --------
+    flexapod.forward_dynamics : The accelerations.
+    flexapod.inverse_dynamics : The leg forces.
+
+    Notes
+    -----
+    Eq. 34 of the paper, with its printed errors corrected (docs/paper.md) and exact universal joints. With "spin_free"
+    the legs do not turn about their axes, as in the paper.
+
+    Examples
+    --------
+    >>> terms = fx.equations_of_motion(fx.load("motion-base"))
+    >>> np.diag(terms.J_p).round(1).tolist()
+    [4218.4, 4218.4, 4234.7, 9383.4, 10467.4, 7647.3]
     """
     s = states(hexapod, pose, base)
     J_p, J_b, eta, H = _core.equations_of_motion(hexapod.packed, as_joint(joint), s.platform, s.base)
@@ -93,15 +104,51 @@ def forward_dynamics(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> tuple[Array, Array]:
-    """Acceleration of the platform's reference point (m/s2) and its angular acceleration (rad/s2).
+    """Compute the platform's accelerations from the leg forces.
 
-    leg_force: (..., 6) N, positive pushes the platform from the base. force (N), moment (N m): on the platform, in its
-    own frame, at its reference point. The accelerations in `pose` play no part; those of `base` do. Returns
-    vectors (..., 3) in inertial axes.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose, Motion or array_like, optional
+        Pose or motion of the platform, one or many; six numbers are x, y, z in m and roll, pitch, yaw in rad. Left out,
+        the home pose. Without a motion the platform is at rest.
+    base : Pose, Motion or array_like, optional
+        The same of the base, in the inertial frame. Left out, the base is at rest at the inertial frame's origin.
+    leg_force : array_like
+        Forces of the legs, N, (..., 6), positive where they push platform and base apart.
+    force, moment : array_like
+        Force (N) and moment (N m) on the platform, in its own frame, at its reference point, (..., 3).
+    joint : {"universal", "spin_free"}
+        Model of the base joints: exact universal joints, or the paper's legs that do not spin.
 
-    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), for forces of a shape that does not fit,
-    or an unknown joint model.
-    Source: Eq. 35; E1 to E5, part B.
+    Returns
+    -------
+    acceleration : ndarray
+        Acceleration of the platform's reference point, inertial axes, m/s2, (..., 3).
+    angular_acceleration : ndarray
+        Angular acceleration, inertial axes, rad/s2, (..., 3).
+
+    Raises
+    ------
+    PoseError
+        At a single pose that no leg can take; in a batch such a pose gives NaN.
+    ArgumentError
+        For loads of a shape that does not fit, or an unknown joint model.
+
+    See Also
+    --------
+    flexapod.inverse_dynamics : The leg forces for given accelerations.
+
+    Notes
+    -----
+    Eq. 35 of the paper. The accelerations in `pose` play no part; those of `base` do.
+
+    Examples
+    --------
+    >>> acceleration, _ = fx.forward_dynamics(fx.load("motion-base"), leg_force=np.full(6, 5000.0))
+    >>> round(float(acceleration[2]), 3)
+    -3.642
     """
     s = states(hexapod, pose, base)
     result = _core.forward_dynamics(
@@ -124,13 +171,49 @@ def inverse_dynamics(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> Array:
-    """Leg forces (..., 6) in N that give the platform the accelerations in `pose`.
+    """Compute the leg forces that give the platform its accelerations.
 
-    force (N), moment (N m): on the platform, in its own frame, at its reference point.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose, Motion or array_like, optional
+        Pose or motion of the platform, one or many; six numbers are x, y, z in m and roll, pitch, yaw in rad. Left out,
+        the home pose. Without a motion the platform is at rest.
+    base : Pose, Motion or array_like, optional
+        The same of the base, in the inertial frame. Left out, the base is at rest at the inertial frame's origin.
+    force, moment : array_like
+        Force (N) and moment (N m) on the platform, in its own frame, at its reference point, (..., 3).
+    joint : {"universal", "spin_free"}
+        Model of the base joints: exact universal joints, or the paper's legs that do not spin.
 
-    Raises: SingularPoseError where H is singular, and PoseError at a pose that no leg can take; in a batch such poses
-    give NaN. PoseError for loads of a shape that does not fit.
-    Source: Eq. 34, solved for F.
+    Returns
+    -------
+    ndarray
+        Leg forces, N, (..., 6), positive where they push platform and base apart.
+
+    Raises
+    ------
+    PoseError
+        At a single pose that no leg can take; in a batch such a pose gives NaN.
+    SingularPoseError
+        At a single pose where H is singular; in a batch such a pose gives NaN.
+    ArgumentError
+        For loads of a shape that does not fit, or an unknown joint model.
+
+    See Also
+    --------
+    flexapod.hold : The same at rest, with the unstretched leg lengths.
+
+    Notes
+    -----
+    Eq. 34 of the paper, solved for the leg forces.
+
+    Examples
+    --------
+    >>> forces = fx.inverse_dynamics(fx.load("motion-base"))  # that carry the weight at home
+    >>> forces.round(0).tolist()
+    [7911.0, 7911.0, 7911.0, 7911.0, 7911.0, 7911.0]
     """
     s = states(hexapod, pose, base)
     loads = wrench(force, moment, s.shape)
@@ -140,58 +223,3 @@ def inverse_dynamics(
             "the legs cannot drive the platform at this pose: H is singular. Choose another pose, or change the joints."
         )
     return result.reshape(*s.shape, 6)
-
-
-def joint_reactions(
-    hexapod: Hexapod,
-    pose: MotionLike | None = None,
-    *,
-    base: MotionLike | None = None,
-    leg_force: ArrayLike = NO_LEGS,
-    section: float = 0.5,
-    joint: JointModel = "universal",
-) -> Reactions:
-    """What every joint carries for the motions given and the leg forces that go with them, N and N m.
-
-    leg_force: (..., 6) N. Per leg, (..., 6, 3): `spherical_force` and `spherical_moment` on the platform by the leg at
-    the platform joint; `prismatic_` on the upper part by the lower part, the moment (bending and torsion) at the
-    fraction `section` of the leg's length from the base joint; `universal_` on the base by the leg at the base joint.
-    `base_force`, `base_moment` (..., 3): the total on the base, about its reference point. In the model "spin_free" the
-    universal joint also holds the leg about its own axis, a moment that no real universal joint has.
-
-    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for leg forces of a shape that does
-    not fit.
-    Source: Section 4.1, forces and moments on a leg; E1 to E5, part B.
-    """
-    s = states(hexapod, pose, base)
-    forces = per_leg(leg_force, "leg_force", s.shape)
-    legs, total = _core.joint_reactions(
-        hexapod.packed, as_joint(joint), s.platform, s.base, forces, number(section, "section")
-    )
-    legs = legs.reshape(*s.shape, 6, 6, 3)
-    total = total.reshape(*s.shape, 2, 3)
-    return Reactions(*np.moveaxis(legs, -2, 0), *np.moveaxis(total, -2, 0))
-
-
-def energy(
-    hexapod: Hexapod,
-    pose: MotionLike | None = None,
-    *,
-    base: MotionLike | None = None,
-    unstretched_length: ArrayLike | None = None,
-    joint: JointModel = "universal",
-) -> Energy:
-    """Kinetic, gravitational (zero at the inertial origin) and elastic energy, J, and power lost to friction, W.
-
-    unstretched_length: of the leg springs, (..., 6) m; without it the elastic energy is zero.
-
-    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for lengths of a shape that does not
-    fit.
-    Source: own.
-    """
-    s = states(hexapod, pose, base)
-    L_0 = per_leg(NO_LEGS if unstretched_length is None else unstretched_length, "unstretched_length", s.shape)
-    rows = _core.energy(hexapod.packed, as_joint(joint), s.platform, s.base, L_0)
-    if unstretched_length is None:
-        rows[:, 2] = 0.0
-    return Energy(*(column.reshape(s.shape)[()] for column in rows.T))

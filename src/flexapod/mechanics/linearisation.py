@@ -9,76 +9,79 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
-from flexapod.conventions import AXES, LEGS, Array, JointModel
+from flexapod.conventions import TWO_PI, Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import ZERO, as_joint, single_pose, states, wrench
+from flexapod.mechanics.state_space import StateSpace, state_space_of
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.optional import needed
-from flexapod.pose import Pose, PoseLike, skew
+from flexapod.pose import PoseLike, skew
 
 if TYPE_CHECKING:
     import control
-
-__all__ = ["DampedModes", "Linearisation", "StateSpace", "linearise"]
-
-STATES = ("position", "velocity")
-INPUTS = ("base_acceleration", "leg_force", "wrench", "leg_command")
-OUTPUTS = ("position", "leg_length", "leg_force", "acceleration")
 
 
 class RestOptions(TypedDict, total=False):
     """What `linearise` takes beside the hexapod and the pose, for the studies that pass it on."""
 
-    base: Pose | None
+    base: PoseLike | None
     force: ArrayLike
     moment: ArrayLike
     joint: JointModel
 
 
 class DampedModes(NamedTuple):
-    """pole: (6,) complex rad/s (upper half plane, or real), by size. omega: (6,) rad/s, its modulus.
+    """The six modes of the linearised dynamics with the base fixed.
 
-    damping_ratio: (6,), negative if the mode grows. shape: (6, 6) complex twists of the platform as columns, scaled so
-    that shape^T M shape = 1 with a real largest part.
-
-    Source: part C.
+    Attributes
+    ----------
+    pole : ndarray
+        Poles, rad/s, complex, (6,), in the upper half plane or real, by modulus.
+    omega : ndarray
+        Moduli of the poles, rad/s, (6,).
+    damping_ratio : ndarray
+        Damping ratios, (6,), negative where a mode grows.
+    shape : ndarray
+        Twists of the platform as columns, complex, (6, 6), scaled so that shape^T M shape = 1 with a real largest part.
     """
 
-    pole: Array
+    pole: Complex
     omega: Array
     damping_ratio: Array
-    shape: Array
+    shape: Complex
 
-
-class StateSpace(NamedTuple):
-    """x' = A x + B u, y = C x + D u with names for the states, inputs and outputs; see `Linearisation.state_space`.
-
-    A: (12, 12). B: (12, 24). C: (24, 12). D: (24, 24), SI. states, inputs, outputs: a name for each.
-
-    Source: part C.
-    """
-
-    A: Array
-    B: Array
-    C: Array
-    D: Array
-    states: tuple[str, ...]
-    inputs: tuple[str, ...]
-    outputs: tuple[str, ...]
+    @property
+    def frequency(self) -> Array:
+        """Moduli of the poles, Hz, (6,)."""
+        return self.omega / TWO_PI
 
 
 @dataclass(frozen=True, eq=False)
 class Linearisation:
-    """M x'' + C x' + K x + M_b x_b'' + C_b x_b' + K_b x_b = H f + w about `rest`, all matrices (6, 6), inertial axes.
+    """Linear dynamics M x'' + C x' + K x + M_b x_b'' + C_b x_b' + K_b x_b = H f + w about rest.
 
-    x, x_b: small displacements (translation of the reference point in m, rotation vector in rad) of platform and base;
-    f: change of the leg forces (N) beside their springs; w: change of the wrench on the platform (N, N m), which, like
-    the static one, turns with the platform. A command that lengthens leg i's unstretched length by d acts as f = K_i d.
-    K holds leg stiffness, the geometric stiffness of loaded legs, gravity and the turning external wrench: it need not
-    be symmetric when there is an external wrench. leg_stiffness: (6,) N/m. carry: a platform that moves rigidly with
-    the base has x = carry x_b. gravity: (3,) m/s2. rest: the `Equilibrium`.
+    All matrices are (6, 6), SI, in inertial axes. x and x_b are small displacements of platform and base: translation
+    of the reference point (m) and rotation vector (rad). f is the change of the leg forces (N) beside their springs, w
+    the change of the wrench on the platform (N, N m), which, like the static one, turns with the platform. A command
+    that lengthens leg i's unstretched length by d acts as f = K_i d.
 
-    Source: Eq. 34 about rest; part C.
+    Attributes
+    ----------
+    M, C, K : ndarray
+        Mass, damping and stiffness of the platform on its legs. K holds leg stiffness, the geometric stiffness of
+        loaded legs, gravity and the turning external wrench; with an external wrench it need not be symmetric.
+    M_b, C_b, K_b : ndarray
+        Coupling to the motion of the base.
+    H : ndarray
+        Force transformation.
+    leg_stiffness : ndarray
+        Axial stiffness of the legs, N/m, (6,).
+    rest : Equilibrium
+        The equilibrium about which the dynamics are linear.
+    carry : ndarray
+        A platform that moves rigidly with the base has x = carry x_b.
+    gravity : ndarray
+        Gravity, m/s2, (3,).
     """
 
     M: Array
@@ -90,11 +93,11 @@ class Linearisation:
     H: Array
     leg_stiffness: Array
     rest: Equilibrium
-    carry: Array  # displacement of a platform that moves rigidly with the base: x = carry x_b
+    carry: Array
     gravity: Array
 
     def modes(self) -> DampedModes:
-        """Complex modes with the base fixed. Of a pair of real poles (no vibration), the slower or growing one."""
+        """Compute the complex modes with the base fixed; of a pair of real poles, the slower or growing one."""
         zero, one = np.zeros((6, 6)), np.eye(6)
         A = np.block([[zero, one], [-np.linalg.solve(self.M, self.K), -np.linalg.solve(self.M, self.C)]])
         scale = np.sqrt(np.abs(np.linalg.eigvals(A[6:, :6])).max())  # balances displacements against rates
@@ -119,34 +122,21 @@ class Linearisation:
         states cannot hold and `transmissibility` keeps: a tilted base tilts gravity, and in the model "spin_free" a
         turning base rubs on legs that do not spin with it.
         """
-        M_inv = np.linalg.inv(self.M)
-        zero, one = np.zeros((6, 6)), np.eye(6)
-        K_legs = np.diag(self.leg_stiffness)
-        force_inputs = [self.H, one, self.H @ K_legs]
-        drive = M_inv @ np.hstack([-self.M_b - self.M @ self.carry, *force_inputs])
-        A = np.block([[zero, one], [-M_inv @ self.K, -M_inv @ self.C]])
-        B = np.vstack([np.zeros((6, 24)), drive])
-        rate = self.H.T  # leg rates from relative twist
-        C = np.block([[one, zero], [rate, zero], [-K_legs @ rate, zero], [A[6:]]])
-        absolute = drive + np.hstack([self.carry, np.zeros((6, 18))])
-        legs = np.hstack([zero, one, zero, K_legs])
-        D = np.vstack([np.zeros((12, 24)), legs, absolute])
-        return StateSpace(A, B, C, D, _labels(STATES), _labels(INPUTS), _labels(OUTPUTS))
+        return state_space_of(self)
 
     def to_control(self) -> control.StateSpace:
-        """The state space as a `control.StateSpace` with named signals. Needs python-control (extra "control").
+        """The state space as a `control.StateSpace` with named signals; needs python-control (extra "control").
 
-        Raises: MissingExtraError without python-control.
+        Raises
+        ------
+        MissingExtraError
+            Where python-control is not installed.
         """
         control = needed("control", "control", "to_control needs python-control")
         s = self.state_space()
         return control.ss(
             s.A, s.B, s.C, s.D, states=list(s.states), inputs=list(s.inputs), outputs=list(s.outputs), name="hexapod"
         )
-
-
-def _labels(groups: tuple[str, ...]) -> tuple[str, ...]:
-    return tuple(f"{group}_{part}" for group in groups for part in (LEGS if group.startswith("leg_") else AXES))
 
 
 def _one_of_each_pair(poles: Array) -> list[int]:
@@ -168,14 +158,51 @@ def linearise(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> Linearisation:
-    """The tangent of the equations of motion at a pose held at rest under gravity and a wrench, by exact derivatives.
+    """Linearise the equations of motion about a pose held at rest under gravity and a load.
 
-    force (N), moment (N m): on the platform, in its frame, at its reference point. The frequencies approach those of
-    `natural_modes` (Eq. 5) as legs stiffen.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose or array_like, optional
+        Pose of the platform, one: a Pose, or x, y, z in m and roll, pitch, yaw in rad. Left out, the home pose.
+    base : Pose or array_like, optional
+        Pose of the base in the inertial frame. Left out, the base frame is the inertial frame.
+    force, moment : array_like
+        Force (N) and moment (N m) on the platform, in its own frame, at its reference point, (..., 3).
+    joint : {"universal", "spin_free"}
+        Model of the base joints: exact universal joints, or the paper's legs that do not spin.
 
-    Raises: SingularPoseError where no leg forces hold the pose; PoseError for a batch of poses, or at a pose that no
-    leg can take.
-    Source: Eq. 34; part C.
+    Returns
+    -------
+    Linearisation
+        Mass, damping and stiffness matrices (`M`, `C`, `K`), the coupling to the base, and methods `modes` and
+        `state_space`.
+
+    Raises
+    ------
+    PoseError
+        For a batch of poses, or at a pose that no leg can take.
+    SingularPoseError
+        Where no leg forces hold the pose.
+    ArgumentError
+        For loads of a wrong shape, or an unknown joint model.
+
+    See Also
+    --------
+    flexapod.natural_modes : The undamped modes without preload and gravity.
+    flexapod.transmissibility : The response to a moving base.
+
+    Notes
+    -----
+    The tangent of Eq. 34 of the paper by exact derivatives (automatic differentiation). Its frequencies approach those
+    of `natural_modes` as the legs stiffen.
+
+    Examples
+    --------
+    >>> tangent = fx.linearise(fx.load("cubic-isolator"))
+    >>> tangent.modes().frequency.round(2).tolist()  # Hz
+    [4.5, 4.5, 4.71, 4.81, 4.81, 7.99]
     """
     pose = single_pose(hexapod, pose)
     rest = hold(hexapod, pose, base=base, force=force, moment=moment, joint=joint)

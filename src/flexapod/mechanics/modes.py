@@ -1,4 +1,4 @@
-"""Natural frequencies and modes about a pose (Eq. 5), the dynamic stability index, and what it depends on."""
+"""Natural frequencies and mode shapes about a pose (Eq. 5 of the paper), and the dynamic stability index."""
 
 from __future__ import annotations
 
@@ -7,78 +7,37 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import _core
-from flexapod.conventions import AXES, Array, JointModel
+from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.packing import PLACES
-from flexapod.mechanics.inputs import as_joint, single_pose, states
-from flexapod.mechanics.kinematics import force_transformation
-from flexapod.pose import PoseLike, skew
+from flexapod.mechanics.inputs import as_joint, states
+from flexapod.pose import PoseLike
 
 
 class NaturalModes(NamedTuple):
-    """omega: (..., 6) rad/s, ascending. shape: (..., 6, 6), columns are mass-normalised twists of the platform.
+    """The six undamped modes about a pose; unpacks as `omega, shape`.
 
-    A twist is the translation of the reference point (rows 1-3) and the rotation vector (rows 4-6), inertial axes;
-    shape^T J_p shape is the identity, so its units are kg^-1/2 and rad kg^-1/2 m^-1.
-
-    Source: Eq. 5.
+    Attributes
+    ----------
+    omega : ndarray
+        Natural frequencies, rad/s, (..., 6), ascending.
+    shape : ndarray
+        Mode shapes, (..., 6, 6): columns are twists of the platform, the translation of the reference point (rows 1 to
+        3) and the rotation vector (rows 4 to 6) in inertial axes. They are mass-normalised, shape^T J_p shape = 1, so
+        their units are kg^-1/2 and rad kg^-1/2 m^-1.
     """
 
     omega: Array
     shape: Array
 
+    @property
+    def frequency(self) -> Array:
+        """Natural frequencies, Hz, (..., 6)."""
+        return self.omega / TWO_PI
 
-class EnergyShares(NamedTuple):
-    """Parts of each mode's energy, summing to 1 over their first named axis.
-
-    strain: (..., 6 legs, 6 modes). kinetic: (..., 7, 6 modes): platform, then the legs. A leg whose printed inertia no
-    rigid body can have may have a negative part.
-
-    Source: own.
-    """
-
-    strain: Array
-    kinetic: Array
-
-
-class ModeDescription(NamedTuple):
-    """A mode in words, with the numbers behind them.
-
-    text: the words. dominant: one of x, y, z, roll, pitch, yaw. share: (6,) part of the kinetic energy in x, y, z of
-    the mass centre and in roll, pitch, yaw about it. center: (3,) m, the point of the mode's axis nearest to the mass
-    centre (NaN for a pure translation); axis: (3,) unit vector of that axis. pitch: m of travel along the axis per
-    radian.
-
-    Source: own.
-    """
-
-    text: str
-    dominant: str
-    share: Array
-    center: Array
-    axis: Array
-    pitch: float
-
-
-class Sensitivity(NamedTuple):
-    """Derivatives of the six frequencies, rad/s per SI unit of each number, modes on the first axis.
-
-    platform_mass (6,), platform_mass_center (6, 3), platform_inertia (6, 3, 3; a change of both off-diagonal twins),
-    stiffness (6, 6 legs), base_joints and platform_joints (6, 6 joints, 3), lower_mass and upper_mass (6, 6 legs),
-    pose (6, 6): by translation (m) and rotation vector (rad) of the platform.
-
-    Source: R. L. Fox and M. P. Kapoor, AIAA Journal 6 (1968).
-    """
-
-    platform_mass: Array
-    platform_mass_center: Array
-    platform_inertia: Array
-    stiffness: Array
-    base_joints: Array
-    platform_joints: Array
-    lower_mass: Array
-    upper_mass: Array
-    pose: Array
+    @property
+    def damping_ratio(self) -> Array:
+        """Zeros, (..., 6): these modes are undamped. Those of `flexapod.linearise` have damping."""
+        return np.zeros_like(self.omega)
 
 
 def natural_modes(
@@ -88,13 +47,47 @@ def natural_modes(
     base: PoseLike | None = None,
     joint: JointModel = "universal",
 ) -> NaturalModes:
-    """Six natural frequencies (rad/s) and mode shapes at a pose, undamped, without preload or gravity.
+    """Compute the six natural frequencies and mode shapes at a pose, undamped, without preload or gravity.
 
-    They are singular values of L^-1 H K^1/2 with J_p = L L^T, which keeps the low ones accurate near a singular pose;
-    at one, the lowest is zero to rounding. joint: "universal" (exact) or "spin_free" (the paper's W.s = 0).
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose or array_like, optional
+        Pose of the platform, one or many: a Pose, or x, y, z in m and roll, pitch, yaw in rad, (..., 6). Left out, the
+        home pose.
+    base : Pose or array_like, optional
+        Pose of the base in the inertial frame. Left out, the base frame is the inertial frame.
+    joint : {"universal", "spin_free"}
+        Model of the base joints: exact universal joints, or the paper's legs that do not spin.
 
-    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for an unknown joint model.
-    Source: Eq. 5; part C says what it leaves out.
+    Returns
+    -------
+    NaturalModes
+        `omega` (rad/s, (..., 6), ascending), `frequency` (Hz) and `shape` (twists as columns, (..., 6, 6)).
+
+    Raises
+    ------
+    PoseError
+        At a single pose that no leg can take; in a batch such a pose gives NaN.
+    ArgumentError
+        For an unknown joint model.
+
+    See Also
+    --------
+    flexapod.describe_modes : The modes in words.
+    flexapod.linearise : With gravity, preload and damping: `linearise(...).modes()`.
+
+    Notes
+    -----
+    Eq. 5 of the paper. The frequencies are singular values of L^-1 H K^1/2 with J_p = L L^T, which keeps the low ones
+    accurate near a singular pose; at one, the lowest is zero to rounding.
+
+    Examples
+    --------
+    >>> modes = fx.natural_modes(fx.load("motion-base"))
+    >>> modes.frequency.round(2).tolist()  # Hz
+    [4.46, 4.48, 8.84, 14.97, 15.88, 17.28]
     """
     s = states(hexapod, pose, base)
     omega, shape = _core.natural_modes(hexapod.packed, as_joint(joint), s.platform, s.base)
@@ -108,134 +101,75 @@ def stability_index(
     base: PoseLike | None = None,
     joint: JointModel = "universal",
 ) -> Array | float:
-    """The dynamic stability index (...): the lowest natural frequency, rad/s; zero at a singular pose.
+    """Compute the dynamic stability index, the lowest natural frequency.
 
-    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for an unknown joint model.
-    Source: Section 2.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose or array_like, optional
+        Pose of the platform, one or many: a Pose, or x, y, z in m and roll, pitch, yaw in rad, (..., 6). Left out, the
+        home pose.
+    base : Pose or array_like, optional
+        Pose of the base in the inertial frame. Left out, the base frame is the inertial frame.
+    joint : {"universal", "spin_free"}
+        Model of the base joints: exact universal joints, or the paper's legs that do not spin.
+
+    Returns
+    -------
+    float or ndarray
+        The lowest natural frequency, rad/s, (...); zero at a singular pose.
+
+    Raises
+    ------
+    PoseError
+        At a single pose that no leg can take; in a batch such a pose gives NaN.
+    ArgumentError
+        For an unknown joint model.
+
+    See Also
+    --------
+    flexapod.worst_pose : Where in a region it is least.
+
+    Notes
+    -----
+    Section 2 of the paper.
+
+    Examples
+    --------
+    >>> round(float(fx.stability_index(fx.load("motion-base"))), 2)
+    28.05
     """
     return natural_modes(hexapod, pose, base=base, joint=joint).omega[..., 0][()]
 
 
-def energy_shares(
-    hexapod: Hexapod,
-    pose: PoseLike | None = None,
-    *,
-    base: PoseLike | None = None,
-    joint: JointModel = "universal",
-) -> EnergyShares:
-    """Which legs store each mode's strain energy, (..., 6, 6), and which bodies carry its kinetic energy, (..., 7, 6).
-
-    Shares of 1; NaN at frequency zero.
-
-    Raises: PoseError at a pose that no leg can take (in a batch it gives NaN), or for an unknown joint model.
-    Source: own.
-    """
-    s = states(hexapod, pose, base)
-    shape = natural_modes(hexapod, pose, base=base, joint=joint).shape
-    stretch = np.swapaxes(force_transformation(hexapod, pose, base=base), -1, -2) @ shape
-    strain = hexapod.legs.stiffness[:, None] * stretch**2
-    with np.errstate(invalid="ignore"):
-        strain = strain / strain.sum(axis=-2, keepdims=True)
-    platform, legs = _core.inertia_parts(hexapod.packed, as_joint(joint), s.platform, s.base)
-    parts = np.concatenate([platform[:, None], legs], axis=1).reshape(*s.shape, 7, 6, 6)
-    kinetic = np.einsum("...im,...bij,...jm->...bm", shape, parts, shape)
-    return EnergyShares(strain, kinetic)
-
-
-def describe_modes(
-    hexapod: Hexapod,
-    pose: PoseLike | None = None,
-    *,
-    base: PoseLike | None = None,
-    joint: JointModel = "universal",
-) -> list[ModeDescription]:
-    """Each mode of one pose in words: what dominates (x, y, z, roll, pitch, yaw) and about which point (m) it turns.
-
-    Raises: PoseError for a batch of poses, or at a pose that no leg can take.
-    Source: own.
-    """
-    pose = single_pose(hexapod, pose)
-    s = states(hexapod, pose, base)
-    modes = natural_modes(hexapod, pose, base=base, joint=joint)
-    J = _core.equations_of_motion(hexapod.packed, as_joint(joint), s.platform, s.base)[0][0]
-    r = pose.matrix @ hexapod.platform_mass_center
-    shift = np.eye(6)  # twist of the reference point from that of the mass centre
-    shift[:3, 3:] = skew(r)
-    J_center = shift.T @ J @ shift
-    center = pose.position + r
-    return [_describe(np.linalg.solve(shift, v), J_center, center) for v in modes.shape.T]
-
-
-def _describe(twist: Array, J: Array, mass_center: Array) -> ModeDescription:
-    share = twist * (J @ twist)  # of 1 = twist^T J twist
-    v, w = twist[:3], twist[3:]
-    speed, spin = np.linalg.norm(v), np.linalg.norm(w)
-    first = int(np.argmax(share))
-    others = [i for i in np.argsort(-share) if i != first and share[i] > 0.1]
-    words = f"mostly {AXES[first]} ({min(share[first], 1.0):.0%})"  # coupling may give a direction more than all
-    if others:
-        words += " with " + ", ".join(f"{AXES[i]} ({share[i]:.0%})" for i in others)
-    if spin == 0 or (first < 3 and spin * 1e6 < speed):
-        return ModeDescription(words, AXES[first], share, np.full(3, np.nan), np.full(3, np.nan), np.inf)
-    center = mass_center + np.cross(w, v) / spin**2
-    axis, pitch = w / spin, float(w @ v / spin**2)
-    if share[3:].sum() > 0.01:  # a mode that hardly turns has an axis, but nobody would see it turn about it
-        words += f", turning about ({_rounded(center)}) m"
-    return ModeDescription(words, AXES[first], share, center, axis, pitch)
-
-
-def _rounded(point: Array) -> str:
-    """Coordinates to three digits of the largest one."""
-    decimals = 2 - int(np.floor(np.log10(max(np.abs(point).max(), 1e-9))))
-    return ", ".join(f"{c + 0.0:.3g}" for c in np.round(point, decimals))
-
-
 def near_repeated(omega: Array, gap: float = 0.01) -> list[tuple[int, int]]:
-    """Neighbouring modes (numbered from 0) whose frequencies differ by less than `gap` of the higher one.
+    """List neighbouring modes of nearly the same frequency.
 
-    omega: (6,) rad/s, ascending.
+    Parameters
+    ----------
+    omega : array_like
+        Natural frequencies, rad/s, (6,), ascending.
+    gap : float
+        Frequencies are nearly the same if they differ by less than this part of the higher one.
 
-    Raises: nothing of its own.
-    Source: own.
+    Returns
+    -------
+    list of tuple of int
+        Pairs of modes, numbered from 0.
+
+    Notes
+    -----
+    Modes that share a frequency have no shapes of their own: any mixture of them is a mode as well.
+
+    Examples
+    --------
+    >>> fx.mechanics.near_repeated([10.0, 10.05, 20.0, 30.0, 40.0, 50.0])
+    [(0, 1)]
     """
     return [(i, i + 1) for i in range(5) if omega[i + 1] - omega[i] < gap * omega[i + 1]]
 
 
-def frequency_sensitivity(
-    hexapod: Hexapod,
-    pose: PoseLike | None = None,
-    *,
-    base: PoseLike | None = None,
-    joint: JointModel = "universal",
-) -> Sensitivity:
-    """Exact derivatives of the six frequencies (rad/s) by the design and by the pose, for one pose.
-
-    From v^T (dK - omega^2 dJ) v. Universal axes are held. Modes that are exactly repeated have only directional
-    derivatives, which single entries do not give (see `near_repeated`); a zero frequency gives NaN.
-
-    Raises: PoseError for a batch of poses, or at a pose that no leg can take.
-    Source: R. L. Fox and M. P. Kapoor, AIAA Journal 6 (1968), with exact derivatives of J_p and H K H^T.
-    """
-    pose = single_pose(hexapod, pose)
-    s = states(hexapod, pose, base)
-    omega = natural_modes(hexapod, pose, base=base, joint=joint).omega
-    by_design, by_pose = _core.frequency_derivatives(hexapod.packed, as_joint(joint), s.platform, s.base)
-    half = np.where(omega > 0, 0.5 / np.where(omega > 0, omega, 1.0), np.nan)[:, None]
-    derivatives = half * by_design[0]
-    by = {key: derivatives[:, place] for key, place in PLACES.items()}
-    return Sensitivity(
-        platform_mass=by["platform.mass"],
-        platform_mass_center=by["platform.mass_center"],
-        platform_inertia=by["platform.inertia"],
-        stiffness=by["legs.stiffness"],
-        base_joints=by["base.joints"],
-        platform_joints=by["platform.joints"],
-        lower_mass=by["legs.lower.mass"],
-        upper_mass=by["legs.upper.mass"],
-        pose=half * by_pose[0],
-    )
-
-
 def advised_sampling_time(omega_max: float) -> float:
-    """Largest sensible sampling time of a controller, s: 2 pi / (20 omega_max) (paper, conclusion 3)."""
-    return float(2 * np.pi / (20 * omega_max))
+    """Largest sensible sampling time of a controller, s: a twentieth of a period of the fastest mode (conclusion 3)."""
+    return float(TWO_PI / (20 * omega_max))

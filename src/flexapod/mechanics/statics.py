@@ -11,18 +11,26 @@ from flexapod.checks import numbers
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import KinematicsError, SingularPoseError
+from flexapod.mechanics.assembly import forward_kinematics
 from flexapod.mechanics.dynamics import inverse_dynamics
 from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, pose_or_home, single_pose, states, wrench
-from flexapod.mechanics.kinematics import forward_kinematics, inverse_kinematics
+from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.pose import Pose, PoseLike, as_pose, orthonormal, unpack
 
 
 class Equilibrium(NamedTuple):
     """A pose at rest and what its legs carry.
 
-    pose: `Pose`. leg_force: (..., 6) N, positive: compression. leg_length, unstretched_length: (..., 6) m.
-
-    Source: Eqs 2 to 4; E6.
+    Attributes
+    ----------
+    pose : Pose
+        The pose or poses, (...).
+    leg_force : ndarray
+        Forces of the legs, N, (..., 6), positive in compression.
+    leg_length : ndarray
+        Lengths of the loaded legs, m, (..., 6).
+    unstretched_length : ndarray
+        Lengths that the legs would have without load, m, (..., 6).
     """
 
     pose: Pose
@@ -40,14 +48,49 @@ def hold(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> Equilibrium:
-    """Leg forces (N) and unstretched lengths (m) that hold a pose at rest under gravity and a wrench (platform frame).
+    """Compute the leg forces that hold a pose at rest under gravity and a load.
 
-    From F = -K (L - L0). force (N), moment (N m): at the platform's reference point. joint: legs whose mass is off
-    their axis weigh a little differently in the paper's model "spin_free".
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose or array_like, optional
+        Pose of the platform, one or many: a Pose, or x, y, z in m and roll, pitch, yaw in rad, (..., 6). Left out, the
+        home pose.
+    base : Pose or array_like, optional
+        Pose of the base in the inertial frame. Left out, the base frame is the inertial frame.
+    force, moment : array_like
+        Force (N) and moment (N m) on the platform, in its own frame, at its reference point, (..., 3).
+    joint : {"universal", "spin_free"}
+        Model of the base joints: exact universal joints, or the paper's legs that do not spin.
 
-    Raises: SingularPoseError where no leg forces hold the pose, and PoseError at a pose that no leg can take; in a
-    batch such poses give NaN.
-    Source: Eqs 2 to 4; E6.
+    Returns
+    -------
+    Equilibrium
+        `pose`, `leg_force` (N), `leg_length` and `unstretched_length` (m).
+
+    Raises
+    ------
+    PoseError
+        At a single pose that no leg can take; in a batch such a pose gives NaN.
+    SingularPoseError
+        At a single pose that no leg forces hold; in a batch such a pose gives NaN.
+    ArgumentError
+        For loads of a shape that does not fit, or an unknown joint model.
+
+    See Also
+    --------
+    flexapod.static_equilibrium : The pose for given unstretched lengths.
+
+    Notes
+    -----
+    Eqs 2 to 4 of the paper, F = -K (L - L0) with the force positive in compression. In the model "spin_free" legs whose
+    mass is off their axis weigh a little differently.
+
+    Examples
+    --------
+    >>> fx.hold(fx.load("motion-base")).leg_force.round(0).tolist()
+    [7911.0, 7911.0, 7911.0, 7911.0, 7911.0, 7911.0]
     """
     pose = pose_or_home(hexapod, pose)
     leg_force = inverse_dynamics(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
@@ -65,15 +108,54 @@ def static_equilibrium(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> Equilibrium:
-    """Where the platform is at rest under gravity and a wrench for unstretched leg lengths.
+    """Find where the platform is at rest under gravity and a load, for given unstretched leg lengths.
 
-    unstretched_length: (6,) m. force (N), moment (N m): on the platform, in its frame, at its reference point. Newton's
-    method with the exact tangent, from `start` or from the pose at which the legs have these lengths. The equilibrium
-    found may be unstable: poles of `linearise` with a positive real part tell.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    unstretched_length : array_like
+        Lengths of the legs without load, m, (6,).
+    start : Pose or array_like, optional
+        Where the search begins. Left out, the pose at which the legs have these lengths.
+    base : Pose or array_like, optional
+        Pose of the base in the inertial frame. Left out, the base frame is the inertial frame.
+    force, moment : array_like
+        Force (N) and moment (N m) on the platform, in its own frame, at its reference point, (..., 3).
+    joint : {"universal", "spin_free"}
+        Model of the base joints: exact universal joints, or the paper's legs that do not spin.
 
-    Raises: KinematicsError where no equilibrium is found, and for lengths that are not six numbers > 0;
-    SingularPoseError where the tangent becomes singular.
-    Source: own; E6, part C.
+    Returns
+    -------
+    Equilibrium
+        `pose`, `leg_force` (N), `leg_length` and `unstretched_length` (m).
+
+    Raises
+    ------
+    KinematicsError
+        Where no equilibrium is found, and for lengths that are not > 0.
+    SingularPoseError
+        Where the stiffness becomes singular on the way.
+    ArgumentError
+        For lengths that are not six finite numbers, loads of a wrong shape, or an unknown joint model.
+
+    See Also
+    --------
+    flexapod.hold : The leg forces and lengths for a given pose.
+    flexapod.linearise : Its poles tell whether an equilibrium is stable.
+
+    Notes
+    -----
+    Newton's method with the exact tangent. The equilibrium found may be unstable: then a pole of `linearise` has a
+    positive real part.
+
+    Examples
+    --------
+    >>> machine = fx.load("cubic-isolator")
+    >>> lengths = fx.inverse_kinematics(machine)  # of legs that give way under the weight
+    >>> sag = fx.static_equilibrium(machine, lengths).pose.position - machine.home.position
+    >>> round(1000 * float(sag[2]), 2)  # mm
+    -12.59
     """
     as_hexapod(hexapod)
     L_0 = numbers(unstretched_length, "unstretched_length", (6,))

@@ -17,7 +17,8 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PathError, PoseError, SingularPoseError
 from flexapod.mechanics.dynamics import inverse_dynamics
 from flexapod.mechanics.inputs import ZERO
-from flexapod.mechanics.kinematics import check_limits, condition_number, force_transformation, leg_rates
+from flexapod.mechanics.joint_limits import check_limits
+from flexapod.mechanics.kinematics import condition_number, force_transformation, leg_rates
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose

@@ -9,7 +9,8 @@ import numpy as np
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PathError
-from flexapod.mechanics.kinematics import check_limits, condition_number, inverse_kinematics, limit_excess
+from flexapod.mechanics.joint_limits import check_limits, limit_excess
+from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
 from flexapod.pose import Pose
 from flexapod.workspace.quantities import evaluate, packed_limits
 

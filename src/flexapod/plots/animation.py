@@ -18,7 +18,8 @@ from scipy.spatial.transform import Rotation
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
-from flexapod.mechanics.modes import describe_modes, natural_modes
+from flexapod.mechanics.mode_shapes import describe_modes
+from flexapod.mechanics.modes import natural_modes
 from flexapod.optional import needed
 from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, VIEW
 from flexapod.pose import Pose, rotation_from_vector

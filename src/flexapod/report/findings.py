@@ -11,16 +11,11 @@ from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
 from flexapod.mechanics.cautions import SINGULAR, Caution, mode_clusters, platform_radius, pose_cautions
-from flexapod.mechanics.kinematics import JointAngles, condition_number, inverse_kinematics, joint_angles, leg_distance
+from flexapod.mechanics.joint_limits import JointAngles, joint_angles, leg_distance
+from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
 from flexapod.mechanics.linearisation import DampedModes, linearise
-from flexapod.mechanics.modes import (
-    EnergyShares,
-    ModeDescription,
-    advised_sampling_time,
-    describe_modes,
-    energy_shares,
-    natural_modes,
-)
+from flexapod.mechanics.mode_shapes import EnergyShares, ModeDescription, describe_modes, energy_shares
+from flexapod.mechanics.modes import advised_sampling_time, natural_modes
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.pose import Pose
 from flexapod.report.influence import Influence, influences

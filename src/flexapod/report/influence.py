@@ -8,7 +8,8 @@ import numpy as np
 
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.mechanics.modes import Sensitivity, frequency_sensitivity, natural_modes
+from flexapod.mechanics.modes import natural_modes
+from flexapod.mechanics.sensitivity import Sensitivity, frequency_sensitivity
 from flexapod.pose import Pose
 
 MOVE = 0.01  # of the distance of the farthest platform joint from the platform's reference point

@@ -8,7 +8,7 @@ from html import escape
 import numpy as np
 
 from flexapod.conventions import TWO_PI, Array
-from flexapod.mechanics.kinematics import limit_excess
+from flexapod.mechanics.joint_limits import limit_excess
 from flexapod.plots.style import SHORTENED, STRETCHED
 from flexapod.report import figures
 from flexapod.report.findings import Findings

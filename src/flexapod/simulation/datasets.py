@@ -10,8 +10,9 @@ import xarray as xr
 from flexapod.conventions import AXES, LEGS, TRANSLATIONS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.excitation.excitation import Excitation
-from flexapod.mechanics.dynamics import energy, joint_reactions
+from flexapod.mechanics.energies import energy
 from flexapod.mechanics.kinematics import leg_rates
+from flexapod.mechanics.reactions import joint_reactions
 from flexapod.pose import Motion
 from flexapod.simulation.integrator import Trajectories
 from flexapod.simulation.run import SimulationRun

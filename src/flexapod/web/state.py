@@ -10,15 +10,10 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
 from flexapod.mechanics import linearisation
 from flexapod.mechanics.cautions import pose_cautions, unitless_condition
-from flexapod.mechanics.kinematics import (
-    condition_number,
-    in_words,
-    inverse_kinematics,
-    joint_angles,
-    leg_distance,
-    limit_excess,
-)
-from flexapod.mechanics.modes import describe_modes, energy_shares, natural_modes, near_repeated
+from flexapod.mechanics.joint_limits import in_words, joint_angles, leg_distance, limit_excess
+from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
+from flexapod.mechanics.mode_shapes import describe_modes, energy_shares
+from flexapod.mechanics.modes import natural_modes, near_repeated
 from flexapod.pose import Pose
 from flexapod.web.answers import DampedModes, Geometry, Limits, Snapshot, StaticLegs
 from flexapod.web.requests import Question

@@ -15,7 +15,7 @@ from flexapod.conventions import AXES, Array, JointModel, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_joint
-from flexapod.mechanics.kinematics import neutral_directions
+from flexapod.mechanics.joint_limits import neutral_directions
 
 
 class Quantity(NamedTuple):

@@ -38,17 +38,17 @@ def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
     keys = ("pose_m_deg", "leg_lengths_m", "leg_distance_m", "condition_number", "singularity", "limits_exceeded")
     if pose is None:
         return dict.fromkeys(keys)
-    from flexapod.mechanics import kinematics
+    from flexapod.mechanics import joint_limits, kinematics
     from flexapod.mechanics.cautions import singularity, unitless_condition
 
     condition = unitless_condition(hexapod, pose)
     values = (
         common.pose_numbers(pose),
         kinematics.inverse_kinematics(hexapod, pose),
-        kinematics.leg_distance(hexapod, pose),
+        joint_limits.leg_distance(hexapod, pose),
         kinematics.condition_number(hexapod, pose),
         [caution.text for caution in singularity(condition) if caution.code == "singular"],
-        kinematics.check_limits(hexapod, pose).exceeded,
+        joint_limits.check_limits(hexapod, pose).exceeded,
     )
     return dict(zip(keys, values, strict=True))
 

@@ -29,13 +29,13 @@ def command(
 
     DESIGN is a packaged design's name (see `flexapod designs`) or the path of a .toml file.
     """
-    from flexapod.mechanics import kinematics, modes
+    from flexapod.mechanics import kinematics, mode_shapes, modes
 
     hexapod, where = common.machine(design, changes, pose)
     omega, shape = modes.natural_modes(hexapod, where, joint=joint)
     condition = float(kinematics.condition_number(hexapod, where, characteristic_length=characteristic_length))
     lengths = kinematics.inverse_kinematics(hexapod, where)
-    descriptions = [mode.text for mode in modes.describe_modes(hexapod, where, joint=joint)]
+    descriptions = [mode.text for mode in mode_shapes.describe_modes(hexapod, where, joint=joint)]
     if as_json:
         common.print_json(
             {

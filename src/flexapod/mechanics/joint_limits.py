@@ -1,0 +1,237 @@
+"""Angles of the joints, distances of the legs, and whether a pose keeps the design's limits."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from flexapod import _core
+from flexapod.conventions import Array
+from flexapod.design.hexapod import Hexapod
+from flexapod.errors import PoseError
+from flexapod.mechanics.inputs import pose_or_home, states
+from flexapod.mechanics.kinematics import force_transformation, home_pose, inverse_kinematics
+from flexapod.pose import PoseLike
+
+
+class JointAngles(NamedTuple):
+    """Angles of the joints from neutral, the leg's direction at the home pose (without one, the frame's z axis).
+
+    Attributes
+    ----------
+    universal_first : ndarray
+        Turn of the universal joint about its axis in the base, rad, (..., 6).
+    universal_second : ndarray
+        Tilt of the leg out of the plane normal to that axis, rad, (..., 6).
+    universal : ndarray
+        Angle between the leg and the neutral direction in the base, rad, (..., 6).
+    spherical : ndarray
+        Angle between the leg and the neutral direction in the platform, rad, (..., 6).
+    """
+
+    universal_first: Array
+    universal_second: Array
+    universal: Array
+    spherical: Array
+
+
+class LimitsCheck(NamedTuple):
+    """Whether poses keep the design's limits.
+
+    Attributes
+    ----------
+    ok : ndarray
+        True where every limit is kept, (...).
+    exceeded : tuple of str
+        For a single pose what is exceeded, in words; empty for a batch.
+    """
+
+    ok: np.ndarray
+    exceeded: tuple[str, ...]
+
+
+def joint_angles(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None) -> JointAngles:
+    """Compute the angles of every universal and spherical joint from neutral.
+
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose or array_like, optional
+        Pose of the platform, one or many: a Pose, or x, y, z in m and roll, pitch, yaw in rad, (..., 6). Left out, the
+        home pose.
+    base : Pose or array_like, optional
+        Pose of the base in the inertial frame. Left out, the base frame is the inertial frame.
+
+    Returns
+    -------
+    JointAngles
+        `universal_first`, `universal_second`, `universal` and `spherical`, rad, (..., 6) each.
+
+    Raises
+    ------
+    PoseError
+        At a single pose that no leg can take; in a batch such a pose gives NaN.
+
+    See Also
+    --------
+    flexapod.check_limits : Whether the design allows these angles.
+
+    Notes
+    -----
+    Neutral is the leg's direction at the home pose, in the base for the universal joint and in the platform for the
+    spherical joint; in a design without a home pose, the frame's z axis.
+
+    Examples
+    --------
+    >>> angles = fx.joint_angles(fx.load("motion-base"), [0.2, 0, 2.4, 0, 0, 0])
+    >>> np.degrees(angles.universal).round(2).tolist()
+    [4.04, 3.96, 3.92, 3.92, 3.96, 4.04]
+    """
+    s = states(hexapod, pose, base)
+    angles = _core.joint_angles(hexapod.packed, s.platform, s.base, neutral_directions(hexapod))
+    return JointAngles(*(x.reshape(*s.shape, 6) for x in angles))
+
+
+def neutral_directions(hexapod: Hexapod) -> Array:
+    """Neutral leg directions in base axes and in platform axes, (2, 6, 3)."""
+    home = home_pose(hexapod)
+    if home is None:
+        return np.broadcast_to([0.0, 0.0, 1.0], (2, 6, 3)).copy()
+    try:
+        s = force_transformation(hexapod, home)[:3].T
+    except PoseError as error:
+        raise PoseError(f"the design's [home], which joint angles are measured from: {error}") from error
+    return np.stack([s, s @ home.matrix])
+
+
+def leg_distance(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None) -> Array | float:
+    """Compute the least distance between any two leg axes.
+
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose or array_like, optional
+        Pose of the platform, one or many: a Pose, or x, y, z in m and roll, pitch, yaw in rad, (..., 6). Left out, the
+        home pose.
+    base : Pose or array_like, optional
+        Pose of the base in the inertial frame. Left out, the base frame is the inertial frame.
+
+    Returns
+    -------
+    float or ndarray
+        The distance of the axes as segments between their joints, m, (...).
+
+    Raises
+    ------
+    PoseError
+        At a single pose that no leg can take; in a batch such a pose gives NaN.
+
+    Notes
+    -----
+    The closest points of two segments, over all pairs of legs.
+
+    Examples
+    --------
+    >>> round(float(fx.mechanics.leg_distance(fx.load("motion-base"))), 3)
+    0.2
+    """
+    s = states(hexapod, pose, base)
+    return _core.leg_distance(hexapod.packed, s.platform, s.base).reshape(s.shape)[()]
+
+
+def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None) -> LimitsCheck:
+    """Check leg lengths, joint angles and the distance between legs against the design's limits.
+
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose or array_like, optional
+        Pose of the platform, one or many: a Pose, or x, y, z in m and roll, pitch, yaw in rad, (..., 6). Left out, the
+        home pose.
+    base : Pose or array_like, optional
+        Pose of the base in the inertial frame. Left out, the base frame is the inertial frame.
+
+    Returns
+    -------
+    LimitsCheck
+        `ok`, (...), and for a single pose `exceeded`, in words. A limit that the design does not give always holds.
+
+    Raises
+    ------
+    PoseError
+        At a single pose that no leg can take, where something is limited.
+
+    See Also
+    --------
+    flexapod.design.Limits : The limits of a design.
+
+    Notes
+    -----
+    Joint angles are those of `joint_angles`, the distance is that of `flexapod.mechanics.leg_distance`.
+
+    Examples
+    --------
+    >>> check = fx.check_limits(fx.load("motion-base"), [0, 0, 3.5, 0, 0, 0])
+    >>> bool(check.ok), check.exceeded[0]
+    (False, 'leg 1: length 3.723 m is above 3.261 m')
+    """
+    pose = pose_or_home(hexapod, pose)
+    excess = limit_excess(hexapod, pose, base=base)
+    ok = np.ones(pose.shape, dtype=bool)
+    words: list[str] = []
+    for quantity in excess:
+        _, value, least, most = quantity
+        ok &= ((value >= least) & (value <= most)).reshape(*pose.shape, -1).all(axis=-1)
+        if not pose.shape:
+            words += in_words(quantity)
+    return LimitsCheck(ok, tuple(words))
+
+
+class LimitedQuantity(NamedTuple):
+    """A limited quantity: its name and unit, its values and its bounds."""
+
+    what: str
+    value: Array
+    least: Array | float
+    most: Array | float
+
+
+def limit_excess(
+    hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None
+) -> list[LimitedQuantity]:
+    """Every quantity that the design limits, with its bounds."""
+    limits = hexapod.limits
+    result = []
+    if limits.leg_length is not None:
+        bounds = np.asarray(limits.leg_length)
+        lengths = inverse_kinematics(hexapod, pose, base=base)
+        result.append(LimitedQuantity("length m", lengths, bounds[..., 0], bounds[..., 1]))
+    if limits.universal_angle is not None or limits.spherical_angle is not None:
+        angles = joint_angles(hexapod, pose, base=base)
+        for name, most in (("universal", limits.universal_angle), ("spherical", limits.spherical_angle)):
+            if most is not None:
+                value = np.degrees(getattr(angles, name))
+                result.append(LimitedQuantity(f"{name} joint angle deg", value, -np.inf, float(np.degrees(most))))
+    if limits.leg_distance is not None:
+        distance = np.asarray(leg_distance(hexapod, pose, base=base))
+        result.append(LimitedQuantity("least distance between legs m", distance, limits.leg_distance, np.inf))
+    return result
+
+
+def in_words(quantity: LimitedQuantity) -> list[str]:
+    """What a quantity of one pose exceeds, leg by leg."""
+    value = np.atleast_1d(quantity.value)
+    name, unit = quantity.what.rsplit(" ", 1)
+    low, high = np.broadcast_to(quantity.least, value.shape), np.broadcast_to(quantity.most, value.shape)
+    words = []
+    for i, v in enumerate(value):
+        leg = f"leg {i + 1}: " if value.size == 6 else ""
+        if v < low[i]:
+            words.append(f"{leg}{name} {v:.4g} {unit} is below {low[i]:.4g} {unit}")
+        elif v > high[i]:
+            words.append(f"{leg}{name} {v:.4g} {unit} is above {high[i]:.4g} {unit}")
+    return words

@@ -1,0 +1,197 @@
+"""What the modes look like: which legs and bodies carry their energy, and the modes in words."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from flexapod import _core
+from flexapod.conventions import AXES, Array, JointModel
+from flexapod.design.hexapod import Hexapod
+from flexapod.mechanics.inputs import as_joint, single_pose, states
+from flexapod.mechanics.kinematics import force_transformation
+from flexapod.mechanics.modes import natural_modes
+from flexapod.pose import PoseLike, skew
+
+
+class EnergyShares(NamedTuple):
+    """Parts of each mode's energy, that sum to 1 over legs or bodies.
+
+    Attributes
+    ----------
+    strain : ndarray
+        Strain energy of each leg, (..., 6 legs, 6 modes).
+    kinetic : ndarray
+        Kinetic energy of the platform, then of the legs, (..., 7, 6 modes). A leg whose inertia no rigid body can have
+        may have a negative part.
+    """
+
+    strain: Array
+    kinetic: Array
+
+
+class ModeDescription(NamedTuple):
+    """A mode in words, with the numbers behind them.
+
+    Attributes
+    ----------
+    text : str
+        The words.
+    dominant : str
+        The direction of most kinetic energy: x, y, z, roll, pitch or yaw.
+    share : ndarray
+        Parts of the kinetic energy in x, y, z of the mass centre and in roll, pitch, yaw about it, (6,).
+    center : ndarray
+        Point of the mode's screw axis that is nearest to the mass centre, m, (3,); NaN for a pure translation.
+    axis : ndarray
+        Unit vector of that axis, (3,).
+    pitch : float
+        Travel along the axis per radian, m.
+    """
+
+    text: str
+    dominant: str
+    share: Array
+    center: Array
+    axis: Array
+    pitch: float
+
+
+def energy_shares(
+    hexapod: Hexapod,
+    pose: PoseLike | None = None,
+    *,
+    base: PoseLike | None = None,
+    joint: JointModel = "universal",
+) -> EnergyShares:
+    """Compute which legs store each mode's strain energy and which bodies carry its kinetic energy.
+
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose or array_like, optional
+        Pose of the platform, one or many: a Pose, or x, y, z in m and roll, pitch, yaw in rad, (..., 6). Left out, the
+        home pose.
+    base : Pose or array_like, optional
+        Pose of the base in the inertial frame. Left out, the base frame is the inertial frame.
+    joint : {"universal", "spin_free"}
+        Model of the base joints: exact universal joints, or the paper's legs that do not spin.
+
+    Returns
+    -------
+    EnergyShares
+        `strain`, (..., 6 legs, 6 modes), and `kinetic`, (..., 7, 6 modes): the platform, then the legs. Each sums to 1;
+        NaN at frequency zero.
+
+    Raises
+    ------
+    PoseError
+        At a single pose that no leg can take; in a batch such a pose gives NaN.
+    ArgumentError
+        For an unknown joint model.
+
+    Notes
+    -----
+    Strain energy from the stretch of each leg, H^T times the mode shape; kinetic energy from each body's part of the
+    mass matrix.
+
+    Examples
+    --------
+    >>> shares = fx.mechanics.energy_shares(fx.load("motion-base"))
+    >>> shares.kinetic[0].round(2).tolist()  # the platform's, mode by mode
+    [0.96, 0.96, 0.93, 0.94, 0.91, 0.89]
+    """
+    s = states(hexapod, pose, base)
+    shape = natural_modes(hexapod, pose, base=base, joint=joint).shape
+    stretch = np.swapaxes(force_transformation(hexapod, pose, base=base), -1, -2) @ shape
+    strain = hexapod.legs.stiffness[:, None] * stretch**2
+    with np.errstate(invalid="ignore"):
+        strain = strain / strain.sum(axis=-2, keepdims=True)
+    platform, legs = _core.inertia_parts(hexapod.packed, as_joint(joint), s.platform, s.base)
+    parts = np.concatenate([platform[:, None], legs], axis=1).reshape(*s.shape, 7, 6, 6)
+    kinetic = np.einsum("...im,...bij,...jm->...bm", shape, parts, shape)
+    return EnergyShares(strain, kinetic)
+
+
+def describe_modes(
+    hexapod: Hexapod,
+    pose: PoseLike | None = None,
+    *,
+    base: PoseLike | None = None,
+    joint: JointModel = "universal",
+) -> list[ModeDescription]:
+    """Describe each mode of one pose in words: what dominates, and about which point it turns.
+
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose or array_like, optional
+        Pose of the platform, one: a Pose, or x, y, z in m and roll, pitch, yaw in rad. Left out, the home pose.
+    base : Pose or array_like, optional
+        Pose of the base in the inertial frame. Left out, the base frame is the inertial frame.
+    joint : {"universal", "spin_free"}
+        Model of the base joints: exact universal joints, or the paper's legs that do not spin.
+
+    Returns
+    -------
+    list of ModeDescription
+        One for each of the six modes, from the lowest, with the words in `text`.
+
+    Raises
+    ------
+    PoseError
+        For a batch of poses, or at a pose that no leg can take.
+    ArgumentError
+        For an unknown joint model.
+
+    See Also
+    --------
+    flexapod.natural_modes : The frequencies and shapes.
+
+    Notes
+    -----
+    The shares are of the kinetic energy, split into translation of the mass centre and rotation about it. The axis is
+    that of the screw that the mode shape is.
+
+    Examples
+    --------
+    >>> print(fx.describe_modes(fx.load("motion-base"))[5].text)
+    mostly roll (97%), turning about (0, 0, 3.58) m
+    """
+    pose = single_pose(hexapod, pose)
+    s = states(hexapod, pose, base)
+    modes = natural_modes(hexapod, pose, base=base, joint=joint)
+    J = _core.equations_of_motion(hexapod.packed, as_joint(joint), s.platform, s.base)[0][0]
+    r = pose.matrix @ hexapod.platform_mass_center
+    shift = np.eye(6)  # twist of the reference point from that of the mass centre
+    shift[:3, 3:] = skew(r)
+    J_center = shift.T @ J @ shift
+    center = pose.position + r
+    return [_describe(np.linalg.solve(shift, v), J_center, center) for v in modes.shape.T]
+
+
+def _describe(twist: Array, J: Array, mass_center: Array) -> ModeDescription:
+    share = twist * (J @ twist)  # of 1 = twist^T J twist
+    v, w = twist[:3], twist[3:]
+    speed, spin = np.linalg.norm(v), np.linalg.norm(w)
+    first = int(np.argmax(share))
+    others = [i for i in np.argsort(-share) if i != first and share[i] > 0.1]
+    words = f"mostly {AXES[first]} ({min(share[first], 1.0):.0%})"  # coupling may give a direction more than all
+    if others:
+        words += " with " + ", ".join(f"{AXES[i]} ({share[i]:.0%})" for i in others)
+    if spin == 0 or (first < 3 and spin * 1e6 < speed):
+        return ModeDescription(words, AXES[first], share, np.full(3, np.nan), np.full(3, np.nan), np.inf)
+    center = mass_center + np.cross(w, v) / spin**2
+    axis, pitch = w / spin, float(w @ v / spin**2)
+    if share[3:].sum() > 0.01:  # a mode that hardly turns has an axis, but nobody would see it turn about it
+        words += f", turning about ({_rounded(center)}) m"
+    return ModeDescription(words, AXES[first], share, center, axis, pitch)
+
+
+def _rounded(point: Array) -> str:
+    """Coordinates to three digits of the largest one."""
+    decimals = 2 - int(np.floor(np.log10(max(np.abs(point).max(), 1e-9))))
+    return ", ".join(f"{c + 0.0:.3g}" for c in np.round(point, decimals))
