@@ -7,7 +7,8 @@ import pytest
 from scipy.linalg import eigh
 
 import flexapod as fx
-from flexapod.control.controllers import best_gain, default_gains, make
+from flexapod.control.controllers import damping_law
+from flexapod.control.gain_search import best_gain, default_gains
 from flexapod.control.plant import Plant, poles
 from flexapod.mechanics.linearisation import linearise
 
@@ -297,7 +298,7 @@ def test_schedule_of_an_own_law_and_of_bad_poses():
     ("call", "error", "words"),
     [
         (lambda h, p: fx.control.PID(np.ones(5)), fx.ArgumentError, "a finite number, six numbers, or a 6 x 6"),
-        (lambda h, p: fx.control.PID(1, 1, space="leg"), fx.ArgumentError, "must be 'joint' or 'task'"),
+        (lambda h, p: fx.control.PID(1, 1, space="leg"), fx.ArgumentError, "must be one of 'joint', 'task'"),
         (lambda h, p: fx.control.PID(1, 1, bandwidth=0), fx.ArgumentError, "bandwidth is 0 rad/s"),
         (lambda h, p: fx.control.ForceFeedback(-1.0), fx.ArgumentError, "gain is -1.0"),
         (lambda h, p: fx.control.VelocityFeedback(1.0, legs=(0, 1)), fx.ArgumentError, "numbers from 1 to 6"),
@@ -306,20 +307,74 @@ def test_schedule_of_an_own_law_and_of_bad_poses():
             fx.errors.UnstableError,
             "the machine is unstable with joint-space",
         ),
-        (lambda h, p: fx.control.root_locus(h, p, "speed"), fx.ArgumentError, "must be 'force' or 'velocity'"),
-        (lambda h, p: fx.control.root_locus(h, p, gains=[1.0, -1.0]), fx.ArgumentError, "finite gains > 0"),
+        (lambda h, p: fx.control.root_locus(h, p, "speed"), fx.ArgumentError, "must be one of 'force', 'velocity'"),
+        (lambda h, p: fx.control.root_locus(h, p, gains=[1.0, -1.0]), fx.ArgumentError, "ascending gains > 0"),
         (lambda h, p: fx.control.gain_map(h, p, [1.0, 1.0], [1.0]), fx.ArgumentError, "different, finite gains"),
         (lambda h, p: fx.control.gain_schedule(h, p, lambda g: fx.control.PID(g)), fx.ArgumentError, "needs `gains`"),
         (lambda h, p: fx.control.gain_schedule(h, p, damping=2.0), fx.ArgumentError, "between 0 and 1"),
         (lambda h, p: fx.control.lqg(h, p, measure="jerk"), fx.ArgumentError, "one or several of leg_length"),
-        (lambda h, p: fx.control.lqg(h, p, noise=0.0), fx.ArgumentError, "noise is 0.0; it must be > 0"),
-        (lambda h, p: fx.control.lqg(h, p).sampled(-1.0), fx.ArgumentError, "a sampling time must be > 0"),
+        (lambda h, p: fx.control.lqg(h, p, noise=0.0), fx.ArgumentError, "noise is 0.0; it must be finite and > 0"),
+        (lambda h, p: fx.control.lqg(h, p).sampled(-1.0), fx.ArgumentError, "dt is -1.0 s; it must be finite and > 0"),
         (lambda h, p: fx.control.lqg(h, p).sampled(1e-3).sampled(1e-3), fx.ArgumentError, "sampled already"),
     ],
 )
 def test_wrong_arguments_are_told_what_is_wrong(isolator, call, error, words):
     with pytest.raises(error, match=words):
         call(isolator, fx.home_pose(isolator))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "error"),
+    [
+        ({"joint": "spin-free"}, fx.ArgumentError),
+        ({"force": [1, 2]}, fx.ArgumentError),
+        ({"moment": "up"}, fx.ArgumentError),
+        ({"leak": -1.0}, fx.ArgumentError),
+        ({"feedback": "speed"}, fx.ArgumentError),
+        ({"base": "floor"}, fx.PoseError),
+        ({"base": np.zeros((2, 6))}, fx.PoseError),
+        ({"region": "home"}, fx.PoseError),
+        ({"hexapod": "cubic-isolator"}, fx.DesignError),
+    ],
+)
+def test_a_wrong_argument_is_not_taken_for_a_pose_without_rest(isolator, wrong, error):
+    given = {"hexapod": isolator, "region": fx.home_pose(isolator), "feedback": "velocity", **wrong}
+    if "leak" in wrong:
+        given["feedback"] = "force"
+    with pytest.raises(error):
+        fx.control.gain_schedule(**given)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        fx.control.closed_loop,
+        fx.control.root_locus,
+        fx.control.lqg,
+        fx.control.h_infinity,
+        fx.control.sampling_time,
+        lambda h, **options: fx.control.gain_map(h, None, [1.0], [1.0], **options),
+        lambda h, **options: fx.control.controlled_transmissibility(h, None, fx.control.PID(), [1.0], **options),
+    ],
+)
+def test_studies_take_a_hexapod_and_refuse_a_name(call):
+    with pytest.raises(fx.DesignError, match="it must be a flexapod Hexapod"):
+        call("cubic-isolator")
+    with pytest.raises(fx.ArgumentError, match="joint is 'spin-free'"):
+        call(fx.load("cubic-isolator"), joint="spin-free")
+    with pytest.raises(TypeError, match="dampling"):
+        call(fx.load("cubic-isolator"), dampling=0.1)
+
+
+def test_the_home_pose_is_taken_where_none_is_given(isolator):
+    home = fx.home_pose(isolator)
+    six = [*home.position, *home.rpy]
+    law = fx.control.VelocityFeedback(400.0)
+    for pose in (home, six):
+        np.testing.assert_array_equal(
+            fx.control.closed_loop(isolator, pose, law).pole, fx.control.closed_loop(isolator, controller=law).pole
+        )
+        assert fx.control.sampling_time(isolator, pose) == fx.control.sampling_time(isolator)
 
 
 def test_no_loop_at_all_leaves_the_machine_as_it_is(isolator):
@@ -337,7 +392,7 @@ def test_best_sampled_gain_leaves_the_machine_its_stiffness(isolator):
     for leak in (3.0, 0.1 * float(tangent.modes().omega[0])):
 
         def sampled(gain, leak=leak):
-            return make("force", gain, leak).on(tangent).sampled(dt)
+            return damping_law("force", gain, leak).on(tangent).sampled(dt)
 
         gain, _ = best_gain(plant, sampled, default_gains(plant, "force")[::5])
         loop = fx.control.closed_loop(isolator, pose, sampled(gain))

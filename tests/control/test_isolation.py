@@ -7,10 +7,15 @@ from tests.helpers.support import apart
 
 import control
 import flexapod as fx
-from flexapod.control.isolation import _Task, _weighted, _Weights
-from flexapod.control.plant import MEASURES, Plant, is_stable, joined, poles
+from flexapod.control.h_infinity_synthesis import weighted_plant
+from flexapod.control.linear_controller import MEASUREMENTS
+from flexapod.control.plant import Plant, is_stable, joined, poles
+from flexapod.control.sampled_prediction import Clock, predict
+from flexapod.control.sampled_simulation import simulate_sampled
+from flexapod.control.scaled_plant import ScaledPlant
 from flexapod.excitation.excitation import harmonic
 from flexapod.mechanics.linearisation import linearise
+from flexapod.simulation.run import SimulationRun
 
 NAMES = ("cubic-isolator", "precision-positioner", "motion-base")
 
@@ -49,7 +54,7 @@ def test_lqg_is_optimal(isolator, measure):
     pose = fx.home_pose(isolator)
     effort, stroke, noise = 0.2, 0.3, 0.05
     law = fx.control.lqg(isolator, pose, measure=measure, effort=effort, stroke=stroke, noise=noise)
-    task = _Task(Plant(linearise(isolator, pose)), (measure,))
+    task = ScaledPlant(Plant(linearise(isolator, pose)), (measure,))
     drift = stroke * task.omega_1**2 / (task.plant.omega_0 * task.pace)
     C = np.vstack([task.C_a, np.hstack([np.diag(drift / task.axis), np.zeros((6, 6))]), np.zeros((6, 12))])
     D = np.vstack([task.D_a, np.zeros((6, 6)), effort * np.eye(6)])
@@ -88,13 +93,15 @@ def test_h_infinity_keeps_its_bound_and_the_bound_is_near_the_least(isolator, me
     gamma = float(law.name.split("gamma ")[1].rstrip(")"))
     omega = np.geomspace(0.5, 2000.0, 400)
     found = fx.control.controlled_transmissibility(isolator, pose, law, omega)
-    task = _Task(Plant(linearise(isolator, pose)), ("acceleration",))
+    task = ScaledPlant(Plant(linearise(isolator, pose)), ("acceleration",))
     # base and platform motion in the axes' units, with rotations at the platform's size, as the design weighs them
     T = found.controlled.values * task.axis / task.axis[:, None]
     weight = np.abs(depth * (1j * omega + corner) / (1j * omega + depth * corner))
     largest = np.linalg.norm(T, ord=2, axis=(1, 2)) * weight
     assert largest.max() <= gamma
-    system = _weighted(task, _Weights(corner / task.pace, depth, bandwidth / task.pace, effort, noise))
+    system = weighted_plant(
+        task, corner=corner / task.pace, depth=depth, bandwidth=bandwidth / task.pace, effort=effort, noise=noise
+    )
     _, _, least, _ = control.hinfsyn(control.ss(*system), 6, 6)
     measured(
         "control/gamma", apart(gamma, 1.2 * float(np.squeeze(least))), 0.02
@@ -269,7 +276,7 @@ def test_what_cannot_be_run_is_refused(isolator):
     with pytest.raises(fx.errors.UnstableError, match=r"is unstable with LQG isolation.*sample faster"):
         fx.control.simulate_control(isolator, pose, fast.sampled(0.02), shaken(), 1.0)
     sampled = law.sampled(2e-3)
-    with pytest.raises(fx.ArgumentError, match="noise names 'jerk'"):
+    with pytest.raises(fx.ArgumentError, match="a key of noise is 'jerk'"):
         fx.control.simulate_control(
             isolator, pose, sampled, shaken(), 1.0, hardware=fx.control.Hardware(noise={"jerk": 1.0})
         )
@@ -285,15 +292,16 @@ def test_measurements_are_numbered_as_the_plant_says(isolator):
     """A small push seen by every sensor of the non-linear machine, against the plant's rows."""
     pose = fx.home_pose(isolator)
     law = fx.control.VelocityFeedback(10.0).on(linearise(isolator, pose)).sampled(1e-3)
-    from flexapod.control import sampled_simulation
-
     plant = Plant(linearise(isolator, pose))
-    bench = sampled_simulation._Bench(isolator, pose, shaken(), {}, 1e-3, 300, 1)
-    nothing = np.zeros((300, 36))
-    found = bench.run(law, np.full(6, np.inf), nothing, None).measured[-1]
-    expected = bench.predict(plant, law, nothing).measured[-1]
-    assert len(MEASURES) == 6
-    for k, name in enumerate(MEASURES):
+    run, clock, nothing = (
+        SimulationRun(isolator, pose, base_motion=shaken(), start="carried"),
+        Clock(1e-3, 300, 1),
+        np.zeros((300, 36)),
+    )
+    found = simulate_sampled(run, law, clock, "universal", np.full(6, np.inf), nothing).measured[-1]
+    expected = predict(plant, law, shaken(), clock, nothing).measured[-1]
+    assert len(MEASUREMENTS) == 6
+    for k, name in enumerate(MEASUREMENTS):
         part = slice(6 * k, 6 * k + 6)
         size = np.abs(expected[part]).max()
         np.testing.assert_allclose(found[part], expected[part], atol=2e-3 * size, err_msg=name)

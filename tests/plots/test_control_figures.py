@@ -66,7 +66,7 @@ def test_root_locus_of_one_leg_that_damps_nothing():
 def test_gain_map_names_its_units(law, units):
     k = 1.0 if law.actuator == "command" else 1e3
     with pytest.warns(fx.control.GainWarning):
-        found = fx.control.gain_map(*isolator(), [0.0, k, 4 * k], [0.0, 0.03 * k, 0.3 * k], law=law)
+        found = fx.control.gain_map(*isolator(), [0.0, k, 4 * k], [0.0, 0.03 * k, 0.3 * k], controller=law)
     left, right, *_ = control.gain_map(found).axes
     assert left.get_ylabel() == f"proportional gain kp, {units[0]}"
     assert right.get_xlabel() == f"derivative gain kd, {units[1]}"

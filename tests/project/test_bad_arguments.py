@@ -125,14 +125,14 @@ CASES = [
     (
         lambda: fx.control.VelocityFeedback(1.0).on(fx.linearise(machine(), NEAR)).sampled(1e-3, delay=0.5),
         A,
-        "delay is 0.5; it must be a whole number of samples",
+        "delay, in samples, is 0.5; it must be a whole number, at least 0",
     ),
     (
         lambda: fx.control.controlled_transmissibility(machine(), NEAR, fx.control.PID(1.0, 1.0), [0.0, 1.0]),
         A,
         "give a row of finite frequencies > 0, rad/s",
     ),
-    (lambda: fx.control.gain_schedule(machine(), PAIR, gains=[1.0, 3.0, 2.0]), A, "give at least three ascending gains > 0"),
+    (lambda: fx.control.gain_schedule(machine(), PAIR, gains=[1.0, 3.0, 2.0]), A, "give at least 3 ascending gains > 0"),
     # robustness
     (lambda: robust(samples=1), A, "samples is 1; at least 2 designs must be drawn"),
     (lambda: robust(optimisation.Payload((0, 1), ((0.1, -0.1), 0, 0))), A, r"the payload's x is \(0.1, -0.1\) m"),

@@ -18,7 +18,6 @@ PENDING = {
     "excitation",
     "paths",
     "optimisation",
-    "control",
 }
 PENDING |= {"plots"}
 

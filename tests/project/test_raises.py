@@ -100,6 +100,7 @@ PROVOKED = {
     ),
     ("animate_mode", "ArgumentError"): lambda: fx.animate_mode(MACHINE, HOME, 7, "never.gif"),
     ("animate_simulation", "ArgumentError"): lambda: fx.animate_simulation(None, MACHINE, "never.gif", frames=1),
+    ("closed_loop", "ArgumentError"): lambda: fx.control.closed_loop(MACHINE, HOME, "pid"),
     ("closed_loop", "UnstableError"): lambda: fx.control.closed_loop(
         MACHINE, HOME, TOO_MUCH.on(fx.linearise(MACHINE, HOME)).sampled(0.1)
     ),
@@ -126,6 +127,7 @@ PROVOKED = {
     ("lqg", "ArgumentError"): lambda: fx.control.lqg(MACHINE, HOME, measure="jerk"),
     ("lqg", "UnstableError"): lambda: fx.control.lqg(MACHINE, HOME, stroke=1e-300, effort=1e-300),
     ("nearest_physical", "DesignError"): lambda: fx.interchange.nearest_physical("mukherjee-ii"),
+    ("open_zeros", "ArgumentError"): lambda: fx.control.open_zeros(fx.linearise(MACHINE, HOME), "speed"),
     ("open_sweep", "OutputError"): lambda: fx.open_sweep("no-such-store.zarr"),
     ("optimise", "ArgumentError"): lambda: fx.optimise(MACHINE, [fx.Variable("legs.stiffness", 2.0, 1.0)]),
     ("optimise", "OutputError"): lambda: fx.optimise(MACHINE, [fx.Variable("platform.mass", 20, 40)], study=__file__),
@@ -168,6 +170,7 @@ PROVOKED = {
     ("robustness", "ArgumentError"): lambda: fx.robustness(MACHINE, [fx.Uncertain("legs.stiffness", 2.0)]),
     ("robustness", "PoseError"): lambda: fx.robustness(MACHINE, [fx.Uncertain("legs.stiffness", 0.1)], "everywhere"),
     ("root_locus", "ArgumentError"): lambda: fx.control.root_locus(MACHINE, HOME, gains=[-1.0, 1.0]),
+    ("sampling_time", "DesignError"): lambda: fx.control.sampling_time("precision-positioner", HOME),
     ("sampling_time", "ArgumentError"): lambda: fx.control.sampling_time(-1.0),
     ("sea_motion", "ArgumentError"): lambda: fx.excitation.sea_motion(
         fx.excitation.sea_spectrum(1, 9), {"z": lambda w: np.nan * w}, seed=0

@@ -1,9 +1,9 @@
-"""Root loci of decentralised active damping: integral force feedback and direct velocity feedback (see laws.py)."""
+"""Root loci of decentralised active damping: integral force feedback and direct velocity feedback."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Unpack
+from typing import get_args
 
 import numpy as np
 import xarray as xr
@@ -11,26 +11,58 @@ from numpy.typing import ArrayLike
 from scipy.linalg import eigh, null_space
 from scipy.optimize import linear_sum_assignment
 
+from flexapod.checks import one_of
 from flexapod.control.closed_loop_poles import least_damping
-from flexapod.control.controllers import ALL, GAIN_UNIT, Feedback, best_gain, default_gains, make
+from flexapod.control.controllers import ALL_LEGS, GAIN_UNIT, Feedback, check_legs, damping_law
+from flexapod.control.gain_search import ascending_gains, best_gain, default_gains
 from flexapod.control.plant import Plant, damping_ratios, poles
-from flexapod.conventions import Array, Complex
+from flexapod.conventions import Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import ArgumentError
-from flexapod.mechanics.linearisation import Linearisation, RestOptions, linearise
-from flexapod.pose import Pose
+from flexapod.mechanics.inputs import ZERO
+from flexapod.mechanics.linearisation import Linearisation, linearise
+from flexapod.pose import PoseLike
 
 
-def open_zeros(linear: Linearisation, feedback: Feedback, legs: Sequence[int] = ALL) -> Array:
-    """Frequencies, rad/s, to which the loops' poles go at high gain.
+def open_zeros(linear: Linearisation, feedback: Feedback, legs: Sequence[int] = ALL_LEGS) -> Array:
+    """Find the frequencies that the poles of active damping approach at high gain.
 
-    With friction left out, these are the natural frequencies of the machine (linear) without the stiffness of the
-    `legs` that have a loop (feedback "force"), or with these legs locked ("velocity"). Zeros of a force loop at which
-    the machine would topple are NaN. A velocity loop on all legs leaves none.
+    Parameters
+    ----------
+    linear : Linearisation
+        The hexapod linearised at a pose, from `flexapod.linearise`.
+    feedback : {"force", "velocity"}
+        Integral force feedback or direct velocity feedback.
+    legs : sequence of int, optional
+        Numbers, from 1 to 6, of the legs that have a loop.
 
-    Raises: nothing of its own.
-    Source: A. Preumont, Vibration Control of Active Structures (2011).
+    Returns
+    -------
+    ndarray, shape (n,)
+        Frequencies of the zeros, rad/s. Zeros of a force loop at which the platform would topple are NaN. Velocity
+        loops on all legs have no zeros.
+
+    Raises
+    ------
+    ArgumentError
+        If the feedback is unknown, or the legs are not different numbers from 1 to 6.
+
+    Notes
+    -----
+    Friction is left out. The zeros are the natural frequencies of the hexapod without the stiffness of the legs that
+    have a force loop, or with the legs locked that have a velocity loop [1]_.
+
+    References
+    ----------
+    .. [1] A. Preumont, Vibration Control of Active Structures, Springer (2011).
+
+    Examples
+    --------
+    >>> linear = fx.linearise(fx.load("cubic-isolator"))
+    >>> len(fx.control.open_zeros(linear, "velocity", legs=(5,)))
+    5
     """
+    one_of(feedback, "feedback", get_args(Feedback))
+    check_legs(legs)
     chosen = np.array(sorted(legs)) - 1
     K, H = 0.5 * (linear.K + linear.K.T), linear.H[:, chosen]
     if feedback == "force":
@@ -47,31 +79,79 @@ def open_zeros(linear: Linearisation, feedback: Feedback, legs: Sequence[int] = 
 
 def root_locus(
     hexapod: Hexapod,
-    pose: Pose,
+    pose: PoseLike | None = None,
     feedback: Feedback = "force",
     *,
     gains: ArrayLike | None = None,
-    legs: Sequence[int] = ALL,
+    legs: Sequence[int] = ALL_LEGS,
     leak: float = 0.0,
-    **rest: Unpack[RestOptions],
+    base: PoseLike | None = None,
+    force: ArrayLike = ZERO,
+    moment: ArrayLike = ZERO,
+    joint: JointModel = "universal",
 ) -> xr.Dataset:
-    """Poles over the gain of decentralised feedback ("force": integral, rad/s; "velocity": N s/m), and the best gain.
+    """Compute the poles over the gain of decentralised active damping, and the best gain.
 
-    gains: (n,) > 0; default: 400 that span the modes. legs, leak: as in `ForceFeedback`. Dataset over `gain`: `pole`
-    (gain, branch), rad/s, each branch followed from gain to gain; `damping_ratio`; `least_damping`, of the vibrating
-    poles. Over `zero_number`: `zero`, rad/s (see `open_zeros`). Attributes: best_gain, best_damping: the gain, refined
-    between samples, with the largest least damping.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The design.
+    pose : Pose or array_like, shape (6,), optional
+        Where the platform is held at rest: x, y, z in m, roll, pitch, yaw in rad. The home pose by default.
+    feedback : {"force", "velocity"}, optional
+        Integral force feedback (gain in rad/s) or direct velocity feedback (gain in N s/m).
+    gains : array_like, shape (n,), optional
+        Different gains > 0, at least two. By default several hundred that span the modes.
+    legs : sequence of int, optional
+        Numbers, from 1 to 6, of the legs that have a loop.
+    leak : float, optional
+        Leak of the force feedback, rad/s.
+    base : Pose or array_like, shape (6,), optional
+        Pose of the base in the inertial frame. The identity by default.
+    force, moment : array_like, shape (3,), optional
+        Static force (N) and moment (N m) on the platform at its reference point, in its frame.
+    joint : {"universal", "spin_free"}, optional
+        Model of the joints between base and legs.
 
-    Raises: ArgumentError for gains that are no row of numbers > 0, wrong legs or another feedback; PoseError and
-    SingularPoseError as `linearise`.
-    Source: A. Preumont, Vibration Control of Active Structures (2011).
+    Returns
+    -------
+    xarray.Dataset
+        Over ``gain``: ``pole`` (gain, branch) in rad/s, each branch followed from gain to gain; ``damping_ratio``
+        (gain, branch); ``least_damping``, that of the least damped vibrating pole. Over ``zero_number``: ``zero`` in
+        rad/s, see `open_zeros`. Over ``mode``: ``omega`` in rad/s, without control. The attributes ``best_gain`` and
+        ``best_damping`` are the gain, refined between samples, at which ``least_damping`` is largest, and its value.
+
+    Raises
+    ------
+    ArgumentError
+        If the gains, the legs, the leak or the feedback is invalid.
+    PoseError
+        If the pose is missing, a batch, or out of the legs' reach.
+    SingularPoseError
+        If no leg forces hold the platform at the pose.
+
+    Notes
+    -----
+    The root locus method for collocated actuators and sensors after Preumont [1]_: with zeros between the poles, every
+    mode gains damping at every gain, and loses it again beyond the best one.
+
+    References
+    ----------
+    .. [1] A. Preumont, Vibration Control of Active Structures, Springer (2011).
+
+    Examples
+    --------
+    >>> locus = fx.control.root_locus(fx.load("cubic-isolator"), leak=3.0, gains=np.geomspace(1, 100, 30))
+    >>> round(locus.attrs["best_gain"], 1), round(locus.attrs["best_damping"], 2)
+    (19.0, 0.27)
     """
-    plant = Plant(linearise(hexapod, pose, **rest))
-    row = np.sort(default_gains(plant, feedback) if gains is None else _row(gains))
-    legs = tuple(legs)
-    pole = _followed(np.stack([poles(plant, make(feedback, g, leak, legs).on(plant.linear)) for g in row]))
+    damping_law(feedback, 0.0, leak, legs)  # checks them
+    plant = Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint))
+    row = default_gains(plant, feedback) if gains is None else ascending_gains(np.sort(gains), 2)
+    row = np.sort(row)
+    pole = _followed(np.stack([poles(plant, damping_law(feedback, g, leak, legs).on(plant.linear)) for g in row]))
     least = np.array([least_damping(p) for p in pole])
-    gain, damping = best_gain(plant, lambda g: make(feedback, g, leak, legs), row)
+    gain, damping = best_gain(plant, lambda g: damping_law(feedback, g, leak, legs), row)
     zeros = open_zeros(plant.linear, feedback, legs)
     return xr.Dataset(
         {
@@ -94,15 +174,8 @@ def root_locus(
     )
 
 
-def _row(gains: ArrayLike) -> Array:
-    row = np.asarray(gains, dtype=np.float64)
-    if row.ndim != 1 or row.size < 2 or not np.isfinite(row).all() or not (row > 0).all():
-        raise ArgumentError(f"gains has shape {row.shape}; give a row of at least two finite gains > 0")
-    return row
-
-
 def _followed(pole: Complex) -> Complex:
-    """Rows of poles in an order in which every column moves little from row to row."""
+    """The rows of poles ordered such that every column moves little from row to row."""
     out = pole.copy()
     step = np.zeros(pole.shape[1], dtype=complex)
     for i in range(1, len(pole)):

@@ -1,4 +1,4 @@
-"""What the poles of a closed loop say: stable or not, how well damped, how near the natural frequencies."""
+"""Poles of a closed loop: stability, damping, and distance to the natural frequencies."""
 
 from __future__ import annotations
 
@@ -6,17 +6,32 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexapod.control.plant import Controller, Plant, damping_ratios, is_stable, poles
+from flexapod.control.linear_controller import Controller
+from flexapod.control.plant import Plant, damping_ratios, is_stable, poles
 from flexapod.conventions import Array, Complex
 
 
 class ClosedLoop(NamedTuple):
-    """pole: (n,) complex rad/s, by size. damping_ratio: (n,). omega: (6,) natural frequencies without control, rad/s.
+    """Poles of a hexapod under control, as `closed_loop` gives them.
 
-    distance: (n,) |pole - i omega|/omega to the nearest natural frequency. near: indices of vibrating poles nearer than
-    the bound. worst_damping: the least damping ratio of all poles. stable: whether all decay. controller: as used.
-
-    Source: conclusion 2.
+    Attributes
+    ----------
+    pole : ndarray of complex, shape (n,)
+        Poles, rad/s, by modulus.
+    damping_ratio : ndarray, shape (n,)
+        Damping ratio of each pole.
+    omega : ndarray, shape (6,)
+        Natural frequencies without control, rad/s.
+    distance : ndarray, shape (n,)
+        abs(pole - i omega)/omega for the nearest natural frequency.
+    near : tuple of int
+        Indices of the vibrating poles whose distance is below the bound asked for.
+    worst_damping : float
+        The smallest damping ratio of all poles.
+    stable : bool
+        Whether all poles decay.
+    controller : Controller
+        The controller of the loop.
     """
 
     pole: Complex
@@ -30,7 +45,7 @@ class ClosedLoop(NamedTuple):
 
 
 def assess(plant: Plant, controller: Controller, nearness: float = 0.1) -> ClosedLoop:
-    """The closed loop's poles and what is to be said of them."""
+    """Poles of the closed loop, with damping, stability and distance to the natural frequencies."""
     pole, omega = poles(plant, controller), plant.omega
     ratio = damping_ratios(pole)
     distance = distances(pole, omega)
@@ -39,8 +54,8 @@ def assess(plant: Plant, controller: Controller, nearness: float = 0.1) -> Close
     return ClosedLoop(pole, ratio, omega, distance, near, float(ratio.min()), bool(is_stable(pole, plant)), controller)
 
 
-def unstable_words(found: ClosedLoop) -> str:
-    """What is wrong with an unstable loop, and what to do."""
+def instability_message(found: ClosedLoop) -> str:
+    """What is wrong with an unstable loop, and the remedy."""
     worst = found.pole[int(np.argmax(found.pole.real))]
     if abs(worst.imag) < 1e-6 * abs(worst):
         worst = complex(worst.real)
@@ -48,13 +63,13 @@ def unstable_words(found: ClosedLoop) -> str:
     how = f"oscillates at {abs(worst.imag):.5g} rad/s and {growth}" if worst.imag else growth
     remedy = "reduce the gains" if found.controller.dt is None else "reduce the gains, or sample faster"
     return (
-        f"the machine is unstable with {found.controller.name}: the pole at {pole_words(worst)} rad/s {how}. To "
+        f"the machine is unstable with {found.controller.name}: the pole at {pole_text(worst)} rad/s {how}. To "
         f"cure it, {remedy}; an integral that takes the legs' static stiffness away needs a leak."
     )
 
 
-def pole_words(pole: complex) -> str:
-    """A pole and its conjugate, rad/s, in words."""
+def pole_text(pole: complex) -> str:
+    """A pole and its conjugate, rad/s, as text."""
     return f"{pole.real:.4g}" + (f" +- {abs(pole.imag):.5g}i" if pole.imag else "")
 
 

@@ -1,61 +1,127 @@
-"""Position control on the exact tangent: PD and PID laws, their poles, and how near these come to the machine's
-natural frequencies (the paper's conclusion 2)."""
+"""The closed loop of a control law, and maps of it over position gains, against the natural frequencies."""
 
 from __future__ import annotations
 
 import warnings
+from dataclasses import replace
 from itertools import product
-from typing import Unpack
+from typing import Literal
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from flexapod.control.closed_loop_poles import ClosedLoop, assess, distances, nearest, pole_words, unstable_words
+from flexapod.checks import not_negative, numbers, one_of
+from flexapod.control.closed_loop_poles import ClosedLoop, assess, distances, instability_message, nearest, pole_text
 from flexapod.control.controllers import PID
-from flexapod.control.plant import Law, Plant, damping_ratios, is_stable, poles
-from flexapod.conventions import Array, Complex
+from flexapod.control.linear_controller import ControlLaw, controller_for
+from flexapod.control.plant import Plant, damping_ratios, is_stable, poles
+from flexapod.conventions import Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, UnstableError
-from flexapod.mechanics.linearisation import RestOptions, linearise
-from flexapod.pose import Pose
+from flexapod.mechanics.inputs import ZERO
+from flexapod.mechanics.linearisation import linearise
+from flexapod.pose import PoseLike
+
+NO_CONTROL = PID()
 
 
 class GainWarning(UserWarning):
-    """Gains that put poles of the closed loop near natural frequencies of the machine.
+    """Warning of gains that put poles of the closed loop near natural frequencies.
 
-    Source: conclusion 2.
+    Notes
+    -----
+    There the platform may vibrate more than without control (the paper's conclusion 2).
+
+    Examples
+    --------
+    >>> import warnings
+    >>> with warnings.catch_warnings():
+    ...     warnings.simplefilter("ignore", fx.control.GainWarning)
+    ...     loop = fx.control.closed_loop(fx.load("cubic-isolator"))
+    >>> len(loop.near)
+    6
     """
 
 
 def closed_loop(
     hexapod: Hexapod,
-    pose: Pose,
-    law: Law,
+    pose: PoseLike | None = None,
+    controller: ControlLaw = NO_CONTROL,
     *,
     nearness: float = 0.1,
-    unstable: str = "raise",
-    **rest: Unpack[RestOptions],
+    unstable: Literal["raise", "keep"] = "raise",
+    base: PoseLike | None = None,
+    force: ArrayLike = ZERO,
+    moment: ArrayLike = ZERO,
+    joint: JointModel = "universal",
 ) -> ClosedLoop:
-    """Poles (rad/s) of the machine at a pose under a control law, on the exact tangent.
+    """Compute the poles of the hexapod under a controller, linearised at a pose.
 
-    law: a PID, a ForceFeedback or VelocityFeedback, or any Controller, sampled ones included. Warns (GainWarning) when
-    a pole lies within `nearness` of a natural frequency, as the paper demands. rest: as for `linearise`.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The design.
+    pose : Pose or array_like, shape (6,), optional
+        Where the platform is held at rest: x, y, z in m, roll, pitch, yaw in rad. The home pose by default.
+    controller : ControlLaw, optional
+        A PID, ForceFeedback or VelocityFeedback, or a Controller, which may be sampled. No control by default.
+    nearness : float, optional
+        Relative distance to a natural frequency below which a pole is reported as near.
+    unstable : {"raise", "keep"}, optional
+        Whether an unstable loop raises UnstableError or is returned.
+    base : Pose or array_like, shape (6,), optional
+        Pose of the base in the inertial frame. The identity by default.
+    force, moment : array_like, shape (3,), optional
+        Static force (N) and moment (N m) on the platform at its reference point, in its frame.
+    joint : {"universal", "spin_free"}, optional
+        Model of the joints between base and legs.
 
-    Raises: UnstableError for gains that make the machine unstable, unless unstable="keep"; PoseError and
-    SingularPoseError as `linearise`.
-    Source: conclusion 2.
+    Returns
+    -------
+    ClosedLoop
+        The poles, with their damping and their distance to the natural frequencies.
+
+    Raises
+    ------
+    ArgumentError
+        If an argument other than the pose is invalid.
+    UnstableError
+        If the loop is unstable and `unstable` is "raise".
+    PoseError
+        If the pose is missing, a batch, or out of the legs' reach.
+    SingularPoseError
+        If no leg forces hold the platform at the pose.
+
+    Warns
+    -----
+    GainWarning
+        If a vibrating pole lies within `nearness` of a natural frequency.
+
+    Notes
+    -----
+    The paper's conclusion 2 demands gains that keep the poles away from the natural frequencies. The hexapod is
+    linearised with exact derivatives (see `flexapod.linearise`); poles of a sampled loop are log(z)/dt.
+
+    Examples
+    --------
+    >>> hexapod = fx.load("cubic-isolator")
+    >>> loop = fx.control.closed_loop(hexapod, None, fx.control.VelocityFeedback(400.0))
+    >>> loop.stable, round(loop.worst_damping, 2)
+    (True, 0.67)
     """
-    plant = Plant(linearise(hexapod, pose, **rest))
-    controller = law.on(plant.linear)
-    found = assess(plant, controller, nearness)
-    if not found.stable and unstable != "keep":
-        raise UnstableError(unstable_words(found))
+    not_negative(nearness, "nearness")
+    one_of(unstable, "unstable", ("raise", "keep"))
+    plant = Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint))
+    law = controller_for(plant.linear, controller)
+    found = assess(plant, law, nearness)
+    if not found.stable and unstable == "raise":
+        raise UnstableError(instability_message(found))
     if found.near:
         first = found.near[0]
         warnings.warn(
-            f"{len(found.near)} poles of {controller.name} lie within {nearness:.0%} of a natural frequency, such as "
-            f"{pole_words(found.pole[first])} rad/s beside {nearest(found.pole[first], found.omega):.5g} rad/s; the "
+            f"{len(found.near)} poles of {law.name} lie within {nearness:.0%} of a natural frequency, such as "
+            f"{pole_text(found.pole[first])} rad/s beside {nearest(found.pole[first], found.omega):.5g} rad/s; the "
             "machine may vibrate more than without control. Move the gains away.",
             GainWarning,
             stacklevel=2,
@@ -65,31 +131,79 @@ def closed_loop(
 
 def gain_map(
     hexapod: Hexapod,
-    pose: Pose,
+    pose: PoseLike | None,
     kp: ArrayLike,
     kd: ArrayLike,
     *,
-    law: PID | None = None,
+    controller: PID = NO_CONTROL,
     nearness: float = 0.1,
-    **rest: Unpack[RestOptions],
+    base: PoseLike | None = None,
+    force: ArrayLike = ZERO,
+    moment: ArrayLike = ZERO,
+    joint: JointModel = "universal",
 ) -> xr.Dataset:
-    """Closed-loop poles over a range of proportional and derivative gains, kp (m,) and kd (n,).
+    """Compute the closed-loop poles over a range of proportional and derivative gains.
 
-    law: what else the loop is (space, actuator, ki, bandwidth); default: PD on the legs by forces. Dataset over
-    (kp, kd): `distance`, the least relative distance of a vibrating pole to a natural frequency (infinite when none
-    vibrates); `worst_damping`; `stable`; `near` (bool); `pole` (kp, kd, pole), rad/s. Warns (GainWarning) where gains
-    put poles within `nearness` of a natural frequency.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The design.
+    pose : Pose, array_like of shape (6,), or None
+        Where the platform is held at rest: x, y, z in m, roll, pitch, yaw in rad. None is the home pose.
+    kp : array_like, shape (m,)
+        Different proportional gains, in the units of `PID`.
+    kd : array_like, shape (n,)
+        Different derivative gains, in the units of `PID`.
+    controller : PID, optional
+        Everything else about the loop: space, actuator, integral gain and bandwidth. By default leg forces against leg
+        lengths and rates.
+    nearness : float, optional
+        Relative distance to a natural frequency below which a pole is reported as near.
+    base : Pose or array_like, shape (6,), optional
+        Pose of the base in the inertial frame. The identity by default.
+    force, moment : array_like, shape (3,), optional
+        Static force (N) and moment (N m) on the platform at its reference point, in its frame.
+    joint : {"universal", "spin_free"}, optional
+        Model of the joints between base and legs.
 
-    Raises: ArgumentError for gains that are no rows of numbers; PoseError and SingularPoseError as `linearise`.
-    Source: conclusion 2.
+    Returns
+    -------
+    xarray.Dataset
+        Over (kp, kd): ``distance``, the smallest relative distance of a vibrating pole to a natural frequency (infinite
+        if none vibrates); ``worst_damping``; ``stable``; ``near``; and ``pole`` (kp, kd, pole_number) in rad/s.
+
+    Raises
+    ------
+    ArgumentError
+        If the gains are not rows of different numbers, or another argument is invalid.
+    PoseError
+        If the pose is missing, a batch, or out of the legs' reach.
+    SingularPoseError
+        If no leg forces hold the platform at the pose.
+
+    Warns
+    -----
+    GainWarning
+        If some gains put a pole within `nearness` of a natural frequency.
+
+    Notes
+    -----
+    See `closed_loop`, and the paper's conclusion 2.
+
+    Examples
+    --------
+    >>> hexapod = fx.load("cubic-isolator")
+    >>> found = fx.control.gain_map(hexapod, None, kp=[2e3, 4e3], kd=[300.0, 400.0])
+    >>> bool(found.stable.all()), bool(found.near.any())
+    (True, False)
     """
-    rows = {"kp": _row(kp, "kp"), "kd": _row(kd, "kd")}
-    base = law or PID()
-    plant = Plant(linearise(hexapod, pose, **rest))
+    rows = {"kp": _different(kp, "kp"), "kd": _different(kd, "kd")}
+    not_negative(nearness, "nearness")
+    plant = Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint))
     shape = (rows["kp"].size, rows["kd"].size)
-    found = [_with(base, p, d).on(plant.linear) for p, d in product(*rows.values())]
-    pole = np.stack([poles(plant, controller) for controller in found]).reshape(*shape, -1)
-    dataset = _map(rows, pole, plant, base, nearness).assign_attrs(design=hexapod.name, digest=hexapod.digest)
+    laws = [replace(controller, kp=p, kd=d).on(plant.linear) for p, d in product(*rows.values())]
+    pole = np.stack([poles(plant, law) for law in laws]).reshape(*shape, -1)
+    dataset = _map(rows, pole, plant, controller, nearness).assign_attrs(design=hexapod.name, digest=hexapod.digest)
     near = dataset.near.values
     if near.any():
         warnings.warn(
@@ -101,7 +215,7 @@ def gain_map(
     return dataset
 
 
-def _map(rows: dict[str, Array], pole: Complex, plant: Plant, law: PID, nearness: float) -> xr.Dataset:
+def _map(rows: dict[str, Array], pole: Complex, plant: Plant, controller: PID, nearness: float) -> xr.Dataset:
     distance = np.where(pole.imag > 0, distances(pole, plant.omega), np.inf).min(axis=-1)
     grid = ("kp", "kd")
     return xr.Dataset(
@@ -113,31 +227,27 @@ def _map(rows: dict[str, Array], pole: Complex, plant: Plant, law: PID, nearness
             "pole": ((*grid, "pole_number"), pole, {"units": "rad/s"}),
         },
         {
-            "kp": ("kp", rows["kp"], {"long_name": "proportional gain", "units": _unit(law, 0)}),
-            "kd": ("kd", rows["kd"], {"long_name": "derivative gain", "units": _unit(law, 1)}),
+            "kp": ("kp", rows["kp"], {"long_name": "proportional gain", "units": _unit(controller, 0)}),
+            "kd": ("kd", rows["kd"], {"long_name": "derivative gain", "units": _unit(controller, 1)}),
         },
         {
-            "space": law.space,
-            "actuator": law.actuator,
+            "space": controller.space,
+            "actuator": controller.actuator,
             "nearness": nearness,
             "natural_frequencies_rad_s": plant.omega.tolist(),
         },
     )
 
 
-def _with(law: PID, kp: float, kd: float) -> PID:
-    return PID(float(kp), float(kd), law.ki, law.space, law.actuator, law.bandwidth)
-
-
-def _row(value: ArrayLike, name: str) -> Array:
-    row = np.atleast_1d(np.asarray(value, dtype=np.float64))
-    if row.ndim != 1 or not row.size or not np.isfinite(row).all() or np.unique(row).size != row.size:
+def _different(value: ArrayLike, name: str) -> Array:
+    row = numbers(np.atleast_1d(value), name)
+    if not row.size or np.unique(row).size != row.size:
         raise ArgumentError(f"{name} has shape {row.shape}; give a row of different, finite gains")
     return row
 
 
-def _unit(law: PID, rates: int) -> str:
+def _unit(controller: PID, rates: int) -> str:
     """Unit of a single gain, for a position (0) or a rate (1)."""
-    if law.actuator == "command":
+    if controller.actuator == "command":
         return ("1", "s")[rates]
-    return ("N/m", "N s/m")[rates] if law.space == "joint" else ("1/s2", "1/s")[rates]
+    return ("N/m", "N s/m")[rates] if controller.space == "joint" else ("1/s2", "1/s")[rates]

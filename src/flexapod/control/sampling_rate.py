@@ -1,4 +1,4 @@
-"""How fast a controller has to sample: the paper's conclusion 3, at a pose, along a path, or over a box of poses."""
+"""The sampling time that a controller needs: at poses, along a trajectory, or over a box of poses."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from flexapod.checks import positive, thread_count
+from flexapod.checks import positive, thread_count, whole
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import ArgumentError, PoseError
-from flexapod.mechanics.modes import advised_sampling_time as rule
-from flexapod.mechanics.modes import natural_modes
+from flexapod.errors import ArgumentError, PoseError, shown
+from flexapod.mechanics.inputs import as_hexapod
+from flexapod.mechanics.modes import advised_sampling_time, natural_modes
 from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
 from flexapod.workspace.box import Box
@@ -22,41 +22,78 @@ from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.region import RegionLike, as_region, home_of
 from flexapod.workspace.worst import SquaredFrequency
 
-_POINTS = 2**14
 _STARTS = 4
 
 
 def sampling_time(
-    source: Hexapod | float, region: Trajectory | RegionLike = None, *, joint: JointModel = "universal"
+    hexapod: Hexapod | float,
+    region: Trajectory | RegionLike = None,
+    *,
+    joint: JointModel = "universal",
+    samples: int = 2**14,
+    threads: int | None = None,
 ) -> float:
-    """Largest sensible sampling time of a controller, s: 2 pi/(20 omega_max).
+    """Compute the largest sensible sampling time of a controller.
 
-    source: a highest natural frequency omega_max, rad/s; or a Hexapod, of which omega_max is found in a region: at a
-    Pose (one or many; default: home), along a Trajectory, or over a Box or Workspace, refined between samples and from
-    the best of a Sobol sweep.
+    Parameters
+    ----------
+    hexapod : Hexapod or float
+        The design, or its highest natural frequency in rad/s.
+    region : Pose, array_like of shape (n, 6), Trajectory, Box, Workspace or PoseSet, optional
+        Where the highest natural frequency is sought; numbers are x, y, z in m, roll, pitch, yaw in rad. The home pose
+        by default.
+    joint : {"universal", "spin_free"}, optional
+        Model of the joints between base and legs.
+    samples : int, optional
+        Number of poses of a box that are sampled, before the highest are refined.
+    threads : int, optional
+        Number of threads. All cores by default.
 
-    Raises: PoseError where no pose can be computed; ArgumentError for a frequency that is not > 0.
-    Source: conclusion 3.
+    Returns
+    -------
+    float
+        Sampling time, s.
+
+    Raises
+    ------
+    ArgumentError
+        If the frequency is not positive, or the region or another argument is invalid.
+    DesignError
+        If `hexapod` is neither a Hexapod nor a number.
+    PoseError
+        If no pose of the region can be taken.
+
+    Notes
+    -----
+    The sampling time is 2 pi/(20 omega_max) after the paper's conclusion 3, with omega_max the highest natural
+    frequency. Along a trajectory it is refined between samples; over a box, from the highest poses of a Sobol sequence
+    with the gradient method L-BFGS-B.
+
+    Examples
+    --------
+    >>> hexapod = fx.load("cubic-isolator")
+    >>> print(f"{fx.control.sampling_time(hexapod):.3g}")
+    0.00621
     """
-    if not isinstance(source, Hexapod):
+    if isinstance(hexapod, float | int | np.number):
         if region is not None:
-            raise ArgumentError(f"{source!r} is a frequency and takes no region; give a Hexapod with {region!r}")
-        return rule(positive(source, "omega_max", "rad/s"))
+            raise ArgumentError(f"{hexapod!r} is a frequency and takes no region; give a Hexapod with {shown(region)}")
+        return advised_sampling_time(positive(hexapod, "omega_max", "rad/s"))
+    as_hexapod(hexapod)
     if isinstance(region, Trajectory):
-        highest = _on_path(lambda poses: natural_modes(source, poses, joint=joint).omega[..., 5], region)
+        highest = _on_path(lambda poses: natural_modes(hexapod, poses, joint=joint).omega[..., 5], region)
     else:
         where = as_region(region)
-        home = home_of(source, where)
+        home = home_of(hexapod, where)
         box = where.box(home)
-        if box is None:
-            poses = Pose.from_rpy(*where.rows(home, 0).T)
-            values = natural_modes(source, poses, joint=joint).omega[..., 5]
-            highest = float(np.nanmax(values)) if np.isfinite(values).any() else np.nan
+        if box is not None:
+            highest = _in_box(hexapod, box, joint, whole(samples, "samples"), thread_count(threads))
         else:
-            highest = _in_box(source, box, joint)
+            values = natural_modes(hexapod, Pose.from_rpy(*where.rows(home, 0).T), joint=joint).omega[..., 5]
+            highest = float(np.nanmax(values)) if np.isfinite(values).any() else np.nan
     if not np.isfinite(highest):
         raise PoseError("no leg can take any of these poses, so there is no highest frequency. Move them.")
-    return rule(highest)
+    return advised_sampling_time(highest)
 
 
 def _on_path(highest: Callable[[Pose], Array], path: Trajectory) -> float:
@@ -70,9 +107,9 @@ def _on_path(highest: Callable[[Pose], Array], path: Trajectory) -> float:
     return float(max(values[peak], -refined.fun))
 
 
-def _in_box(hexapod: Hexapod, box: Box, joint: JointModel) -> float:
-    rows = low_discrepancy(box, _POINTS).rows(0, _POINTS)
-    values = np.nan_to_num(evaluate(hexapod, rows, ("omega",), joint, thread_count(None))["omega"][:, 5])
+def _in_box(hexapod: Hexapod, box: Box, joint: JointModel, samples: int, threads: int) -> float:
+    rows = low_discrepancy(box, samples).rows(0, samples)
+    values = np.nan_to_num(evaluate(hexapod, rows, ("omega",), joint, threads)["omega"][:, 5])
     if not values.any():
         return np.nan
     square = SquaredFrequency(hexapod, joint, mode=6)

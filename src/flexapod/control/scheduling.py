@@ -1,9 +1,10 @@
-"""Gains that follow the pose: what a feedback's gain should be over the workspace."""
+"""Gain scheduling: the gain of a feedback at many poses."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, Unpack
+from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -11,155 +12,187 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from flexapod.control.closed_loop_poles import least_damping
-from flexapod.control.controllers import GAIN_UNIT, best_gain, default_gains, make
-from flexapod.control.plant import Law, Plant, poles
-from flexapod.conventions import AXES, Array, unit_of
+from flexapod.control.controllers import GAIN_UNIT, Feedback, damping_law
+from flexapod.control.gain_search import ascending_gains, best_gain, default_gains
+from flexapod.control.linear_controller import ControlLaw
+from flexapod.control.plant import Plant, poles
+from flexapod.conventions import AXES, Array, JointModel, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError, SingularPoseError
-from flexapod.mechanics.linearisation import RestOptions, linearise
-from flexapod.pose import Pose, rpy_matrix
+from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, single_pose, wrench
+from flexapod.mechanics.linearisation import linearise
+from flexapod.pose import Pose, PoseLike, rpy_matrix
 from flexapod.workspace.pose_sets import GridPoses, PoseSet
 from flexapod.workspace.region import RegionLike, poses_of
 
-STATUS = ("ok", "no_rest", "no_gain")
-Rule = str | Callable[[float], Law]
+Law = Callable[[float], ControlLaw]
 
 
 def gain_schedule(
     hexapod: Hexapod,
     region: RegionLike = None,
-    law: Rule = "force",
+    feedback: Feedback | Law = "force",
     *,
-    samples: int = 64,
-    seed: int = 0,
     gains: ArrayLike | None = None,
     damping: float | None = None,
     leak: float = 0.0,
+    samples: int = 64,
+    seed: int = 0,
+    base: PoseLike | None = None,
+    force: ArrayLike = ZERO,
+    moment: ArrayLike = ZERO,
+    joint: JointModel = "universal",
     progress: Callable[[float], Any] | None = None,
-    **rest: Unpack[RestOptions],
 ) -> xr.Dataset:
-    """The gain of a feedback at every pose of a region, such as `pose_grid(x=..., yaw=...)`.
+    """Find the gain of a feedback at every pose of a region.
 
-    region: poses, or a Box, Workspace or Trajectory, of which `samples` poses are taken (seed: of a box).
-    law: "force" or "velocity" (decentralised damping, gain in rad/s or N s/m), or a function from a gain to a law, as
-    `lambda g: PID(kp=1e5, kd=g)`; gains: ascending row to search, needed for a function. damping: the least gain that
-    gives every mode this damping ratio; None: the gain with the most damping. leak: rad/s, of "force".
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The design.
+    region : PoseSet, Pose, array_like of shape (..., 6), Box, Workspace or Trajectory, optional
+        The poses, such as ``pose_grid(x=..., yaw=...)``; numbers are x, y, z in m, roll, pitch, yaw in rad. The home
+        pose by default.
+    feedback : {"force", "velocity"} or callable, optional
+        Integral force feedback (gain in rad/s), direct velocity feedback (gain in N s/m), or a function from a gain to
+        a control law, such as ``lambda gain: fx.control.PID(kp=1e5, kd=gain)``.
+    gains : array_like, shape (n,), optional
+        Ascending gains > 0 to search, at least three; needed if `feedback` is a function.
+    damping : float, optional
+        Damping ratio between 0 and 1: the smallest gain is sought that gives it to every mode. By default the gain with
+        the most damping is sought.
+    leak : float, optional
+        Leak of the force feedback, rad/s.
+    samples : int, optional
+        Number of poses taken from a box, a workspace or a trajectory.
+    seed : int, optional
+        Seed of the poses in a box.
+    base : Pose or array_like, shape (6,), optional
+        Pose of the base in the inertial frame. The identity by default.
+    force, moment : array_like, shape (3,), optional
+        Static force (N) and moment (N m) on the platform at its reference point, in its frame.
+    joint : {"universal", "spin_free"}, optional
+        Model of the joints between base and legs.
+    progress : callable, optional
+        Called with the share done, from 0 to 1.
 
-    Dataset over the set's axes: `gain`; `least_damping` with it; `fixed_damping`, with the one gain that suits the
-    median pose; `status`: "ok", "no_rest" (no leg forces hold the pose), "no_gain" (none is stable, or gives the
-    damping asked for); other values are NaN there. On a grid, `schedule.gain.interp(x=..., yaw=...)` reads it between
-    poses. Attributes: fixed_gain.
+    Returns
+    -------
+    xarray.Dataset
+        Over the dimensions of the region: ``gain``; ``least_damping`` with it; ``fixed_damping``, with the median gain
+        at all poses; and ``status``: "ok", "no_rest" (no leg forces hold the pose) or "no_gain" (no gain is stable, or
+        gives the damping asked for). Other values are NaN where the status is not "ok". The attribute ``fixed_gain`` is
+        the median gain. On a grid, ``found.gain.interp(x=..., yaw=...)`` interpolates between the poses.
 
-    Raises: ArgumentError for gains that do not ascend or a damping ratio not between 0 and 1; PoseError for a wrong or
-    empty set of poses.
-    Source: own; A. Preumont (2011) for the laws.
+    Raises
+    ------
+    ArgumentError
+        If the gains do not ascend, the damping ratio is not between 0 and 1, or another argument is invalid.
+    PoseError
+        If the region or the base is not a pose, or the region is empty.
+
+    Notes
+    -----
+    At each pose the damping of the linearised closed loop is evaluated over the gains and refined between them; active
+    damping after A. Preumont, Vibration Control of Active Structures (2011).
+
+    Examples
+    --------
+    >>> poses = fx.pose_grid(z=[2.2, 2.6])
+    >>> found = fx.control.gain_schedule(fx.load("motion-base"), poses, "velocity", damping=0.3)
+    >>> found.least_damping.values.round(3)
+    array([0.3, 0.3])
     """
-    points = poses_of(hexapod, region, samples, seed)
+    base = _checked(hexapod, base, force, moment, joint)
+    poses = poses_of(hexapod, region, samples, seed)
     if damping is not None and not 0 < damping < 1:
         raise ArgumentError(f"damping is {damping}; a damping ratio between 0 and 1 is needed")
-    if callable(law) and gains is None:
-        raise ArgumentError("a law of your own needs `gains`, a row of gains to choose from")
-    rule = _Rule(law, None if gains is None else _ascending(gains), damping, leak)
-    rows = points.rows(0, points.count)
-    found = _search(hexapod, rows, rule, progress or (lambda share: None), rest)
-    gain = found.gain
+    if callable(feedback) and gains is None:
+        raise ArgumentError("a control law of your own needs `gains`, a row of gains to choose from")
+    law = feedback if callable(feedback) else partial(damping_law, feedback, leak=leak)
+    law(1.0)  # an unknown feedback or a wrong leak shows here
+    given = None if gains is None else ascending_gains(gains, 3)
+    rows = poses.rows(0, poses.count)
+    matrix = rpy_matrix(rows[:, 3:]) if rows.shape[1] == 6 else rows[:, 3:].reshape(-1, 3, 3)
+    plants: dict[int, Plant] = {}
+    gain, achieved, with_fixed = np.full((3, len(rows)), np.nan)
+    status = np.full(len(rows), "ok", "U8")
+    for i in range(len(rows)):
+        try:
+            pose = Pose(rows[i, :3], matrix[i])
+            plant = Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint))
+        except (PoseError, SingularPoseError):  # all other arguments have been checked
+            status[i] = "no_rest"
+        else:
+            plants[i] = plant
+            row = default_gains(plant, feedback)[::8] if given is None else given  # type: ignore[arg-type]
+            gain[i], achieved[i] = _choose(plant, law, row, damping)
+            if not np.isfinite(gain[i]):
+                status[i] = "no_gain"
+        if progress is not None:
+            progress((i + 1) / len(rows))
     fixed = float(np.nanmedian(gain)) if np.isfinite(gain).any() else np.nan
-    dataset = _dataset(points, rows, found)
-    if isinstance(law, str):
-        dataset.gain.attrs["units"] = GAIN_UNIT[law]
+    if np.isfinite(fixed):
+        for i, plant in plants.items():
+            with_fixed[i] = _damping(plant, law, fixed)
+    dataset = _dataset(poses, rows, {"gain": gain, "least_damping": achieved, "fixed_damping": with_fixed}, status)
+    if not callable(feedback):
+        dataset.gain.attrs["units"] = GAIN_UNIT[feedback]
     return dataset.assign_attrs(
         design=hexapod.name,
         digest=hexapod.digest,
-        law=law if isinstance(law, str) else "own",
+        law="own" if callable(feedback) else feedback,
         leak_rad_s=leak,
         fixed_gain=fixed,
     )
 
 
-class _Found(NamedTuple):
-    gain: Array
-    least_damping: Array
-    fixed_damping: Array
-    status: np.ndarray
+def _checked(
+    hexapod: Hexapod, base: PoseLike | None, force: ArrayLike, moment: ArrayLike, joint: JointModel
+) -> Pose | None:
+    """Raises an error for whatever is wrong at every pose, and would else be taken for a fault of the pose."""
+    as_hexapod(hexapod)
+    as_joint(joint)
+    wrench(force, moment, ())
+    return None if base is None else single_pose(hexapod, base, "base")
 
 
-def _search(hexapod: Hexapod, rows: Array, rule: _Rule, progress: Callable[[float], Any], rest: RestOptions) -> _Found:
-    matrix = rpy_matrix(rows[:, 3:]) if rows.shape[1] == 6 else rows[:, 3:].reshape(-1, 3, 3)
-    plants: dict[int, Plant] = {}
-    gain, achieved, with_fixed = np.full((3, len(rows)), np.nan)
-    status = np.full(len(rows), STATUS[0], "U8")
-    for i in range(len(rows)):
-        try:
-            plants[i] = Plant(linearise(hexapod, Pose(rows[i, :3], matrix[i]), **rest))
-        except (PoseError, SingularPoseError):
-            status[i] = STATUS[1]
-        else:
-            gain[i], achieved[i] = rule.choose(plants[i])
-            if not np.isfinite(gain[i]):
-                status[i] = STATUS[2]
-        progress((i + 1) / len(rows))
-    if np.isfinite(gain).any():
-        fixed = float(np.nanmedian(gain))
-        for i, plant in plants.items():
-            with_fixed[i] = rule.damping_with(plant, fixed)
-    return _Found(gain, achieved, with_fixed, status)
+def _damping(plant: Plant, law: Law, gain: float) -> float:
+    return least_damping(poles(plant, law(gain).on(plant.linear)))
 
 
-class _Rule:
-    """How the gain at one pose is chosen."""
-
-    def __init__(self, law: Rule, gains: Array | None, damping: float | None, leak: float) -> None:
-        self.law, self.gains, self.damping, self.leak = law, gains, damping, leak
-
-    def law_of(self, gain: float) -> Law:
-        return self.law(gain) if callable(self.law) else make(self.law, gain, self.leak)  # type: ignore[arg-type]
-
-    def damping_with(self, plant: Plant, gain: float) -> float:
-        return least_damping(poles(plant, self.law_of(gain).on(plant.linear)))
-
-    def choose(self, plant: Plant) -> tuple[float, float]:
-        """Gain and least damping, or NaN twice."""
-        row = default_gains(plant, self.law)[::8] if self.gains is None else self.gains  # type: ignore[arg-type]
-        if self.damping is None:
-            gain, damping = best_gain(plant, self.law_of, row)
-            return (gain, damping) if damping > 0 else (np.nan, np.nan)
-        enough = self.damping
-        values = np.array([self.damping_with(plant, g) for g in row])
-        reached = np.flatnonzero(values >= enough)
-        if not reached.size:
-            return np.nan, np.nan
-        first = int(reached[0])
-        if first == 0:
-            return float(row[0]), float(values[0])
-        gain = brentq(lambda g: self.damping_with(plant, g) - enough, row[first - 1], row[first])
-        return float(gain), enough
+def _choose(plant: Plant, law: Law, gains: Array, damping: float | None) -> tuple[float, float]:
+    """The gain at one pose and the least damping with it, or NaN twice."""
+    if damping is None:
+        gain, most = best_gain(plant, law, gains)
+        return (gain, most) if most > 0 else (np.nan, np.nan)
+    values = np.array([_damping(plant, law, g) for g in gains])
+    reached = np.flatnonzero(values >= damping)
+    if not reached.size:
+        return np.nan, np.nan
+    first = int(reached[0])
+    if first == 0:
+        return float(gains[0]), float(values[0])
+    gain = brentq(lambda g: _damping(plant, law, g) - damping, gains[first - 1], gains[first])
+    return float(gain), damping
 
 
-def _ascending(gains: ArrayLike) -> Array:
-    row = np.asarray(gains, dtype=np.float64)
-    if row.ndim != 1 or row.size < 3 or not np.isfinite(row).all() or not (row > 0).all() or (np.diff(row) <= 0).any():
-        raise ArgumentError(f"gains has shape {row.shape}; give at least three ascending gains > 0")
-    return row
-
-
-def _dataset(points: PoseSet, rows: Array, found: _Found) -> xr.Dataset:
-    words = {
+def _dataset(poses: PoseSet, rows: Array, values: dict[str, Array], status: np.ndarray) -> xr.Dataset:
+    names = {
         "gain": "gain",
         "least_damping": "least damping ratio with it",
         "fixed_damping": "least damping ratio with one gain for all poses",
     }
     variables: dict[str, Any] = {
-        name: (points.dims, getattr(found, name).reshape(points.shape), {"long_name": text})
-        for name, text in words.items()
+        name: (poses.dims, values[name].reshape(poses.shape), {"long_name": text}) for name, text in names.items()
     }
-    variables["status"] = (points.dims, found.status.reshape(points.shape))
+    variables["status"] = (poses.dims, status.reshape(poses.shape))
     coordinates: dict[str, Any] = {}
-    if isinstance(points, GridPoses):
-        for name in AXES:
-            axis = points.axes[name]
-            value = (name, axis) if name in points.dims else ((), axis[0])
-            coordinates[name] = (*value, {"units": unit_of(name)})
-    elif rows.shape[1] == 6:
-        for k, name in enumerate(AXES):
-            coordinates[name] = (points.dims, rows[:, k].reshape(points.shape), {"units": unit_of(name)})
+    for k, name in enumerate(AXES):
+        units = {"units": unit_of(name)}
+        if isinstance(poses, GridPoses):
+            axis = poses.axes[name]
+            coordinates[name] = (name, axis, units) if name in poses.dims else ((), axis[0], units)
+        elif rows.shape[1] == 6:
+            coordinates[name] = (poses.dims, rows[:, k].reshape(poses.shape), units)
     return xr.Dataset(variables, coordinates)

@@ -18,7 +18,8 @@ from matplotlib.patches import Rectangle
 
 from flexapod.control.closed_loop_poles import assess
 from flexapod.control.controllers import PID
-from flexapod.control.plant import Controller, Plant, held, joined, static
+from flexapod.control.linear_controller import Controller, static
+from flexapod.control.plant import Plant, held, joined
 from flexapod.control.sampled_simulation import simulate_control
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import load

@@ -15,7 +15,8 @@ from scipy.optimize import brentq
 
 from flexapod.control.closed_loop_poles import assess
 from flexapod.control.controllers import PID
-from flexapod.control.plant import Controller, Plant
+from flexapod.control.linear_controller import Controller
+from flexapod.control.plant import Plant
 from flexapod.control.sampled_simulation import simulate_control
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import load

@@ -16,7 +16,7 @@ from flexapod.cli.output.stages import Report, stages
 if TYPE_CHECKING:
     import xarray as xr
 
-    from flexapod.control.plant import Controller, Law
+    from flexapod.control.linear_controller import ControlLaw, Controller
     from flexapod.design.hexapod import Hexapod
     from flexapod.mechanics.linearisation import Linearisation
     from flexapod.pose import Pose
@@ -54,7 +54,7 @@ def command(**given: Any) -> None:
 class _Made:
     """A law with what was looked at to choose it."""
 
-    law: Law
+    law: ControlLaw
     gains: xr.Dataset | None = None
     locus: xr.Dataset | None = None
 
@@ -62,7 +62,7 @@ class _Made:
 def _find(hexapod: Hexapod, pose: Pose, options: Options, report: Report) -> ControlFindings:
     import numpy as np
 
-    from flexapod.control.isolation import controlled_transmissibility
+    from flexapod.control.controlled_response import controlled_transmissibility
     from flexapod.control.position_control import closed_loop
     from flexapod.control.sampling_rate import sampling_time
     from flexapod.mechanics.linearisation import linearise
@@ -105,7 +105,8 @@ def _made(hexapod: Hexapod, pose: Pose, tangent: Linearisation, options: Options
 def _damping(hexapod: Hexapod, pose: Pose, tangent: Linearisation, options: Options, dt: float) -> _Made:
     """A decentralised law; without a gain, that with the most damping when sampled."""
     from flexapod.control.active_damping import root_locus
-    from flexapod.control.controllers import best_gain, default_gains, make
+    from flexapod.control.controllers import damping_law
+    from flexapod.control.gain_search import best_gain, default_gains
     from flexapod.control.plant import Plant
 
     kind: Any = options.law
@@ -117,10 +118,10 @@ def _damping(hexapod: Hexapod, pose: Pose, tangent: Linearisation, options: Opti
         plant = Plant(tangent)
         gain, _ = best_gain(
             plant,
-            lambda g: make(kind, g, leak).on(tangent).sampled(dt, delay=options.delay),
+            lambda g: damping_law(kind, g, leak).on(tangent).sampled(dt, delay=options.delay),
             default_gains(plant, kind)[::5],
         )
-    return _Made(make(kind, gain, leak), locus=root_locus(hexapod, pose, kind, leak=leak, joint=options.joint))
+    return _Made(damping_law(kind, gain, leak), locus=root_locus(hexapod, pose, kind, leak=leak, joint=options.joint))
 
 
 def _pid(hexapod: Hexapod, pose: Pose, options: Options) -> _Made:
@@ -142,7 +143,9 @@ def _pid(hexapod: Hexapod, pose: Pose, options: Options) -> _Made:
     rows = [
         np.linspace(min(0.0, 2.5 * g), max(0.0, 2.5 * g), 41) if g else np.zeros(1) for g in (options.kp, options.kd)
     ]
-    gains = gain_map(hexapod, pose, *rows, law=law, joint=options.joint) if all(r.size > 1 for r in rows) else None
+    gains = (
+        gain_map(hexapod, pose, *rows, controller=law, joint=options.joint) if all(r.size > 1 for r in rows) else None
+    )
     return _Made(law, gains=gains)
 
 

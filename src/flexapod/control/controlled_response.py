@@ -1,0 +1,124 @@
+"""Transmissibility of base motion to the platform with and without control."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from flexapod.control.linear_controller import ControlLaw, Controller, controller_for
+from flexapod.control.plant import Plant
+from flexapod.conventions import AXES, Array, Complex, JointModel
+from flexapod.design.hexapod import Hexapod
+from flexapod.errors import ArgumentError
+from flexapod.mechanics.inputs import ZERO
+from flexapod.mechanics.linearisation import linearise
+from flexapod.pose import PoseLike
+
+
+def controlled_transmissibility(
+    hexapod: Hexapod,
+    pose: PoseLike | None,
+    controller: ControlLaw,
+    omega: ArrayLike,
+    *,
+    base: PoseLike | None = None,
+    force: ArrayLike = ZERO,
+    moment: ArrayLike = ZERO,
+    joint: JointModel = "universal",
+) -> xr.Dataset:
+    """Compute the transmissibility of base motion to the platform with and without control.
+
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The design.
+    pose : Pose, array_like of shape (6,), or None
+        Where the platform is held at rest: x, y, z in m, roll, pitch, yaw in rad. None is the home pose.
+    controller : ControlLaw
+        A PID, ForceFeedback or VelocityFeedback, or a Controller. A sampled one acts with its hold.
+    omega : array_like, shape (n,)
+        Angular frequencies > 0, rad/s; below pi/dt for a sampled controller.
+    base : Pose or array_like, shape (6,), optional
+        Pose of the base in the inertial frame. The identity by default.
+    force, moment : array_like, shape (3,), optional
+        Static force (N) and moment (N m) on the platform at its reference point, in its frame.
+    joint : {"universal", "spin_free"}, optional
+        Model of the joints between base and legs.
+
+    Returns
+    -------
+    xarray.Dataset
+        Complex ``controlled`` and ``passive`` (omega, output, base), the absolute displacement of the platform (m, rad)
+        per displacement of the base (m, rad); and ``leg_force`` (omega, leg, base), N per displacement of the base.
+
+    Raises
+    ------
+    ArgumentError
+        If a frequency is not positive or too high for a sampled controller, or another argument is invalid.
+    PoseError
+        If the pose is missing, a batch, or out of the legs' reach.
+    SingularPoseError
+        If no leg forces hold the platform at the pose.
+
+    Notes
+    -----
+    The response of the hexapod linearised with exact derivatives (see `flexapod.linearise`) in closed loop.
+
+    Examples
+    --------
+    >>> hexapod = fx.load("cubic-isolator")
+    >>> found = fx.control.controlled_transmissibility(hexapod, None, fx.control.VelocityFeedback(300.0), [30.0])
+    >>> passive, controlled = (abs(found[name].sel(output="z", base="z")) for name in ("passive", "controlled"))
+    >>> round(float(passive[0]), 1), round(float(controlled[0]), 1)
+    (9.3, 1.4)
+    """
+    w = np.atleast_1d(np.asarray(omega, dtype=np.float64))
+    if w.ndim != 1 or not w.size or not np.isfinite(w).all() or w.min() <= 0:
+        raise ArgumentError(f"omega has shape {w.shape}; give a row of finite frequencies > 0, rad/s")
+    plant = Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint))
+    law = controller_for(plant.linear, controller)
+    if law.dt is not None and w.max() >= np.pi / law.dt:
+        raise ArgumentError(
+            f"omega reaches {w.max():.5g} rad/s; a controller sampled every {law.dt:.5g} s has a response only "
+            f"below {np.pi / law.dt:.5g} rad/s"
+        )
+    controlled, force = _response(plant, w, law)
+    passive, _ = _response(plant, w, None)
+    grid = ("omega", "output", "base")
+    return xr.Dataset(
+        {
+            "controlled": (grid, controlled, {"long_name": "transmissibility with control"}),
+            "passive": (grid, passive, {"long_name": "transmissibility without control"}),
+            "leg_force": (("omega", "leg", "base"), force, {"long_name": "leg force per base displacement"}),
+        },
+        {"omega": ("omega", w, {"units": "rad/s"}), "output": list(AXES), "base": list(AXES)},
+        {"design": hexapod.name, "digest": hexapod.digest, "controller": law.name},
+    )
+
+
+def _response(plant: Plant, omega: Array, controller: Controller | None) -> tuple[Complex, Complex]:
+    """Absolute displacement and leg force per base displacement."""
+    s = 1j * omega[:, None, None]
+    base = np.concatenate([s**2 * np.eye(6), np.broadcast_to(np.eye(6), (*s.shape[:1], 6, 6))], axis=1)
+    right = np.concatenate([np.broadcast_to(plant.B, (*s.shape[:1], 12, 6)), plant.E @ base], axis=2)
+    z = np.linalg.solve(s * np.eye(12) - plant.A, right.astype(complex))
+    y = plant.C @ z + np.concatenate([np.broadcast_to(plant.D, (*s.shape[:1], *plant.D.shape)), plant.G @ base], axis=2)
+    by_force, by_base = y[..., :6], y[..., 6:]
+    force = np.zeros((omega.size, 6, 6), dtype=complex)
+    if controller is not None:
+        rows = plant.measured(controller.measures)
+        K = _gain_at(controller, omega)
+        force = np.linalg.solve(np.eye(6) - K @ by_force[:, rows], K @ by_base[:, rows])
+    rows = plant.measured(("acceleration",))
+    return (by_base[:, rows] + by_force[:, rows] @ force) / s**2, force
+
+
+def _gain_at(controller: Controller, omega: Array) -> Complex:
+    s = 1j * omega[:, None, None]
+    K = controller
+    at, hold = (s, 1.0) if K.dt is None else (np.exp(s * K.dt), (1 - np.exp(-s * K.dt)) / (s * K.dt))
+    if K.order == 0:
+        return np.asarray(hold * np.broadcast_to(K.D, (omega.size, *K.D.shape)), dtype=np.complex128)
+    inner = np.linalg.solve(at * np.eye(K.order) - K.A, np.broadcast_to(K.B, (omega.size, *K.B.shape)).astype(complex))
+    return np.asarray(hold * (K.C @ inner + K.D), dtype=np.complex128)
