@@ -41,7 +41,7 @@ def refusal(run, *arguments):
 
 
 def test_an_interrupt_is_not_a_fault(run, monkeypatch):
-    def stopped(*_):
+    def stopped(*_, **__):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("flexapod.mechanics.modes.natural_modes", stopped)

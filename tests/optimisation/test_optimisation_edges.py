@@ -17,7 +17,8 @@ from flexapod.optimisation.global_search import Study, _at_work, _conflict
 from flexapod.optimisation.local_search import finish
 from flexapod.optimisation.problem import Problem
 from flexapod.plots import optimisation
-from flexapod.report.studies.optimisation import front_page, optimal_page
+from flexapod.report import page
+from flexapod.report.studies import optimisation as studies
 
 BOX = fx.Box(x=(-0.01, 0.01), y=0, z=0.25, roll=0, pitch=0, yaw=0)
 
@@ -137,8 +138,8 @@ def test_the_dense_sweep_that_breaks_a_constraint_is_said_so(positioner):
     found = fx.optimise(positioner, heavier(), constraints=[fx.optimisation.TotalMass()], trials=0)
     check = replace(found.verification.checks[0], kept=False)
     broken = replace(found, verification=replace(found.verification, checks=(check,)))
-    assert "The dense sweep breaks: total mass. Search with more poses." in optimal_page(broken, "x")
-    assert "The dense sweep breaks" not in optimal_page(found, "x")
+    assert "The dense sweep breaks: total mass. Search with more poses." in page(studies.optimal(broken, "x"))
+    assert "The dense sweep breaks" not in page(studies.optimal(found, "x"))
     figure = optimisation.search(found)  # no trial: the begin and the end alone
     assert len(figure.axes[0].get_xticks()) == 0
 
@@ -159,10 +160,10 @@ def test_a_front_keeps_the_bound_of_what_it_trades(front, positioner):
 
 
 def test_a_front_is_named_after_the_design_begun_with(front, positioner):
-    page = front_page(front, "least index at home")
-    assert f"<h1>{positioner.name}</h1>" in page
-    assert "total mass, kg" in page
-    assert positioner.digest in page
+    text = page(studies.front(front, "least index at home"))
+    assert f"<h1>{positioner.name}</h1>" in text
+    assert "total mass, kg" in text
+    assert positioner.digest in text
 
 
 def test_a_front_far_from_its_trials_has_a_logarithmic_axis(front):

@@ -13,9 +13,9 @@ from flexapod.mechanics.cautions import Caution, pose_cautions
 from flexapod.plots import machine_3d, response
 from flexapod.plots import path as plots_path
 from flexapod.report import findings
-from flexapod.report.page import page
-from flexapod.report.studies import path
-from flexapod.report.terminal import summary
+from flexapod.report import page as whole
+from flexapod.report.studies import machine, path
+from flexapod.report.terminal import show
 
 
 @pytest.fixture(autouse=True)
@@ -68,6 +68,10 @@ def test_spectra_of_leg_forces_are_in_newtons():
     assert moved.axes[3].get_ylabel() == "RMS below, rad/s²"
 
 
+def page(found):
+    return whole(machine.study(found))
+
+
 def report(hexapod, pose, **options):
     return findings.gather(hexapod, pose, **options)
 
@@ -115,7 +119,7 @@ def test_the_summary_of_a_singular_pose_has_no_influences(capsys):
 
     hexapod = fx.load("mukherjee-i")
     flat = hexapod.replace({"platform.joints": hexapod.base_joints.tolist()})
-    summary(report(flat, fx.Pose([0, 0, 0.5])), Console(width=200))
+    show(machine.study(report(flat, fx.Pose([0, 0, 0.5]))), Console(width=200))
     told = capsys.readouterr().out
     assert "What matters most" not in told
     assert "The pose is singular" in told
@@ -126,6 +130,6 @@ def test_a_path_that_leaves_the_limits_says_when():
     way = fx.Trajectory(fx.Pose.from_rpy([0.0, 0.05], 0, [0.85, 1.1]), [0.0, 2.0])
     found = path.PathFindings(way, fx.path_index(hexapod, way), fx.paths.path_loads(hexapod, way), 0.3)
     words = path.cautions(found)
-    assert any("The path leaves the design's limits for" in text and "first at" in text for text in words)
+    assert any("The path leaves the design's limits for" in one.text and "first at" in one.text for one in words)
     figure = plots_path.index_along(found.along, None)
     assert "bound" not in [text.get_text() for text in figure.axes[0].get_legend().get_texts()]

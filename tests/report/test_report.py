@@ -15,10 +15,17 @@ from flexapod import plots
 from flexapod.cli import main
 from flexapod.plots import style
 from flexapod.pose import rotation_from_vector
-from flexapod.report import gather, page
+from flexapod.report import gather
+from flexapod.report import page as whole
 from flexapod.report.numbers import brief, shown
+from flexapod.report.studies.machine import study
 
 matplotlib.use("Agg")
+
+
+def page(findings):
+    return whole(study(findings))
+
 
 SINGULAR = fx.Pose.from_rpy(0, 0, 0.244, 0, 0, np.pi / 2)  # of precision-positioner: hexagon over hexagon, turned
 
@@ -68,8 +75,8 @@ class Elements(HTMLParser):
 
 @pytest.mark.parametrize("name", fx.packaged_designs())
 def test_the_page_is_whole_and_needs_nothing_else(reports, name):
-    findings, html = reports(name)
-    elements = Elements(html)
+    findings, said = reports(name)
+    elements = Elements(said)
     tags = [tag for tag, _ in elements.found]
     assert tags.count("svg") == 8  # machine, frequencies, six modes
     assert not {"script", "link", "img", "iframe"} & set(tags)
@@ -77,11 +84,11 @@ def test_the_page_is_whole_and_needs_nothing_else(reports, name):
         for key in ("src", "href", "xlink:href"):
             target = attributes.get(key)
             assert target is None or target.startswith("#"), f"<{tag} {key}={target}>"
-    assert "@import" not in html
-    assert not re.search(r"url\((?!#)", html)
+    assert "@import" not in said
+    assert not re.search(r"url\((?!#)", said)
     ids = [attributes["id"] for _, attributes in elements.found if "id" in attributes]
     assert len(ids) == len(set(ids))
-    assert {target[1:] for target in re.findall(r'(?:href="|url\()(#[^")]+)', html)} <= set(ids)
+    assert {target[1:] for target in re.findall(r'(?:href="|url\()(#[^")]+)', said)} <= set(ids)
     text = " ".join(elements.words)
     for omega in findings.omega:
         assert shown(omega, 6) in text
@@ -106,7 +113,7 @@ def test_the_neutral_colours_follow_light_and_dark(reports, name):
 def test_findings_are_the_librarys():
     h = fx.load("motion-base")
     pose = fx.Pose.from_rpy(0.2, -0.1, 2.5, 0.05, 0.1, -0.2)
-    f = gather(h, pose, "spin_free")
+    f = gather(h, pose, joint="spin_free")
     omega = fx.natural_modes(h, pose, joint="spin_free").omega
     damped = fx.linearise(h, pose, joint="spin_free").modes()
     assert np.array_equal(f.omega, omega)
@@ -205,10 +212,10 @@ def test_what_to_beware_of_is_said(reports):
 
 def test_names_cannot_break_the_page():
     h = fx.load("motion-base").replace({"name": '<script>alert("x")</script> & co'})
-    html = page(gather(h, fx.home_pose(h)))
-    assert "<script" not in html
-    assert "&lt;script&gt;" in html
-    Elements(html)
+    said = page(gather(h, fx.home_pose(h)))
+    assert "<script" not in said
+    assert "&lt;script&gt;" in said
+    Elements(said)
 
 
 def test_the_command_prints_a_summary_and_writes_the_page(tmp_path, capsys):

@@ -1,7 +1,11 @@
-"""The report of a machine at a pose: `gather` its findings, then show them as a page (HTML) or in the terminal."""
+"""Reports: studies as data, with one renderer for the terminal, one for pages, and one for JSON.
 
-from flexapod.report.findings import Findings, as_dict, gather
-from flexapod.report.page import page
-from flexapod.report.terminal import summary
+    report.gather(hexapod, pose)     # in a notebook: the report of the machine
+    report.page(report.study(report.gather(hexapod, pose)))
 
-__all__ = ["Findings", "as_dict", "gather", "page", "summary"]
+May import: the subject packages, plots and paper.
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -11,10 +11,8 @@ import matplotlib
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
-from flexapod import plots
-from flexapod.mechanics.modes import NaturalModes
 from flexapod.plots import style
-from flexapod.report.findings import Findings
+from flexapod.report.study import Drawing
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -32,41 +30,16 @@ FOLLOWS = {
 _STYLE: Any = {"svg.fonttype": "none", "svg.hashsalt": "flexapod", "font.family": "sans-serif", "path.simplify": True}
 
 
-def machine(f: Findings) -> str:
-    """The machine in 3-D."""
-    return _svg(lambda ax: plots.machine(f.hexapod, f.pose, ax), "machine", "The machine in 3-D", (7, 6))
+def inline(drawing: Drawing) -> str:
+    """A drawing as an <svg> element whose words are text."""
+    return drawn(drawing.draw, drawing.name, drawing.title, tight=drawing.tight)
 
 
-def mode(f: Findings, number: int) -> str:
-    """One mode, numbered from 1."""
-    modes = NaturalModes(f.omega, f.shape)
-    words = f"Mode {number}: {f.descriptions[number - 1].text}"
-    return _svg(lambda ax: plots.mode(f.hexapod, f.pose, modes, number, ax), f"mode{number}", words)
-
-
-def frequencies(f: Findings) -> str:
-    """The six frequencies on a logarithmic scale."""
-    labels = [description.dominant for description in f.descriptions]
-    tangent = f.damped.omega if f.damped else None
-    figure = Figure(figsize=(7, 2.7))
+def drawn(draw: Callable[[], Figure], prefix: str, words: str, tight: bool = False) -> str:
+    """A figure as <svg>; `prefix` tells its names from those of others on the page. tight: cut to what lines cover."""
     with matplotlib.rc_context(_STYLE):
-        plots.frequencies(f.omega, figure.add_subplot(), tangent, labels)
-        return _inline(figure, "frequencies", "Six natural frequencies in Hz")
-
-
-def drawn(draw: Callable[[], Figure], prefix: str, words: str) -> str:
-    """A figure that a function of the plots makes; `prefix` tells its names from those of others on the page."""
-    with matplotlib.rc_context(_STYLE):
-        return _inline(draw(), prefix, words)
-
-
-def _svg(draw: Callable[..., object], prefix: str, words: str, size: tuple[float, float] | None = None) -> str:
-    """3-D axes drawn on: a figure of a size (inches) with its axes, or, without one, cut to what the lines cover."""
-    with matplotlib.rc_context(_STYLE):
-        figure = Figure(figsize=size or (4, 4))
-        ax = figure.add_subplot(projection="3d")
-        draw(ax)
-        return _inline(figure, prefix, words, None if size else _extent(figure, ax))
+        figure = draw()
+        return _inline(figure, prefix, words, _extent(figure, figure.axes[0]) if tight else None)
 
 
 def _extent(figure: Figure, ax: Axes) -> Bbox:

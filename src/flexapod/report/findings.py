@@ -11,13 +11,14 @@ from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
 from flexapod.mechanics.cautions import SINGULAR, Caution, mode_clusters, platform_radius, pose_cautions
+from flexapod.mechanics.inputs import as_hexapod, single_pose
 from flexapod.mechanics.joint_limits import JointAngles, joint_angles, leg_distance
 from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
 from flexapod.mechanics.linearisation import DampedModes, linearise
 from flexapod.mechanics.mode_shapes import EnergyShares, ModeDescription, describe_modes, energy_shares
 from flexapod.mechanics.modes import advised_sampling_time, natural_modes
 from flexapod.mechanics.statics import Equilibrium, hold
-from flexapod.pose import Pose
+from flexapod.pose import Pose, PoseLike
 from flexapod.report.influence import Influence, influences
 
 _NOTHING = 1e-12  # of the highest frequency: what is below is rounding at a singular pose
@@ -58,21 +59,92 @@ class Findings:
         """Largest sensible sampling time, s."""
         return advised_sampling_time(self.omega[-1])
 
+    def to_dict(self) -> dict[str, Any]:
+        """The findings under names that carry their units; arrays stay arrays, what is not available is None."""
+        from flexapod import __version__
+
+        return {
+            "flexapod": __version__,
+            "design": self.hexapod.name,
+            "digest": self.hexapod.digest,
+            "changes": self.changes,
+            "pose_m_deg": [*self.pose.position, *np.degrees(self.pose.rpy)],
+            "joint": self.joint,
+            "stability_index_rad_s": self.omega[0],
+            "omega_rad_s": self.omega,
+            "frequency_hz": self.omega / TWO_PI,
+            "mode_shapes": self.shape,
+            "descriptions": [mode.text for mode in self.descriptions],
+            "strain_energy_share_legs_modes": self.shares.strain,
+            "kinetic_energy_share_platform_legs_modes": self.shares.kinetic,
+            "condition_number": self.conditioning.metres,
+            "condition_number_scaled": self.conditioning.scaled,
+            "characteristic_length_m": self.conditioning.length,
+            "sampling_time_s": self.sampling_time,
+            "leg_lengths_m": self.leg_length,
+            "leg_distance_m": self.leg_distance,
+            "universal_angle_deg": np.degrees(self.angles.universal),
+            "spherical_angle_deg": np.degrees(self.angles.spherical),
+            "static_leg_force_n": self.rest.leg_force if self.rest else None,
+            "unstretched_length_m": self.rest.unstretched_length if self.rest else None,
+            "tangent": _damped_dict(self.damped) if self.damped else None,
+            "influences": [one._asdict() for one in self.influences] if self.influences else None,
+            "warnings": [caution.text for caution in self.cautions],
+        }
+
+    def _repr_html_(self) -> str:
+        """The report in a frame of its own, for a notebook."""
+        from flexapod.report.studies.machine import study
+
+        return study(self)._repr_html_()
+
 
 def gather(
     hexapod: Hexapod,
-    pose: Pose,
+    pose: PoseLike | None = None,
+    *,
     joint: JointModel = "universal",
     characteristic_length: float | None = None,
     changes: tuple[str, ...] = (),
 ) -> Findings:
-    """Everything a report says of a machine at one pose.
+    """Gather everything that a report says of a machine at one pose.
 
-    characteristic_length: m, for the condition number without units; default: the platform's joint radius.
-    changes: what was changed in the design, in words, to be said beside its name.
-    Raises PoseError at a pose that no leg can take. At a singular pose the index is zero and what needs leg forces is
-    None.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose or array_like, optional
+        One pose: a Pose, or x, y, z (m), roll, pitch, yaw (rad). Default: the home pose.
+    joint : {"universal", "spin_free"}, optional
+        Model of the base joints.
+    characteristic_length : float, optional
+        Length in m by which the moments of the unitless condition number are divided. Default: the mean radius of the
+        platform's joints.
+    changes : tuple of str, optional
+        What was changed in the design, in words, to be said beside its name.
+
+    Returns
+    -------
+    Findings
+        The results. In a notebook they show themselves as a page.
+
+    Raises
+    ------
+    PoseError
+        If a leg cannot take the pose.
+
+    Notes
+    -----
+    At a singular pose the index is zero, and what needs leg forces is None. The results are those of the library's
+    functions at the pose; `mechanics.cautions` holds the thresholds of the cautions.
+
+    Examples
+    --------
+    >>> found = fx.report.gather(fx.load("motion-base"))
+    >>> round(found.omega[0], 2), [one.code for one in found.cautions]
+    (77.57, ['near_repeated'])
     """
+    pose = single_pose(as_hexapod(hexapod), pose)
     omega, shape = natural_modes(hexapod, pose, joint=joint)
     shares = energy_shares(hexapod, pose, joint=joint)
     length = platform_radius(hexapod) if characteristic_length is None else characteristic_length
@@ -114,40 +186,6 @@ def _at_rest(hexapod: Hexapod, pose: Pose, joint: JointModel) -> tuple[Equilibri
         return hold(hexapod, pose), linearise(hexapod, pose, joint=joint).modes()
     except SingularPoseError:
         return None, None
-
-
-def as_dict(f: Findings) -> dict[str, Any]:
-    """The findings under names that carry their units; arrays stay arrays, what is not available is None."""
-    from flexapod import __version__
-
-    return {
-        "flexapod": __version__,
-        "design": f.hexapod.name,
-        "digest": f.hexapod.digest,
-        "changes": f.changes,
-        "pose_m_deg": [*f.pose.position, *np.degrees(f.pose.rpy)],
-        "joint": f.joint,
-        "stability_index_rad_s": f.omega[0],
-        "omega_rad_s": f.omega,
-        "frequency_hz": f.omega / TWO_PI,
-        "mode_shapes": f.shape,
-        "descriptions": [mode.text for mode in f.descriptions],
-        "strain_energy_share_legs_modes": f.shares.strain,
-        "kinetic_energy_share_platform_legs_modes": f.shares.kinetic,
-        "condition_number": f.conditioning.metres,
-        "condition_number_scaled": f.conditioning.scaled,
-        "characteristic_length_m": f.conditioning.length,
-        "sampling_time_s": f.sampling_time,
-        "leg_lengths_m": f.leg_length,
-        "leg_distance_m": f.leg_distance,
-        "universal_angle_deg": np.degrees(f.angles.universal),
-        "spherical_angle_deg": np.degrees(f.angles.spherical),
-        "static_leg_force_n": f.rest.leg_force if f.rest else None,
-        "unstretched_length_m": f.rest.unstretched_length if f.rest else None,
-        "tangent": _damped_dict(f.damped) if f.damped else None,
-        "influences": [one._asdict() for one in f.influences] if f.influences else None,
-        "warnings": [caution.text for caution in f.cautions],
-    }
 
 
 def _damped_dict(damped: DampedModes) -> dict[str, Any]:

@@ -1,12 +1,15 @@
-"""Numbers as they are shown to people."""
+"""Numbers, poses and names as they are shown to people. Loads no NumPy, so that commands start at once."""
 
 from __future__ import annotations
 
 import math
+import re
+from typing import TYPE_CHECKING
 
-import numpy as np
+if TYPE_CHECKING:
+    from flexapod.conventions import Array
+    from flexapod.pose import Pose
 
-from flexapod.pose import Pose
 
 DASH = "\u2013"
 
@@ -44,9 +47,26 @@ def percent(share: float, digits: int = 0) -> str:
 def pose_words(pose: Pose) -> str:
     """A pose in m and degrees."""
     x, y, z = (f"{value + 0.0:.6g}" for value in pose.position)
-    turned = np.degrees(pose.rpy)
+    turned = [math.degrees(angle) for angle in pose.rpy]
     words = f"x {x}, y {y}, z {z} m"
-    if np.abs(turned).max() > 1e-9:
-        roll, pitch, yaw = (f"{value + 0.0:.5g}" for value in np.where(np.abs(turned) < 1e-9, 0.0, turned))
+    if max(map(abs, turned)) > 1e-9:
+        roll, pitch, yaw = (f"{0.0 if abs(value) < 1e-9 else value:.5g}" for value in turned)
         words += f", roll {roll}\u00b0, pitch {pitch}\u00b0, yaw {yaw}\u00b0"
     return words
+
+
+def pose_numbers(pose: Pose) -> list[float]:
+    """A pose as the six numbers of `--pose`: m and degrees."""
+    return [*pose.position.tolist(), *(math.degrees(angle) for angle in pose.rpy)]
+
+
+def six_words(pose: Array) -> str:
+    """Six numbers (m, rad) in mm and degrees."""
+    x, y, z = (brief(1e3 * v) for v in pose[:3])
+    roll, pitch, yaw = (brief(math.degrees(v)) for v in pose[3:])
+    return f"x {x}, y {y}, z {z} mm, roll {roll}, pitch {pitch}, yaw {yaw} deg"
+
+
+def file_name(name: str) -> str:
+    """A design's name as a file's: nothing in it that a file system or a shell could take amiss."""
+    return re.sub(r"[^\w.-]+", "-", name).strip("-.") or "hexapod"

@@ -1,78 +1,63 @@
-"""The report in the terminal: the same findings, in short."""
+"""Studies in the terminal: the main numbers, the tables, and the cautions."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-import numpy as np
-from rich.table import Table
+from rich.table import Table as Grid
 from rich.text import Text
 
-from flexapod.conventions import TWO_PI
-from flexapod.report.findings import Findings
-from flexapod.report.influence import leading
-from flexapod.report.numbers import percent, pose_words, shown
+from flexapod.report.numbers import percent, shown
+from flexapod.report.study import Bars, Column, Drawing, Row, Study, Table, shown_on
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-SHOWN = {"geometry": 2, "mass": 2, "stiffness": 1}  # so many sensitivities of each kind
+
+def show(study: Study, out: Console) -> None:
+    """Print a study."""
+    out.print(Text.assemble((study.hexapod.name, "bold"), f": {study.about}"), soft_wrap=True)
+    for row in shown_on(study.rows, "terminal"):
+        out.print(Text(f"  {_words(row)}"), soft_wrap=True)
+    for section in study.sections:
+        for item in shown_on(section.items, "terminal"):
+            if not isinstance(item, Drawing):
+                _item(item, section.title, out)
+    for caution in study.cautions:
+        out.print(Text.assemble(("Warning: ", "bold yellow"), caution.text), soft_wrap=True)
 
 
-def summary(f: Findings, out: Console) -> None:
-    """Print the summary."""
-    changed = f" with {', '.join(f.changes)}" if f.changes else ""
-    out.print(Text.assemble((f.hexapod.name, "bold"), f"{changed} at {pose_words(f.pose)}, joint model {f.joint}"))
-    out.print()
-    out.print(_key(f))
-    out.print(_frequencies(f))
-    out.print(_legs(f))
-    if f.influences:
-        out.print(Text("What matters most for the index", style="bold"))
-        out.print(_influences(f))
-    for caution in f.cautions:
-        out.print(Text.assemble(("Warning: ", "bold yellow"), caution.text))
+def _words(row: Row) -> str:
+    value = row.value if isinstance(row.value, str) else shown(row.value, row.digits)
+    return " ".join(filter(None, (row.label, value, row.unit, row.note)))
 
 
-def _key(f: Findings) -> Table:
-    table = Table.grid(padding=(0, 2))
-    index = f"{shown(f.omega[0], 6)} rad/s = {shown(f.omega[0] / TWO_PI, 5)} Hz"
-    c = f.conditioning
-    table.add_row("Dynamic stability index", Text(index, style="bold"))
-    table.add_row(
-        "Condition number of H",
-        f"{shown(c.metres, 5)} in metres, {shown(c.scaled)} with moments over {shown(c.length, 3)} m",
-    )
-    table.add_row("Sampling time at most", f"{shown(1e3 * f.sampling_time, 3)} ms")
-    return table
+def _item(item: Table | Bars, title: str, out: Console) -> None:
+    out.print(Text(item.title or title, style="bold"), soft_wrap=True)
+    out.print(_bars(item) if isinstance(item, Bars) else _table(item))
 
 
-def _frequencies(f: Findings) -> Table:
-    table = Table()
-    for title in ("mode", "rad/s", "Hz", "tangent\nrad/s", "damping\nratio"):
-        table.add_column(title, justify="right", no_wrap=True)
-    table.add_column("motion")
-    for i, description in enumerate(f.descriptions):
-        tangent, ratio = (f.damped.omega[i], f.damped.damping_ratio[i]) if f.damped else (None, None)
-        numbers = (shown(f.omega[i], 6), shown(f.omega[i] / TWO_PI, 5), shown(tangent, 6), shown(ratio, 3))
-        table.add_row(str(i + 1), *numbers, Text(description.text.split(", turning")[0]))
-    return table
+def _table(table: Table) -> Grid:
+    grid = Grid(box=None, pad_edge=False, padding=(0, 2, 0, 0))
+    columns: Sequence[Column] = shown_on(table.columns, "terminal")
+    for column in columns:
+        wordy = any(isinstance(value, str) and any(map(str.isalpha, value)) for value in column.values)
+        heading = "\n".join(filter(None, (column.title, column.unit)))
+        grid.add_column(heading, justify="left" if wordy else "right", no_wrap=not wordy, vertical="top")
+    for i in range(len(columns[0].values)):
+        grid.add_row(*(_cell(column, i) for column in columns))
+    return grid
 
 
-def _legs(f: Findings) -> Table:
-    table = Table()
-    for title in ("leg", "length\nmm", "static force\nN", "universal\ndeg", "spherical\ndeg"):
-        table.add_column(title, justify="right", no_wrap=True)
-    angles = np.degrees([f.angles.universal, f.angles.spherical])
-    for i in range(6):
-        force = f.rest.leg_force[i] if f.rest else None
-        degrees = (f"{angles[0, i]:.2f}", f"{angles[1, i]:.2f}")
-        table.add_row(str(i + 1), shown(1e3 * f.leg_length[i], 6), shown(force), *degrees)
-    return table
+def _cell(column: Column, i: int) -> Text:
+    value = column.values[i]
+    marked = column.marked is not None and bool(column.marked[i])
+    return Text(value if isinstance(value, str) else shown(value, column.digits), style="bold red" if marked else "")
 
 
-def _influences(f: Findings) -> Table:
-    table = Table.grid(padding=(0, 2))
-    for one in leading(f.influences or [], SHOWN):
-        table.add_row("  " + one.change, Text(percent(one.effect, 3), justify="right"))
-    return table
+def _bars(bars: Bars) -> Grid:
+    grid = Grid.grid(padding=(0, 2))
+    for i in bars.brief:
+        grid.add_row("  " + bars.names[i], Text(percent(bars.effects[i], 3), justify="right"))
+    return grid

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.report.numbers import file_name, pose_numbers
 
 if TYPE_CHECKING:
     from flexapod.conventions import JointModel
@@ -41,10 +42,10 @@ def command(
     hexapod, where = common.machine(design, changes, pose)
     from flexapod.plots.animation import animate_mode
 
-    path = Path(f"{common.file_name(hexapod.name)}-mode-{mode}.gif") if out is None else out
+    path = Path(f"{file_name(hexapod.name)}-mode-{mode}.gif") if out is None else out
     factor = animate_mode(hexapod, where, mode, path, joint=joint, exaggeration=exaggeration)
     if as_json:
         found = {"design": hexapod.name, "mode": mode, "exaggeration": factor, "file": str(path)}
-        common.print_json({**found, "pose_m_deg": common.pose_numbers(where)})
+        common.print_json({**found, "pose_m_deg": pose_numbers(where)})
     else:
         click.echo(f"Wrote {path}: mode {mode}, motion shown {factor:,.6g} times larger")

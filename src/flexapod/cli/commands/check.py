@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from flexapod.cli.options import common
+from flexapod.report.numbers import pose_numbers
 
 if TYPE_CHECKING:
     from flexapod.design.hexapod import Hexapod
@@ -43,7 +44,7 @@ def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
 
     condition = unitless_condition(hexapod, pose)
     values = (
-        common.pose_numbers(pose),
+        pose_numbers(pose),
         kinematics.inverse_kinematics(hexapod, pose),
         joint_limits.leg_distance(hexapod, pose),
         kinematics.condition_number(hexapod, pose),

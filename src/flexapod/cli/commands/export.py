@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.report.numbers import file_name, pose_numbers
 
 if TYPE_CHECKING:
     from flexapod.conventions import JointModel
@@ -67,13 +68,13 @@ def command(
     given = common.load_design(design, changes)
     where = common.chosen_pose(given, pose)
     hexapod = nearest(given) if nearest_physical else given
-    files = _write(kind, out or Path(f"{common.file_name(hexapod.name)}{SUFFIXES[kind]}"), hexapod, where, joint)
+    files = _write(kind, out or Path(f"{file_name(hexapod.name)}{SUFFIXES[kind]}"), hexapod, where, joint)
     omega, before = (natural_modes(machine, where, joint=joint).omega for machine in (hexapod, given))
     written = [str(file) for file in files]
     found = {
         "design": hexapod.name,
         "digest": hexapod.digest,
-        "pose_m_deg": common.pose_numbers(where),
+        "pose_m_deg": pose_numbers(where),
         "format": kind,
         "files": written,
         "bodies_replaced": hexapod != given,

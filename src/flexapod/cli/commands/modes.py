@@ -8,6 +8,7 @@ import click
 
 from flexapod.cli.options import common
 from flexapod.conventions import TWO_PI
+from flexapod.report.numbers import pose_numbers
 
 if TYPE_CHECKING:
     from flexapod.conventions import Array, JointModel
@@ -41,7 +42,7 @@ def command(
             {
                 "design": hexapod.name,
                 "digest": hexapod.digest,
-                "pose_m_deg": common.pose_numbers(where),
+                "pose_m_deg": pose_numbers(where),
                 "joint": joint,
                 "omega_rad_s": omega,
                 "frequency_hz": omega / TWO_PI,

@@ -119,11 +119,11 @@ def _record(part: Part) -> dict[str, Any]:
 
 
 def _page(parts: list[Part], out: Path) -> dict[str, Any]:
-    from flexapod.report.studies import paper
+    from flexapod.report import paper_page
 
-    common.write_file(out / PAGE, paper.page(parts))
-    common.write_file(out / "comparison.csv", paper.comparison(parts).to_csv())
-    return {"file": str(out / PAGE), "statements": dict(paper.verdicts(parts))}
+    common.write_file(out / PAGE, paper_page.page(parts))
+    common.write_file(out / "comparison.csv", paper_page.comparison(parts).to_csv())
+    return {"file": str(out / PAGE), "statements": dict(paper_page.verdicts(parts))}
 
 
 def _print(part: Part, out: Path) -> None:

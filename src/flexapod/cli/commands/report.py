@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.cli.output.results import emit
 
 if TYPE_CHECKING:
     from flexapod.conventions import JointModel
@@ -31,23 +32,9 @@ def command(
 
     DESIGN is a packaged design's name (see `flexapod designs`) or the path of a .toml file.
     """
+    from flexapod.report.findings import gather
+    from flexapod.report.studies.machine import study
+
     hexapod, where = common.machine(design, changes, pose)
-    from flexapod.report import findings
-
-    found = findings.gather(hexapod, where, joint, characteristic_length, changes)
-    file = None
-    if out is not None or not as_json:
-        directory = common.output_directory(Path() if out is None else out)
-        file = directory / f"{common.file_name(hexapod.name)}.html"
-    if not as_json:
-        from flexapod.report.terminal import summary
-
-        summary(found, common.console())
-    if file is not None:
-        from flexapod.report.page import page
-
-        common.write_file(file, page(found))
-    if as_json:
-        common.print_json({**findings.as_dict(found), "html": None if file is None else str(file)})
-    else:
-        click.echo(f"Report: {file}")
+    found = gather(hexapod, where, joint=joint, characteristic_length=characteristic_length, changes=changes)
+    emit(study(found), common.place(out, as_json), as_json, listed="html")

@@ -10,6 +10,7 @@ import click
 from flexapod.cli.options import common
 from flexapod.conventions import AXES, LEGS
 from flexapod.errors import ArgumentError
+from flexapod.report.numbers import pose_numbers
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -370,7 +371,7 @@ def _as_json(case: _Case, studies: dict[str, xr.Dataset], files: list[Path]) -> 
     result: dict[str, Any] = {
         "design": case.hexapod.name,
         "digest": case.hexapod.digest,
-        "pose_m_deg": common.pose_numbers(case.pose),
+        "pose_m_deg": pose_numbers(case.pose),
         **{key: case.given[key] for key in ("joint", "loss_factor")},
         "point_m": case.given["point"],
         "from": case.given["source"],

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
-from flexapod.cli.commands.optimise import out_option, threads_option, where_options
-from flexapod.cli.options import common, problem
+from flexapod.cli.options import common
+from flexapod.cli.options.optimise import out_option, threads_option, where_options
+from flexapod.cli.output.results import emit
 from flexapod.cli.output.stages import stages
-
-if TYPE_CHECKING:
-    from flexapod.optimisation.uncertainty import Robustness
 
 
 @click.command()
@@ -54,70 +52,8 @@ def command(design: str, changes: tuple[str, ...], out: Path | None, as_json: bo
     \b
     flexapod robust motion-base --uncertain legs.stiffness=15% --payload 0:500 --payload-at -0.5:0.5 -0.5:0.5 0.5:1.5
     """
-    from flexapod.optimisation.uncertainty import Payload, robustness
+    from flexapod.cli.studies.robust import compute
 
-    hexapod = common.load_design(design, changes)
-    over = problem.where(hexapod, given["pose"], given["box"], given["around"])
-    straying = problem.uncertain(given["uncertain"])
-    if given["payload"] is not None:
-        at = tuple(problem.span("--payload-at", text) for text in given["payload_at"])
-        straying.append(Payload(problem.span("--payload", given["payload"]), at))  # type: ignore[arg-type]
-    if not straying:
-        raise click.UsageError("nothing strays. Give --uncertain KEY=SPREAD or --payload LEAST:LARGEST.")
-    options = {name: given[name] for name in ("samples", "poses", "sensitivity", "joint", "seed", "threads")}
     with stages(as_json) as report:
-        found = robustness(hexapod, straying, over, progress=report, **options)
-    files = []
-    words = "home" if over is None else repr(over)
-    if out is not None or not as_json:
-        files = _write(found, hexapod, words, common.output_directory(Path() if out is None else out))
-    if as_json:
-        common.print_json(
-            {"design": hexapod.name, "digest": hexapod.digest, "over": words, **_plain(found), "files": files}
-        )
-        return
-    _show(found, words)
-    for file in files:
-        click.echo(f"wrote {file}")
-
-
-def _write(found: Robustness, hexapod: Any, over: str, directory: Path) -> list[str]:
-    from flexapod.plots import optimisation
-    from flexapod.report.studies.optimisation import robust_page
-
-    page, figure = (directory / f"{common.file_name(hexapod.name)}-robust.{kind}" for kind in ("html", "png"))
-    common.write_file(page, robust_page(found, hexapod, f"at {over}"))
-    common.save_figure(optimisation.spread(found), figure)
-    return [str(page), str(figure)]
-
-
-def _plain(found: Robustness) -> dict[str, Any]:
-    told: dict[str, Any] = {
-        "nominal_rad_s": found.nominal,
-        "mean_rad_s": found.mean,
-        "deviation_rad_s": found.deviation,
-        "quantiles_rad_s": found.quantiles,
-        "worst_rad_s": found.worst,
-        "worst_at": found.worst_at,
-        "samples": found.samples.sizes["sample"],
-    }
-    if found.sensitivity is not None:
-        names = found.sensitivity.parameter.values.tolist()
-        for kind in ("first", "total", "first_confidence", "total_confidence"):
-            told[f"sobol_{kind}"] = dict(zip(names, found.sensitivity[kind].values.tolist(), strict=True))
-    return told
-
-
-def _show(found: Robustness, over: str) -> None:
-    click.echo(f"index at {over}: {found.nominal:.6g} rad/s as designed")
-    click.echo(f"  mean {found.mean:.6g}, deviation {found.deviation:.4g} rad/s")
-    click.echo("  " + ", ".join(f"{100 * q:g} %: {value:.6g}" for q, value in found.quantiles.items()))
-    click.echo(f"  worst case {found.worst:.6g} rad/s, where")
-    for name, value in found.worst_at.items():
-        click.echo(f"    {name} = {value:.6g}")
-    if found.sensitivity is not None:
-        click.echo("  shares of the variance, with interactions (95 % confidence):")
-        told = found.sensitivity.sortby("total", ascending=False)
-        for name in told.parameter.values[:8].tolist():
-            one = told.sel(parameter=name)
-            click.echo(f"    {name}: {float(one.total):.3f} ± {float(one.total_confidence):.3f}")
+        found = compute(common.load_design(design, changes), given, report)
+    emit(found, common.place(out, as_json), as_json)

@@ -12,6 +12,7 @@ import click
 from flexapod.cli.options import common
 from flexapod.cli.options.drives import QUANTITY, drive_options, drives
 from flexapod.conventions import AXES
+from flexapod.report.numbers import pose_numbers
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -192,7 +193,7 @@ def _as_json(hexapod: Hexapod, pose: Pose, dataset: xr.Dataset, took: float, fil
     return {
         "design": hexapod.name,
         "digest": hexapod.digest,
-        "pose_m_deg": common.pose_numbers(pose),
+        "pose_m_deg": pose_numbers(pose),
         "joint": dataset.attrs["joint"],
         "duration_s": float(dataset.time[-1]),
         "samples": dataset.sizes["time"],

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -159,11 +158,6 @@ def pose_or_none(hexapod: Hexapod, six: tuple[float, ...] | None) -> Pose | None
     return Pose.from_rpy(*six[:3], *(math.radians(angle) for angle in six[3:]))
 
 
-def pose_numbers(pose: Pose) -> list[float]:
-    """A pose as the six numbers of `--pose`: m and degrees."""
-    return [*pose.position.tolist(), *(math.degrees(angle) for angle in pose.rpy)]
-
-
 def output_directory(path: Path) -> Path:
     """The directory, made if it is not there. Raises UsageError where that cannot be."""
     try:
@@ -173,9 +167,9 @@ def output_directory(path: Path) -> Path:
     return path
 
 
-def file_name(name: str) -> str:
-    """A design's name as a file's: nothing in it that a file system or a shell could take amiss."""
-    return re.sub(r"[^\w.-]+", "-", name).strip("-.") or "hexapod"
+def place(out: Path | None, as_json: bool) -> Path | None:
+    """Where files go: --out, or else the current directory; with --json nowhere unless --out is given."""
+    return None if out is None and as_json else out or Path()
 
 
 def write_file(path: Path, text: str) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from pathlib import Path as File
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 COLUMNS = ("t", "x", "y", "z", "roll", "pitch", "yaw")
 
 
-def read(file: File, ends: Ends) -> Trajectory:
+def read(file: Path, ends: Ends) -> Trajectory:
     """The path of a file. Raises UsageError, with the line, for what is no such file."""
     import numpy as np
 

@@ -1,13 +1,14 @@
-"""Progress of a run over many poses, on standard error: share, rate, time gone and left, poses with a status."""
+"""Progress on standard error: of a run over many poses, and of the trials of a search."""
 
 from __future__ import annotations
 
 from types import TracebackType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.progress import (
     BarColumn,
+    MofNCompleteColumn,
     Progress,
     TaskID,
     TaskProgressColumn,
@@ -68,3 +69,39 @@ def _short(number: float) -> str:
         if number >= size:
             return f"{number / size:.3g} {letter}"
     return f"{number:.3g}"
+
+
+class TrialProgress:
+    """Called with trials finished, trials wanted, and the best index so far."""
+
+    def __init__(self) -> None:
+        columns = (
+            TextColumn("{task.description}"),
+            BarColumn(),
+            MofNCompleteColumn(),
+            TextColumn("{task.fields[best]}"),
+            TimeElapsedColumn(),
+            TextColumn("left"),
+            TimeRemainingColumn(),
+        )
+        self._progress = Progress(*columns, console=Console(stderr=True))
+        self._task: Any = None
+
+    def __enter__(self) -> TrialProgress:
+        self._progress.start()
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._progress.stop()
+
+    def __call__(self, done: int, wanted: int, best: float) -> None:
+        if self._task is None:
+            self._task = self._progress.add_task("trials", total=wanted, best="")
+        words = f"best {best:.5g} rad/s" if best == best else "none feasible yet"
+        finishing = done >= wanted
+        self._progress.update(
+            self._task,
+            completed=done,
+            best=words,
+            description="finishing by gradients, verifying" if finishing else "trials",
+        )

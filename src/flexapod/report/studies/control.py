@@ -1,28 +1,34 @@
-"""The short report of a control law on a machine at a pose."""
+"""A control law on a machine at a pose, as a study."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from flexapod import plots
 from flexapod.control.closed_loop_poles import ClosedLoop
 from flexapod.conventions import TWO_PI
 from flexapod.design.hexapod import Hexapod
-from flexapod.plots import control
+from flexapod.mechanics.cautions import Caution
 from flexapod.pose import Pose
-from flexapod.report import html
-from flexapod.report.numbers import DASH, pose_words, shown
+from flexapod.report.numbers import DASH, pose_numbers, pose_words, shown
+from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
+
+RMS = ("rms_acceleration", "predicted_rms_acceleration", "rms_displacement")
 
 
-class ControlFindings(NamedTuple):
-    """All that is said about a control law. continuous, sampled: its closed loops; gains, locus, run: where made."""
+@dataclass(frozen=True)
+class ControlFindings:
+    """What was computed about a control law. ideal, sampled: its closed loops; gains, locus, run: where made."""
 
     pose: Pose
-    continuous: ClosedLoop
+    ideal: ClosedLoop
     sampled: ClosedLoop
     recommended: float
     response: xr.Dataset
@@ -31,52 +37,87 @@ class ControlFindings(NamedTuple):
     run: xr.Dataset | None = None
     axis: str = "z"
 
-
-def page(hexapod: Hexapod, f: ControlFindings) -> str:
-    """The page as HTML."""
-    cards = [
-        ("Worst damping ratio, sampled", shown(f.sampled.worst_damping, 3), ""),
-        ("without sampling", shown(f.continuous.worst_damping, 3), ""),
-        ("Sampling time", shown(1e3 * (f.sampled.controller.dt or np.nan), 3), "ms"),
-        ("at most", shown(1e3 * f.recommended, 3), "ms"),
-        ("RMS acceleration, control over none", *_lowered(f)),
-    ]
-    subtitle = f"{f.continuous.controller.name} at {pose_words(f.pose)}, on the exact tangent."
-    sections = [html.beware(cautions(f)), _poles(f), _gains(f), _locus(f), _response(f), _run(f)]
-    return html.short(hexapod, "control", subtitle, cards, sections)
+    @property
+    def dt(self) -> float:
+        """Sampling time, s."""
+        return self.sampled.controller.dt or np.nan
 
 
-def figures(f: ControlFindings) -> dict[str, Callable[[], Figure]]:
-    """The report's figures by name, each as a function that draws it."""
-    found: dict[str, Callable[[], Figure]] = {}
-    gains, locus, run = f.gains, f.locus, f.run
-    if gains is not None:
-        found["gains"] = lambda: control.gain_map(gains)
-    if locus is not None:
-        found["locus"] = lambda: control.root_locus(locus)
-    found["transmissibility"] = lambda: control.isolation(f.response, ("x", "z"))
-    if run is not None:
-        found["run"] = lambda: control.controlled_run(run, f.axis)
-    return found
+def study(hexapod: Hexapod, f: ControlFindings) -> Study:
+    """The study of a control law."""
+    drawings = [
+        _drawing("gains", "Which gains", "gain_map", f.gains, "Each pair of gains by the distance of its poles to the "
+                 "natural frequencies and by its worst damping."),
+        _drawing("locus", "Root locus", "root_locus", f.locus, "Poles over the gain, from the machine's own (crosses) "
+                 "to the zeros (circles), and the least damping."),
+        _drawing("transmissibility", "Transmissibility", "isolation", f.response, "Displacement of the platform per "
+                 "displacement of the base, of the tangent, with the sampled controller.", axes=("x", "z")),
+        _drawing("run", "On the moving base", "controlled_run", f.run, "The full equations of motion on a shaking "
+                 "base, with sampled measurement, held forces and what the hardware leaves of them. Bars: root mean "
+                 "squares over those without control; marks: what the tangent predicts.", axis=f.axis),
+    ]  # fmt: skip
+    there = [drawing for drawing in drawings if drawing is not None]
+    sections = [Section(drawing.title, [drawing, *_run_table(f, drawing.name)]) for drawing in there]
+    return Study(
+        hexapod=hexapod,
+        subject="control",
+        about=f"{f.ideal.controller.name} at {pose_words(f.pose)}, on the exact tangent.",
+        data=_data(hexapod, f),
+        rows=_rows(f),
+        sections=[Section("Closed loop", [_poles(f)]), *sections],
+        cautions=cautions(f),
+        files={**{f"control-{drawing.name}.png": drawing.draw for drawing in there}, "control.html": None},
+    )
 
 
-def cautions(f: ControlFindings) -> list[str]:
+def _drawing(name: str, title: str, plot: str, data: xr.Dataset | None, words: str, **given: Any) -> Drawing | None:
+    if data is None:
+        return None
+    draw: Callable[..., Figure] = getattr(plots.control, plot)
+    return Drawing(name, title, partial(draw, data, **given), words)
+
+
+def cautions(f: ControlFindings) -> list[Caution]:
     """What to beware of in the loop."""
     found = []
-    dt = f.sampled.controller.dt
-    if dt is not None and dt > f.recommended * (1 + 1e-9):
-        found.append(
-            f"The sampling time of {1e3 * dt:.4g} ms is above 2\u03c0/(20 \u03c9) = {1e3 * f.recommended:.4g} ms, with "
-            "\u03c9 the highest natural frequency; sample faster."
+    if f.dt > f.recommended * (1 + 1e-9):
+        text = (
+            f"The sampling time of {1e3 * f.dt:.4g} ms is above 2\u03c0/(20 \u03c9) = {1e3 * f.recommended:.4g} ms, "
+            "with \u03c9 the highest natural frequency; sample faster."
         )
+        found.append(Caution("sampling", text, {"dt": f.dt, "recommended": f.recommended}))
     if f.sampled.near:
-        found.append(
+        text = (
             f"{len(f.sampled.near)} poles of the closed loop lie within 10 % of a natural frequency; there the machine "
             "may vibrate more than without control."
         )
+        found.append(Caution("near_frequency", text, {"poles": len(f.sampled.near)}))
     if f.run is not None and f.run.attrs["saturated"] > 0:
-        found.append(f"The actuators were at their limit in {f.run.attrs['saturated']:.1%} of the samples.")
+        share = f.run.attrs["saturated"]
+        found.append(Caution("saturated", f"The actuators were at their limit in {share:.1%} of the samples.",
+                             {"share": share}))  # fmt: skip
     return found
+
+
+def _rows(f: ControlFindings) -> list[Row]:
+    loop = f.sampled
+    advised = f"ms (at most {1e3 * f.recommended:.4g} ms advised), order {loop.controller.order}"
+    rows = [
+        Row("Worst damping ratio, sampled", loop.worst_damping, digits=3, on="page"),
+        Row("without sampling", f.ideal.worst_damping, digits=3, on="page"),
+        Row("Sampling time", 1e3 * f.dt, "ms", 3, on="page"),
+        Row("at most", 1e3 * f.recommended, "ms", 3, on="page"),
+        Row("RMS acceleration, control over none", *_lowered(f), on="page"),
+        Row("natural frequencies", "  ".join(f"{w:.5g}" for w in loop.omega), "rad/s", on="terminal"),
+        Row("sampled every", f"{1e3 * f.dt:.4g}", advised, on="terminal"),
+        Row("worst damping ratio", f"{loop.worst_damping:.4g}",
+            note=f"(without sampling {f.ideal.worst_damping:.4g})", on="terminal"),
+    ]  # fmt: skip
+    if f.locus is not None:
+        best, at = f.locus.attrs["best_damping"], f.locus.attrs["best_gain"]
+        note = f"at gain {at:.5g} {f.locus.gain.attrs['units']}"
+        rows.append(Row("most damping without sampling", f"{best:.4g}", note=note, on="terminal"))
+    return rows
 
 
 def _lowered(f: ControlFindings) -> tuple[str, str]:
@@ -86,70 +127,70 @@ def _lowered(f: ControlFindings) -> tuple[str, str]:
     return shown(float(rms.sel(case="controlled") / rms.sel(case="passive")), 3), f"along {f.axis}"
 
 
-def _poles(f: ControlFindings) -> str:
-    rows = []
-    upper = [k for k, p in enumerate(f.sampled.pole) if p.imag >= 0]
-    for number, k in enumerate(upper, start=1):
-        pole = f.sampled.pole[k]
-        near = f'<td class="over">{shown(f.sampled.distance[k], 3)}</td>'
-        far = shown(f.sampled.distance[k], 3)
-        rows.append(
-            [
-                f"{number}",
-                shown(pole.real, 5),
-                shown(pole.imag, 5),
-                shown(abs(pole) / TWO_PI, 4),
-                shown(f.sampled.damping_ratio[k], 3),
-                near if k in f.sampled.near else far,
-            ]
-        )
-    head = ["pole", "real, rad/s", "imaginary, rad/s", "|p|, Hz", "damping ratio", "distance to a natural frequency"]
-    omega = ", ".join(shown(w, 5) for w in f.sampled.omega)
+def _poles(f: ControlFindings) -> Table:
+    loop = f.sampled
+    upper = [k for k, pole in enumerate(loop.pole) if pole.imag >= 0]
+    pole = loop.pole[upper]
+    omega = ", ".join(shown(w, 5) for w in loop.omega)
     note = (
         f"Poles of the sampled loop as s = log(z)/dt, upper half plane. Natural frequencies without control: {omega} "
         "rad/s. Distances are relative; those below 0.1 are marked."
     )
-    return "<h2>Closed loop</h2>\n" + html.table(head, rows, note)
+    near = [k in loop.near for k in upper]
+    columns = [
+        Column("pole", [str(number + 1) for number in range(len(upper))]),
+        Column("real", pole.real, "rad/s", 5),
+        Column("imaginary", pole.imag, "rad/s", 5),
+        Column("|p|", np.abs(pole) / TWO_PI, "Hz"),
+        Column("damping ratio", loop.damping_ratio[upper], digits=3),
+        Column("distance to a natural frequency", loop.distance[upper], digits=3, marked=near),
+    ]
+    return Table(columns, note, on="page")
 
 
-def _gains(f: ControlFindings) -> str:
-    words = "Each pair of gains by the distance of its poles to the natural frequencies and by its worst damping."
-    return _drawn(f, "gains", "Which gains", words)
+def _run_table(f: ControlFindings, name: str) -> list[Table]:
+    if name != "run" or f.run is None:
+        return []
+    units = [str(unit).replace("2", "\u00b2") for unit in f.run.acceleration_unit.values]
+
+    def rms(variable: str, case: str) -> list[str]:
+        values = f.run[variable].sel(case=case).values  # type: ignore[index]
+        return [f"{shown(float(value), 3)} {unit}" for value, unit in zip(values, units, strict=True)]
+
+    columns = [Column("axis", [str(axis) for axis in f.run.axis.values])]
+    for case, title in (("passive", "no control"), ("controlled", "control")):
+        columns.append(Column(title, rms("rms_acceleration", case)))
+        columns.append(Column("tangent", rms("predicted_rms_acceleration", case)))
+    return [Table(columns, "Root mean square absolute acceleration.", "RMS absolute acceleration")]
 
 
-def _locus(f: ControlFindings) -> str:
-    words = "Poles over the gain, from the machine's own (crosses) to the zeros (circles), and the least damping."
-    return _drawn(f, "locus", "Root locus", words)
-
-
-def _response(f: ControlFindings) -> str:
-    words = "Displacement of the platform per displacement of the base, of the tangent, with the sampled controller."
-    return _drawn(f, "transmissibility", "Transmissibility", words)
-
-
-def _run(f: ControlFindings) -> str:
-    if f.run is None:
-        return ""
-    words = (
-        "The full equations of motion on a shaking base, with sampled measurement, held forces and what the hardware "
-        "leaves of them. Bars: root mean squares over those without control; marks: what the tangent predicts."
-    )
-    rows = []
-    for axis in f.run.axis.values:
-        at = f.run.sel(axis=axis)
-        unit = str(at.acceleration_unit.values).replace("2", "\u00b2")
-        values = [
-            at[n].sel(case=c)
-            for c in ("passive", "controlled")
-            for n in ("rms_acceleration", "predicted_rms_acceleration")
-        ]
-        rows.append([str(axis), *(f"{shown(float(v), 3)} {unit}" for v in values)])
-    head = ["axis", "no control", "tangent", "control", "tangent"]
-    return _drawn(f, "run", "On the moving base", words) + html.table(
-        head, rows, "Root mean square absolute acceleration."
-    )
-
-
-def _drawn(f: ControlFindings, name: str, heading: str, words: str) -> str:
-    draw = figures(f).get(name)
-    return html.drawing(draw, name, heading, words) if draw else ""
+def _data(hexapod: Hexapod, f: ControlFindings) -> dict[str, Any]:
+    loop = f.sampled
+    data: dict[str, Any] = {
+        "design": hexapod.name,
+        "digest": hexapod.digest,
+        "pose_m_deg": pose_numbers(f.pose),
+        "controller": loop.controller.name,
+        "order": loop.controller.order,
+        "natural_frequencies_rad_s": loop.omega,
+        "sampling_time_s": loop.controller.dt,
+        "recommended_sampling_time_s": f.recommended,
+        "poles_rad_s": [[p.real, p.imag] for p in loop.pole],
+        "damping_ratio": loop.damping_ratio,
+        "distance": loop.distance,
+        "near": [int(k) for k in loop.near],
+        "worst_damping": loop.worst_damping,
+        "worst_damping_continuous": f.ideal.worst_damping,
+        "cautions": [caution.text for caution in cautions(f)],
+        "files": [],
+    }
+    if f.locus is not None:
+        data |= {key: f.locus.attrs[key] for key in ("best_gain", "best_damping", "leak_rad_s")}
+    if f.run is not None:
+        run = f.run
+        data["run"] = {
+            "axis": run.axis.values.tolist(),
+            "saturated": run.attrs["saturated"],
+            **{f"{name}_{case}": run[name].sel(case=case).values for name in RMS for case in ("controlled", "passive")},
+        }
+    return data

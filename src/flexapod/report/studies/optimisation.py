@@ -1,147 +1,149 @@
-"""Short reports of an optimal design, of a Pareto front, and of robustness."""
+"""An optimal design, and a Pareto front, as studies."""
 
 from __future__ import annotations
 
-from html import escape
+from functools import partial
 
 import numpy as np
 
+from flexapod import plots
 from flexapod.conventions import TWO_PI
-from flexapod.design.hexapod import Hexapod
+from flexapod.mechanics.cautions import Caution
 from flexapod.optimisation.design_search import Check, OptimalDesign
 from flexapod.optimisation.pareto import ParetoFront
-from flexapod.optimisation.uncertainty import Robustness
-from flexapod.plots import optimisation
-from flexapod.report.html import beware, drawing, short, table
-from flexapod.report.numbers import brief, percent, shown
+from flexapod.report.numbers import brief, file_name, percent, shown, six_words
+from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
+
+UNITS = "In the unit of each key; SI where it has none."
 
 
-def optimal_page(found: OptimalDesign, objective: str) -> str:
-    """What was found, from what, and how it was verified."""
-    cards = [
-        ("Index, verified", shown(found.index, 5), f"rad/s = {shown(found.index / TWO_PI, 4)} Hz"),
-        ("Design begun with", shown(found.start_index, 5), "rad/s"),
-        ("Gain", percent(found.gain), "of the index"),
-        ("Trials", str(found.history.sizes["trial"]), f"in {brief(found.seconds, 3)} s"),
-    ]
-    bounds = [
-        [
-            escape(name),
-            shown(value, 6) + (" (on its bound)" if name in found.at_bounds else ""),
-        ]
-        for name, value in found.variables.items()
-    ]
+def optimal(found: OptimalDesign, objective: str) -> Study:
+    """What was found, from what, and how it was verified. objective: in words."""
     worst = found.verification.pose
-    where = "" if worst is None else f" It is least at {_six(worst)}."
-    sections = [
-        beware(_cautions(found)),
-        drawing(
-            lambda: optimisation.plan(found), "plan", "The two designs", f"Both at home. Raised: {objective}.{where}"
-        ),
-        f"<h2>Variables</h2>\n{table(['variable', 'value'], bounds, 'In the unit of each key; SI where it has none.')}",
-        _constraints(found.verification.checks, found.start_checks, found.verification.points),
-        drawing(lambda: optimisation.search(found), "search", "The search", "One mark a trial; constraints as above."),
+    where = "" if worst is None else f" It is least at {six_words(worst)}."
+    plan = Drawing("plan", "The two designs", partial(plots.optimisation.plan, found),
+                   f"Both at home. Raised: {objective}.{where}")  # fmt: skip
+    search = Drawing("search", "The search", partial(plots.optimisation.search, found),
+                     "One mark a trial; constraints as above.")  # fmt: skip
+    values = [shown(v, 6) + " (on its bound)" * (name in found.at_bounds) for name, v in found.variables.items()]
+    variables = Table([Column("variable", list(found.variables)), Column("value", values)], UNITS)
+    sections = [Section(plan.title, [plan]), Section("Variables", [variables])]
+    if found.verification.checks:
+        sections.append(Section("Constraints", [_constraints(found)]))
+    name = file_name(found.hexapod.name)
+    return Study(
+        hexapod=found.hexapod,
+        subject="optimal design",
+        about=f"Better than {found.start.name}: {objective}.",
+        data=_optimal_data(found, objective),
+        rows=_optimal_rows(found),
+        sections=[*sections, Section(search.title, [search])],
+        cautions=_cautions(found),
+        files={f"{name}.toml": found.hexapod.to_toml, f"{name}.html": None, f"{name}.png": plan.draw},
+    )
+
+
+def _optimal_rows(found: OptimalDesign) -> list[Row]:
+    gain = f"rad/s ({100 * found.gain:+.3g} %), verified at {found.verification.points} poses"
+    return [
+        Row("Index, verified", found.index, f"rad/s = {shown(found.index / TWO_PI, 4)} Hz", 5, on="page"),
+        Row("Design begun with", found.start_index, "rad/s", 5, on="page"),
+        Row("Gain", percent(found.gain), "of the index", on="page"),
+        Row("Trials", str(found.history.sizes["trial"]), f"in {brief(found.seconds, 3)} s", on="page"),
+        Row("index", f"{found.start_index:.6g} -> {found.index:.6g}", gain, on="terminal"),
     ]
-    return short(found.hexapod, "optimal design", f"Better than {found.start.name}: {objective}.", cards, sections)
 
 
-def _cautions(found: OptimalDesign) -> list[str]:
-    words = []
+def _cautions(found: OptimalDesign) -> list[Caution]:
+    cautions = []
     if not found.verification.holds:
-        broken = ", ".join(c.name for c in found.verification.checks if not c.kept)
-        words.append(f"The dense sweep breaks: {broken}. Search with more poses.")
+        broken = ", ".join(check.name for check in found.verification.checks if not check.kept)
+        cautions.append(Caution("broken", f"The dense sweep breaks: {broken}. Search with more poses."))
     if found.coincident > 1:
-        words.append(
-            f"{found.coincident} frequencies meet at the worst pose: to raise the index, all of them must rise."
-        )
+        text = f"{found.coincident} frequencies meet at the worst pose: to raise the index, all of them must rise."
+        cautions.append(Caution("coincident", text, {"frequencies": found.coincident}))
     if found.at_bounds:
-        words.append(f"On their bounds: {', '.join(found.at_bounds)}. Wider bounds may give more.")
-    return words
+        text = f"On their bounds: {', '.join(found.at_bounds)}. Wider bounds may give more."
+        cautions.append(Caution("at_bounds", text))
+    return cautions
 
 
-def _constraints(checks: tuple[Check, ...], before: tuple[Check, ...], points: int) -> str:
-    if not checks:
-        return ""
-    rows = []
-    for check, was in zip(checks, before, strict=True):
-        value = shown(check.value, 5)
-        rows.append(
-            [
-                escape(check.name),
-                escape(check.unit),
-                shown(was.value, 5),
-                value if check.kept else f'<td class="over">{value}</td>',
-                f"at {check.side} {shown(check.bound, 5)}",
-                percent(check.margin, 1),
-            ]
-        )
-    note = f"Extremes over {points} poses of every workspace that the search has not seen."
-    head = ["constraint", "unit", "before", "now", "bound", "margin"]
-    return f"<h2>Constraints</h2>\n{table(head, rows, note)}"
+def _constraints(found: OptimalDesign) -> Table:
+    checks: tuple[Check, ...] = found.verification.checks
+    columns = [
+        Column("constraint", [check.name for check in checks]),
+        Column("unit", [check.unit for check in checks]),
+        Column("before", [check.value for check in found.start_checks], digits=5),
+        Column("now", [check.value for check in checks], digits=5, marked=[not check.kept for check in checks]),
+        Column("bound", [f"at {check.side} {shown(check.bound, 5)}" for check in checks]),
+        Column("margin", [percent(check.margin, 1) for check in checks]),
+    ]
+    note = f"Extremes over {found.verification.points} poses of every workspace that the search has not seen."
+    return Table(columns, note)
 
 
-def front_page(found: ParetoFront, objective: str) -> str:
-    """A Pareto front, its figure and its designs."""
+def _optimal_data(found: OptimalDesign, objective: str) -> dict[str, object]:
+    return {
+        "design": found.hexapod.name,
+        "digest": found.hexapod.digest,
+        "objective": objective,
+        "index_rad_s": found.index,
+        "start_index_rad_s": found.start_index,
+        "searched_index_rad_s": found.searched_index,
+        "gain": found.gain,
+        "variables": found.variables,
+        "at_bounds": found.at_bounds,
+        "coincident_frequencies": found.coincident,
+        "verified_poses": found.verification.points,
+        "worst_pose_m_rad": found.verification.pose,
+        "constraints": [vars(check) for check in found.verification.checks],
+        "trials": found.history.sizes["trial"],
+        "gradient_evaluations": found.evaluations,
+        "seconds": found.seconds,
+    }
+
+
+def front(found: ParetoFront, objective: str) -> Study:
+    """A Pareto front, its figure and its designs. objective: in words."""
     best = int(np.argmax(found.index))
-    cards = [
-        ("Highest index", shown(found.index[best], 5), f"rad/s at {shown(found.against[best], 4)} {found.unit}"),
-        ("Design begun with", shown(found.start[0], 5), f"rad/s at {shown(found.start[1], 4)} {found.unit}"),
-        ("Designs on the front", str(len(found.designs)), ""),
-        ("Trials", str(found.history.sizes["trial"]), ""),
+    against = ", ".join(filter(None, (found.name, found.unit)))
+    columns = [
+        Column("design", [str(k + 1) for k in range(len(found.designs))]),
+        Column("index", found.index, "rad/s", 5),
+        Column(against, found.against, digits=5),
+        *(Column(name, values, digits=5) for name, values in zip(found.names, found.variables.T, strict=True)),
     ]
-    rows = [
-        [str(k + 1), shown(found.index[k], 5), shown(found.against[k], 5), *(shown(v, 5) for v in found.variables[k])]
-        for k in range(len(found.designs))
-    ]
-    head = [
-        "design",
-        "index, rad/s",
-        escape(", ".join(filter(None, (found.name, found.unit)))),
-        *map(escape, found.names),
-    ]
-    sections = [
-        drawing(
-            lambda: optimisation.front(found),
-            "front",
-            f"Index against {found.name}",
-            "Of the designs on the line none is better in both.",
-        ),
-        f"<h2>Designs</h2>\n{table(head, rows, 'Variables in the unit of each key; SI where it has none.')}",
-    ]
-    return short(found.hexapod, "Pareto front", f"Index against {found.name}: {objective}.", cards, sections)
-
-
-def robust_page(found: Robustness, hexapod: Hexapod, objective: str) -> str:
-    """Distribution, worst case, and what matters most."""
-    cards = [
-        ("Index as designed", shown(found.nominal, 5), "rad/s"),
-        ("99 % of designs are above", shown(found.quantiles[0.01], 5), "rad/s"),
-        ("Worst case", shown(found.worst, 5), f"rad/s, {percent(found.worst / found.nominal - 1)}"),
-        ("Mean and deviation", shown(found.mean, 5), f"± {shown(found.deviation, 3)} rad/s"),
-    ]
-    worst = [[escape(name), shown(value, 5)] for name, value in found.worst_at.items()]
-    sections = [
-        drawing(
-            lambda: optimisation.spread(found),
-            "spread",
-            "How the index strays",
-            f"{found.samples.sizes['sample']} designs; {objective}.",
-        ),
-    ]
-    if found.sensitivity is not None:
-        sections.append(
-            drawing(
-                lambda: optimisation.importance(found),
-                "importance",
-                "What matters most",
-                "Sobol indices: shares of the variance of the index, with 95 % confidence.",
-            )
-        )
-    sections.append(f"<h2>The worst case</h2>\n{table(['parameter', 'value'], worst, 'In SI units.')}")
-    return short(hexapod, "robustness", f"The index where parameters are uncertain: {objective}.", cards, sections)
-
-
-def _six(pose: np.ndarray) -> str:
-    x, y, z = (brief(1e3 * v) for v in pose[:3])
-    roll, pitch, yaw = (brief(float(v)) for v in np.degrees(pose[3:]))
-    return f"x {x}, y {y}, z {z} mm, roll {roll}, pitch {pitch}, yaw {yaw} deg"
+    drawing = Drawing("front", f"Index against {found.name}", partial(plots.optimisation.front, found),
+                      "Of the designs on the line none is better in both.")  # fmt: skip
+    name = file_name(found.hexapod.name)
+    data = {
+        "objective": objective,
+        "against": found.name,
+        "unit": found.unit,
+        "start": {"index_rad_s": found.start[0], "against": found.start[1]},
+        "index_rad_s": found.index,
+        "against_values": found.against,
+        "variables": dict(zip(found.names, found.variables.T, strict=True)),
+        "trials": found.history.sizes["trial"],
+    }
+    return Study(
+        hexapod=found.hexapod,
+        subject="Pareto front",
+        about=f"Index against {found.name}: {objective}.",
+        data=data,
+        rows=[
+            Row("Highest index", found.index[best], f"rad/s at {shown(found.against[best], 4)} {found.unit}", 5),
+            Row("Design begun with", found.start[0], f"rad/s at {shown(found.start[1], 4)} {found.unit}", 5),
+            Row("Designs on the front", str(len(found.designs)), on="page"),
+            Row("Trials", str(found.history.sizes["trial"]), on="page"),
+        ],
+        sections=[
+            Section(drawing.title, [drawing]),
+            Section("Designs", [Table(columns, f"Variables: {UNITS[0].lower()}{UNITS[1:]}")]),
+        ],
+        files={
+            f"{name}-front.html": None,
+            f"{name}-front.png": drawing.draw,
+            **{f"{file_name(one.name)}.toml": one.to_toml for one in found.designs},
+        },
+    )

@@ -1,24 +1,27 @@
-"""The short report of a path, planned or given."""
+"""A path, planned or given, as a study."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from flexapod import plots
 from flexapod.design.hexapod import Hexapod
+from flexapod.mechanics.cautions import Caution
 from flexapod.paths.analysis import PathIndex
 from flexapod.paths.planning import Plan
 from flexapod.paths.trajectory import Trajectory
-from flexapod.plots import path as plots_path
-from flexapod.pose import Pose
-from flexapod.report import html
-from flexapod.report.numbers import DASH, pose_words, shown
+from flexapod.report.numbers import DASH, pose_numbers, pose_words, shown
+from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 
 
-class PathFindings(NamedTuple):
-    """All that is said about a path. beside, plan, plane: of a planned path, where it is not straight."""
+@dataclass(frozen=True)
+class PathFindings:
+    """What was computed about a path. size: m that a radian counts as. beside, plan, plane: of a planned path."""
 
     path: Trajectory
     along: PathIndex
@@ -29,76 +32,128 @@ class PathFindings(NamedTuple):
     plane: xr.Dataset | None = None
 
 
-def page(hexapod: Hexapod, f: PathFindings) -> str:
-    """The page as HTML."""
-    bound = f.along.bound
-    cards = [
-        ("Least index on the path", shown(f.along.minimum), "rad/s"),
-        ("Bound", shown(bound) if bound else DASH, "rad/s" if bound else "none given"),
-        ("Weighted mean index", shown(f.along.weighted_mean), "rad/s"),
-        ("Duration", shown(f.path.duration, 3), "s"),
-        ("Length", shown(f.path.length(f.size), 3), "m"),
-        ("Largest leg force", shown(float(f.loads.peak_force.max())), "N"),
-    ]
-    what = f"planned from {pose_words(_end(f.path, 0))} to {pose_words(_end(f.path, -1))}" if f.plan else "as given"
-    subtitle = f"A path of {len(f.path.times)} waypoints, {what}. One radian counts as {shown(f.size, 3)} m of length."
-    sections = [html.beware(cautions(f)), _index(f), _plane(f), _loads(f), _legs(f)]
-    return html.short(hexapod, "path", subtitle, cards, sections)
-
-
-def cautions(f: PathFindings) -> list[str]:
-    """What to beware of on the path."""
-    found = []
-    if f.along.below and f.along.bound is not None:
-        spans = ", ".join(f"{a:.4g} to {b:.4g} s" for a, b in f.along.below)
-        found.append(f"The index lies below the bound of {f.along.bound:.5g} rad/s from {spans}.")
-    outside = ~f.loads.within_limits.values
-    if outside.any():
-        first = float(f.loads.time.values[outside][0])
-        found.append(f"The path leaves the design's limits for {outside.mean():.0%} of it, first at {first:.4g} s.")
-    return found
-
-
-def _index(f: PathFindings) -> str:
-    where = f"The least, {shown(f.along.minimum)} rad/s, is at {f.along.minimum_time:.4g} s. "
-    note = "Dashed: the straight line between the same poses." if f.beside else ""
-    return html.drawing(
-        lambda: plots_path.index_along(f.along, f.beside), "index", "The stability index along the path", where + note
+def study(hexapod: Hexapod, f: PathFindings, waypoints: str | None = None) -> Study:
+    """The study of a path. waypoints: a planned path as the text of a file."""
+    ends = (pose_words(f.path.waypoints[which]) for which in (0, -1))
+    what = f"planned from {' to '.join(ends)}" if f.plan else "as given"
+    drawings = _drawings(f)
+    files: dict[str, Any] = {f"path-{one.name}.png": one.draw for one in sorted(drawings, key=_order)}
+    if waypoints is not None:
+        files["waypoints.csv"] = lambda: waypoints
+    return Study(
+        hexapod=hexapod,
+        subject="path",
+        about=f"A path of {len(f.path.times)} waypoints, {what}. One radian counts as {shown(f.size, 3)} m of length.",
+        data=_data(hexapod, f),
+        rows=_rows(f),
+        sections=[*(Section(one.title, [one]) for one in drawings), Section("Legs", [_legs(f)])],
+        cautions=cautions(f),
+        files={**files, "path.html": None},
     )
 
 
-def _plane(f: PathFindings) -> str:
-    if f.plane is None:
-        return ""
-    plane = f.plane
+def _drawings(f: PathFindings) -> list[Drawing]:
+    where = f"The least, {shown(f.along.minimum)} rad/s, is at {f.along.minimum_time:.4g} s. "
+    note = "Dashed: the straight line between the same poses." if f.beside else ""
     words = (
         "The plane through start, goal and the point of the path that lies farthest from the straight line; elsewhere "
         "the path is shown projected on it. Rotations count as length."
     )
-    return html.drawing(lambda: plots_path.plan_map(plane), "plane", "Round the weak region", words)
+    forces = (
+        "Forces from the full dynamics; positive pushes the platform from the base. Thin lines: the forces at rest."
+    )
+    index = partial(plots.path.index_along, f.along, f.beside)
+    drawings = [Drawing("index", "The stability index along the path", index, where + note)]
+    if f.plane is not None:
+        drawings.append(Drawing("plane", "Round the weak region", partial(plots.path.plan_map, f.plane), words))
+    return [*drawings, Drawing("loads", "Leg forces and travel", partial(plots.path.loads, f.loads), forces)]
 
 
-def _loads(f: PathFindings) -> str:
-    words = "Forces from the full dynamics; positive pushes the platform from the base. Thin lines: the forces at rest."
-    return html.drawing(lambda: plots_path.loads(f.loads), "loads", "Leg forces and travel", words)
+def _order(drawing: Drawing) -> int:
+    return ("index", "loads", "plane").index(drawing.name)
 
 
-def _legs(f: PathFindings) -> str:
-    loads = f.loads
+def cautions(f: PathFindings) -> list[Caution]:
+    """What to beware of on the path."""
+    found = []
+    if f.along.below and f.along.bound is not None:
+        spans = ", ".join(f"{a:.4g} to {b:.4g} s" for a, b in f.along.below)
+        text = f"The index lies below the bound of {f.along.bound:.5g} rad/s from {spans}."
+        found.append(Caution("below_bound", text, {"bound": f.along.bound}))
+    outside = ~f.loads.within_limits.values
+    if outside.any():
+        first = float(f.loads.time.values[outside][0])
+        text = f"The path leaves the design's limits for {outside.mean():.0%} of it, first at {first:.4g} s."
+        found.append(Caution("limit", text, {"share": float(outside.mean()), "first": first}))
+    return found
+
+
+def _rows(f: PathFindings) -> list[Row]:
+    index, bound, force = f.along, f.along.bound, float(f.loads.peak_force.max())
+    where = f"rad/s at {index.minimum_time:.4g} s, {index.minimum_pose!r}"
+    travel = f"{1e3 * float(f.loads.stroke.max()):.4g} mm, force up to {force:.5g} N"
     rows = [
-        [
-            str(leg),
-            shown(1e3 * float(loads.stroke[i])),
-            shown(float(np.abs(loads.leg_rate[:, i]).max())),
-            shown(float(np.abs(loads.leg_acceleration[:, i]).max())),
-            shown(float(loads.peak_force[i])),
-            shown(float(np.abs(loads.power[:, i]).max())),
-        ]
-        for i, leg in enumerate(loads.leg.values)
+        Row("Least index on the path", index.minimum, "rad/s", on="page"),
+        Row("Bound", bound or DASH, "rad/s" if bound else "none given", on="page"),
+        Row("Weighted mean index", index.weighted_mean, "rad/s", on="page"),
+        Row("Duration", f.path.duration, "s", 3, on="page"),
+        Row("Length", f.path.length(f.size), "m", 3, on="page"),
+        Row("Largest leg force", force, "N", on="page"),
+        Row("least index", f"{index.minimum:.5g}", where, on="terminal"),
+        Row("weighted mean index", f"{index.weighted_mean:.5g}", "rad/s", on="terminal"),
+        Row("legs: travel up to", travel, on="terminal"),
     ]
-    head = ["leg", "travel, mm", "fastest, m/s", "acceleration, m/s\u00b2", "peak force, N", "peak power, W"]
-    return "<h2>Legs</h2>\n" + html.table(head, rows)
+    if bound is not None:
+        words = "above it all along" if index.above else "BELOW it in places"
+        rows.insert(7, Row("bound", f"{bound:.5g}", f"rad/s: {words}", on="terminal"))
+    if f.plan is not None:
+        p = f.plan
+        beside = f"m; the straight line has {p.straight_length:.4g} m and an index down to {p.straight_least_index:.4g}"
+        rows.insert(-1, Row("length", f"{p.length:.4g}", f"{beside} rad/s", on="terminal"))
+    return rows
 
 
-def _end(path: Trajectory, which: int) -> Pose:
-    return path.waypoints[which]
+def _legs(f: PathFindings) -> Table:
+    loads = f.loads
+    columns = [
+        Column("leg", [str(leg) for leg in loads.leg.values]),
+        Column("travel", 1e3 * loads.stroke.values, "mm"),
+        Column("fastest", np.abs(loads.leg_rate.values).max(axis=0), "m/s"),
+        Column("acceleration", np.abs(loads.leg_acceleration.values).max(axis=0), "m/s\u00b2"),
+        Column("peak force", loads.peak_force.values, "N"),
+        Column("peak power", np.abs(loads.power.values).max(axis=0), "W"),
+    ]
+    return Table(columns, on="page")
+
+
+def _data(hexapod: Hexapod, f: PathFindings) -> dict[str, Any]:
+    index, loads, plan = f.along, f.loads, f.plan
+    data: dict[str, Any] = {
+        "design": hexapod.name,
+        "digest": hexapod.digest,
+        "duration_s": f.path.duration,
+        "length_m": f.path.length(f.size),
+        "radian_as_m": f.size,
+        "least_index_rad_s": index.minimum,
+        "least_index_at_s": index.minimum_time,
+        "least_index_pose_m_deg": pose_numbers(index.minimum_pose),
+        "bound_rad_s": index.bound,
+        "above_bound": None if index.bound is None else index.above,
+        "below_bound_s": index.below,
+        "weighted_mean_index_rad_s": index.weighted_mean,
+        "within_limits": bool(loads.within_limits.all()),
+        "leg_stroke_m": loads.stroke.values,
+        "leg_peak_force_N": loads.peak_force.values,
+        "leg_peak_rate_m_s": abs(loads.leg_rate).max("time").values,
+        "waypoints_s": f.path.times,
+        "waypoints_m_deg": [pose_numbers(f.path.waypoints[i]) for i in range(len(f.path.times))],
+        "files": [],
+    }
+    if plan is not None:
+        data["plan"] = {
+            "straight_length_m": plan.straight_length,
+            "straight_least_index_rad_s": plan.straight_least_index,
+            "least_margin": plan.margin,
+            "batches": plan.batches,
+        }
+    return data

@@ -63,7 +63,7 @@ def _contents(parts: Sequence[Part]) -> str:
         count = verdicts([part])
         link = f'<a href="#{part.name}">{escape(part.title)}</a>'
         rows.append([link, *(str(count[verdict] or "") for verdict in _MARKS)])
-    return f'<div class="contents">{html.table(["part", *_MARKS], rows)}</div>'
+    return f'<div class="contents">{html.rows_table(["part", *_MARKS], rows)}</div>'
 
 
 def _section(part: Part) -> str:
@@ -91,7 +91,7 @@ def _shown(part: Part) -> str:
     ]
     titles = zip(frame.columns, wordy, strict=True)
     head = [escape(str(frame.index.name or "")), *(_cell(str(title), words, "span") for title, words in titles)]
-    return html.table(head, rows)
+    return html.rows_table(head, rows)
 
 
 def _in_words(column: list[str]) -> bool:

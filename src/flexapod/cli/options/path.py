@@ -1,0 +1,72 @@
+"""The options of `flexapod path`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from flexapod.cli.options import common
+
+if TYPE_CHECKING:
+    from flexapod.conventions import JointModel
+
+_POSE: dict[str, Any] = {"type": float, "nargs": 6, "default": None, "metavar": "X Y Z ROLL PITCH YAW"}
+
+
+@dataclass(frozen=True)
+class Options:
+    """The command line, as given."""
+
+    design: str
+    changes: tuple[str, ...]
+    joint: JointModel
+    as_json: bool
+    file: Path | None
+    start: tuple[float, ...] | None
+    goal: tuple[float, ...] | None
+    bound: float | None
+    ends: str
+    objective: str
+    duration: float | None
+    leg_rate: float | None
+    leg_acceleration: float | None
+    condition: float | None
+    clearance: float | None
+    limits: bool
+    seed: int
+    out: Path | None
+
+
+_positive = click.FloatRange(min=0, min_open=True)
+path_options = common.stack(
+    click.argument("file", type=click.Path(path_type=Path, dir_okay=False), required=False),
+    click.option("--from", "start", **_POSE, help="Plan from this pose (m, degrees)."),
+    click.option("--to", "goal", **_POSE, help="Plan to this pose (m, degrees)."),
+    click.option("--bound", type=_positive, metavar="RAD_S", help="Least natural frequency that the path should keep."),
+    click.option(
+        "--ends",
+        type=click.Choice(["rest", "free", "periodic"]),
+        default="rest",
+        show_default=True,
+        help="How the path of FILE begins and ends.",
+    ),
+    click.option(
+        "--least",
+        "objective",
+        type=click.Choice(["length", "time"]),
+        default="length",
+        show_default=True,
+        help="What a planned path has least of; time needs --leg-rate or --leg-acceleration.",
+    ),
+    click.option("--duration", type=_positive, metavar="S", help="Duration of a planned path. Default: 1 s."),
+    click.option("--leg-rate", type=_positive, metavar="M_S", help="Fastest rate of a leg; times a planned path."),
+    click.option("--leg-acceleration", type=_positive, metavar="M_S2", help="Largest acceleration of a leg."),
+    click.option("--condition", type=_positive, metavar="C", help="Most that cond(H) may be on a planned path."),
+    click.option("--clearance", type=_positive, metavar="M", help="Least distance of leg axes on a planned path."),
+    click.option("--limits/--no-limits", default=True, help="Whether a planned path keeps the design's limits."),
+    click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of the planner's samples."),
+    common.out_option("Where to write the report, figures and planned waypoints. Default: nothing is written."),
+)

@@ -1,0 +1,47 @@
+"""What a command does with a study: its files, and then the terminal's text or JSON."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from flexapod.cli.options import common
+
+if TYPE_CHECKING:
+    from flexapod.report.study import Study
+
+
+def emit(study: Study, out: Path | None, as_json: bool, listed: str = "files") -> None:
+    """Write the study's files to a directory, none where it is None; print the study, or its results as JSON.
+
+    listed: the name of the files in JSON; a name other than "files" is that of the only one.
+    """
+    files = [] if out is None else write(study, common.output_directory(out))
+    if as_json:
+        names = [str(file) for file in files]
+        common.print_json({**study.to_dict(), listed: names if listed == "files" else next(iter(names), None)})
+        return
+    from flexapod.report.terminal import show
+
+    show(study, common.console())
+    for file in files:
+        click.echo(f"Wrote {file}")
+
+
+def write(study: Study, directory: Path) -> list[Path]:
+    """Write the study's files, each of the kind that its name ends with."""
+    for name, make in study.files.items():
+        path = directory / name
+        if make is None:
+            from flexapod.report.html import page
+
+            common.write_file(path, page(study))
+        elif path.suffix == ".nc":
+            common.save_netcdf(make(), path)  # type: ignore[arg-type]
+        elif path.suffix in (".png", ".svg"):
+            common.save_figure(make(), path)  # type: ignore[arg-type]
+        else:
+            common.write_file(path, make())  # type: ignore[arg-type]
+    return [directory / name for name in study.files]

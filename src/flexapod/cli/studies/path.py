@@ -1,0 +1,83 @@
+"""The study of `flexapod path`."""
+
+from __future__ import annotations
+
+import math
+
+import click
+
+from flexapod.cli.options import common, waypoints
+from flexapod.cli.options.path import Options
+from flexapod.cli.output.stages import Report
+from flexapod.design.hexapod import Hexapod
+from flexapod.paths.analysis import path_index, path_loads
+from flexapod.paths.planning import LegSpeed, Plan, plan_path, plan_slice
+from flexapod.paths.requirements import PathRequirements
+from flexapod.pose import Pose
+from flexapod.report.studies.path import PathFindings, study
+from flexapod.report.study import Study
+
+
+def compute(options: Options, report: Report) -> Study:
+    """The index along the path of the options, given or planned."""
+    hexapod = common.load_design(options.design, options.changes)
+    found = _given(hexapod, options) if _is_file(options) else _planned(hexapod, options, report)
+    return study(hexapod, found, None if found.plan is None else waypoints.written(found.path))
+
+
+def _is_file(options: Options) -> bool:
+    ends = (options.start is not None) + (options.goal is not None)
+    if options.file is not None and ends == 0:
+        return True
+    if options.file is None and ends == 2:
+        if options.bound is None:
+            raise click.UsageError("a path is planned to keep the index above a bound. Give --bound RAD_S.")
+        return False
+    raise click.UsageError("give a FILE of waypoints, or --from and --to to plan a path between two poses.")
+
+
+def _given(hexapod: Hexapod, options: Options) -> PathFindings:
+    assert options.file is not None
+    path = waypoints.read(options.file, options.ends)  # type: ignore[arg-type]
+    index = path_index(hexapod, path, bound=options.bound, joint=options.joint)
+    return PathFindings(path, index, path_loads(hexapod, path, joint=options.joint), _size(hexapod))
+
+
+def _planned(hexapod: Hexapod, options: Options, report: Report) -> PathFindings:
+    assert options.start is not None
+    assert options.goal is not None
+    assert options.bound is not None
+    needed = PathRequirements(options.bound, options.condition, options.clearance, options.limits, joint=options.joint)
+    plan: Plan = plan_path(
+        hexapod,
+        _pose(options.start),
+        _pose(options.goal),
+        needed,
+        objective=options.objective,  # type: ignore[arg-type]
+        timing=_timing(options),
+        seed=options.seed,
+        progress=report,
+    )
+    index = path_index(hexapod, plan.path, bound=options.bound, joint=options.joint)
+    loads = path_loads(hexapod, plan.path, joint=options.joint)
+    if plan.rough is None:
+        return PathFindings(plan.path, index, loads, plan.size, plan=plan)
+    beside = path_index(hexapod, plan.straight, bound=options.bound, joint=options.joint, singular="keep")
+    return PathFindings(plan.path, index, loads, plan.size, beside, plan, plan_slice(hexapod, plan))
+
+
+def _pose(six: tuple[float, ...]) -> Pose:
+    return Pose.from_rpy(*six[:3], *(math.radians(angle) for angle in six[3:]))
+
+
+def _timing(options: Options) -> LegSpeed | float:
+    speeds = [options.leg_rate, options.leg_acceleration]
+    if speeds == [None, None]:
+        return options.duration or 1.0
+    if options.duration is not None:
+        raise click.UsageError("--duration and --leg-rate or --leg-acceleration both time the path. Give one of them.")
+    return LegSpeed(*(math.inf if speed is None else speed for speed in speeds))
+
+
+def _size(hexapod: Hexapod) -> float:
+    return math.sqrt(float((hexapod.platform_joints**2).sum(axis=1).mean()))

@@ -1,0 +1,29 @@
+"""The study of `flexapod robust`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import click
+
+from flexapod.cli.options import problem
+from flexapod.cli.output.stages import Report
+from flexapod.design.hexapod import Hexapod
+from flexapod.optimisation.uncertainty import Payload, robustness
+from flexapod.report.studies.robustness import study
+from flexapod.report.study import Study
+
+
+def compute(hexapod: Hexapod, given: Mapping[str, Any], report: Report) -> Study:
+    """The distribution of the index that the options ask for."""
+    over = problem.where(hexapod, given["pose"], given["box"], given["around"])
+    straying = problem.uncertain(given["uncertain"])
+    if given["payload"] is not None:
+        at = tuple(problem.span("--payload-at", text) for text in given["payload_at"])
+        straying.append(Payload(problem.span("--payload", given["payload"]), at))  # type: ignore[arg-type]
+    if not straying:
+        raise click.UsageError("nothing strays. Give --uncertain KEY=SPREAD or --payload LEAST:LARGEST.")
+    options = {name: given[name] for name in ("samples", "poses", "sensitivity", "joint", "seed", "threads")}
+    found = robustness(hexapod, straying, over, progress=report, **options)
+    return study(hexapod, found, "home" if over is None else repr(over))
