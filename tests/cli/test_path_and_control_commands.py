@@ -72,8 +72,11 @@ def test_what_is_wrong_is_said(run, arguments, words):
 @pytest.mark.parametrize(
     ("rows", "words"),
     [
-        (["x,y,z"], "its first line must be t,x,y,z,roll,pitch,yaw"),
-        (["t,x,y,z,roll,pitch,yaw", "0,0,0,1,0,0,0", "1,0,0,high,0,0,0"], "waypoint 2 is 1,0,0,high,0,0,0"),
+        (["x,y,z"], "Its first line must be t,x,y,z,roll,pitch,yaw"),
+        (
+            ["t,x,y,z,roll,pitch,yaw", "0,0,0,1,0,0,0", "1,0,0,high,0,0,0"],
+            "line 3, column z: 'high' is no finite number",
+        ),
         (["t,x,y,z,roll,pitch,yaw", "0,0,0,1,0,0,0"], "at least two poses"),
         (["t,x,y,z,roll,pitch,yaw", "1,0,0,1,0,0,0", "0,0,0,1,0,0,0"], "times must increase"),
     ],

@@ -101,7 +101,7 @@ def test_response_wrong_command_lines(run, arguments, message):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "cannot be read"),
+        ("", "nothing in it"),
         ("hz,z\n1,2\n", "must have frequency_hz"),
         ("frequency_hz\n1\n", "must have frequency_hz"),
         ("frequency_hz,up\n1,2\n", "must have frequency_hz"),

@@ -120,10 +120,10 @@ def test_a_wrong_command_line_is_told(arguments, words, tmp_path, monkeypatch, c
 
 def test_empty_and_broken_files_of_poses_are_told(tmp_path, capsys):
     for text, words in (
-        ("", "empty"),
+        ("", "nothing in it"),
         ("x,y,z,roll,pitch,yaw\n", "empty"),
-        ("1,2,3\n", "six columns"),
-        ("a,b\n1,2", "read"),
+        ("1,2,3\n", "6 columns"),
+        ("a,b\n1,2", "'a' is unknown. Give rows of six columns"),
     ):
         path = tmp_path / "poses.csv"
         path.write_text(text)

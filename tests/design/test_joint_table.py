@@ -157,7 +157,10 @@ WRONG = {
     "a column twice": (table(HEADER.replace("base_y", "base_x")), ["'base_x_mm' and 'base_x_mm' are the same"]),
     "an unknown column": (table(HEADER.replace("base_y", "basis_y")), ["column 'basis_y_mm' is unknown", "base_x"]),
     "an unknown unit": (table(HEADER.replace("_mm", "_yd")), ["column 'base_x_yd' has the unit 'yd'", "m, cm, mm"]),
-    "an axis with a unit": (table(HEADER + ",kx_mm,ky,kz", (BASE, PLATFORM, AXES)), ["'kx_mm'", "an axis has none"]),
+    "an axis with a unit": (
+        table(HEADER + ",kx_mm,ky,kz", (BASE, PLATFORM, AXES)),
+        ["'kx_mm'", "this column has none"],
+    ),
     "a cell without an end": (table().replace(ROW, '4,"' + 200_000 * "5"), ["no CSV file", "Export"]),
 }
 

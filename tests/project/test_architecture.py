@@ -16,6 +16,7 @@ ORDER = [
     "conventions",
     "checks",
     "optional",
+    "tables",
     "pose",
     "design",
     "mechanics",

@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly, make_interp_spline
 
-from flexapod.conventions import AXES, LEGS, Array
+from flexapod.conventions import AXES, LEGS, ROTATIONS, Array
+from flexapod.design.units import UNITS
 from flexapod.errors import ArgumentError
 from flexapod.excitation.excitation import Excitation, sampled_term
+from flexapod.tables import TIMES, Units, naming, parse_table, read_text
 
 Recorded = Literal["value", "velocity", "acceleration"]
 INTEGRATIONS = {"value": 0, "velocity": 1, "acceleration": 2}
 GAP = 1.5  # of the usual spacing: a sample is missing
 
-TIMES = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "min": 60.0}
-TRAVELS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "in": 0.0254}
-TURNS = {"rad": 1.0, "mrad": 1e-3, "urad": 1e-6, "deg": np.pi / 180}
-LOADS = {"N": 1.0, "mN": 1e-3, "kN": 1e3, "N_m": 1.0, "N_mm": 1e-3, "kN_m": 1e3}
+TRAVELS: Units = {**UNITS["length"], "nm": (1, 1e9)}
+TURNS: Units = {**UNITS["angle"], "urad": (1, 1e6)}
+LOADS: Units = {"N": (1, 1), "mN": (1, 1e3), "kN": (1e3, 1), "N_m": (1, 1), "N_mm": (1, 1e3), "kN_m": (1e3, 1)}
 SUFFIXES: dict[str, Recorded] = {"_per_s2": "acceleration", "_per_s": "velocity", "": "value"}
+#: What a title may be -> a channel, or "time".
+NAMES = {"time": "time", "t": "time", **{axis: axis for axis in AXES}, **{f"leg{leg}": leg for leg in LEGS}}
+FORM = (
+    f"Columns are time, {', '.join(AXES)}, leg1 to leg6, with a unit as in z_um; a header with time and channels is "
+    "needed, and at least six lines of numbers."
+)
 
 
 def time_series(
@@ -65,33 +71,43 @@ def read_time_series(path: str | Path, recorded: Recorded | None = None) -> Exci
     Source: own.
     """
     file = Path(path)
-    try:
-        text = file.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise ArgumentError(f"{file} cannot be read: {error}. Give a CSV file in UTF-8.") from error
-    try:
+    text = read_text(file)
+    with naming(file):
         return parse_time_series(text, recorded)
-    except ArgumentError as error:
-        raise ArgumentError(f"{file}: {error}") from error
 
 
 def parse_time_series(text: str, recorded: Recorded | None = None) -> Excitation:
     """A recording from the text of a CSV file; see `read_time_series`."""
-    lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
-    if not lines:
-        raise ArgumentError("there is nothing in it; a header and at least six lines of numbers are needed.")
-    header = [cell.strip() for cell in next(csv.reader([lines[0][1]]))]
-    columns = [_column(cell) for cell in header]
-    names = [column.channel for column in columns]
-    if names.count("time") != 1 or len(names) < 2 or len(set(names)) < len(names):
-        raise ArgumentError(f"the header is {', '.join(header)}; `time` and each channel are needed once.")
-    said = {column.recorded for column in columns if column.recorded is not None}
+    table = parse_table(text, NAMES, FORM)
+    header = ", ".join(column.title for column in table.columns)
+    time = table.column("time")
+    channels = [column for column in table.columns if column.name != "time"]
+    if time is None or not channels:
+        raise ArgumentError(f"the header is {header}; `time` and each channel are needed once.")
+    said = {_recorded(column.unit) for column in channels if column.unit}
     if len(said | ({recorded} - {None})) > 1:
-        raise ArgumentError(f"the header is {', '.join(header)}; all columns must be {recorded or 'of one kind'}.")
-    table = _numbers(lines[1:], len(names)) * [column.factor for column in columns]
-    time = names.index("time")
-    channels = [name for name in names if name != "time"]
-    return time_series(table[:, time], np.delete(table, time, axis=1), channels, recorded or (said or {"value"}).pop())
+        raise ArgumentError(f"the header is {header}; all columns must be {recorded or 'of one kind'}.")
+    values = np.column_stack([table.numbers(column, _units(column.name), finite=False) for column in channels])
+    return time_series(
+        table.numbers(time, TIMES, finite=False),
+        values,
+        [column.name for column in channels],
+        recorded or (said or {"value"}).pop(),
+    )
+
+
+def _recorded(unit: str) -> Recorded:
+    """What a unit says that a column holds."""
+    return next(kind for suffix, kind in SUFFIXES.items() if unit.endswith(suffix))
+
+
+def _units(channel: str) -> Units:
+    """Units of a channel, of its rate and of its acceleration; those of loads have neither."""
+    turned = channel in ROTATIONS
+    rates = {
+        f"{unit}{suffix}": factor for suffix in SUFFIXES for unit, factor in (TURNS if turned else TRAVELS).items()
+    }
+    return rates if turned else {**rates, **LOADS}
 
 
 def _checked(times: ArrayLike, values: ArrayLike, names: list[str]) -> tuple[Array, Array]:
@@ -126,44 +142,3 @@ def _checked(times: ArrayLike, values: ArrayLike, names: list[str]) -> tuple[Arr
             f"{t[i + 1]:.9g} s, where samples are usually {usual:.4g} s apart. Fill it, or cut the recording there."
         )
     return t, x
-
-
-class _Column(NamedTuple):
-    channel: str
-    factor: float  # to SI
-    recorded: Recorded | None  # None where no unit says it
-
-
-def _column(cell: str) -> _Column:
-    name, _, unit = cell.partition("_")
-    channel = name[3:] if name.startswith("leg") else name
-    if channel == "time":
-        units = TIMES
-    elif channel in AXES + LEGS:
-        units = TURNS if channel in AXES[3:] else TRAVELS | LOADS
-    else:
-        known = f"time, {', '.join(AXES)}, leg1 to leg6"
-        raise ArgumentError(f"column {cell!r} is unknown; columns are {known}, with a unit as in z_um.")
-    if not unit:
-        return _Column(channel, 1.0, None)
-    for suffix, recorded in SUFFIXES.items():
-        base = unit.removesuffix(suffix)
-        if unit.endswith(suffix) and base in units and not (suffix and base in LOADS | TIMES):
-            return _Column(channel, units[base], None if channel == "time" else recorded)
-    raise ArgumentError(
-        f"column {cell!r} has the unit {unit!r}; it may be {', '.join(units)}, _per_s or _per_s2 of it."
-    )
-
-
-def _numbers(lines: list[tuple[int, str]], width: int) -> Array:
-    table = np.empty((len(lines), width))
-    for row, (number, line) in enumerate(lines):
-        cells = next(csv.reader([line]))
-        if len(cells) != width:
-            raise ArgumentError(f"line {number} has {len(cells)} numbers; the header names {width} columns.")
-        for column, cell in enumerate(cells):
-            try:
-                table[row, column] = float(cell) if cell.strip() else np.nan
-            except ValueError:
-                raise ArgumentError(f"line {number}: {cell.strip()!r} is not a number.") from None
-    return table

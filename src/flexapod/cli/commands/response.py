@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from flexapod.cli.options import common
-from flexapod.conventions import AXES, LEGS
+from flexapod.conventions import AXES, LEGS, unit_of
 from flexapod.errors import ArgumentError
 from flexapod.report.numbers import pose_numbers
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from flexapod.pose import Pose
 
 POSITIVE = click.FloatRange(min=0, min_open=True)
+_PSD = f"It must have frequency_hz and one or more of {', '.join(AXES)}."
 
 _response_options = common.stack(
     click.option(
@@ -202,24 +203,27 @@ def _random(case: _Case) -> xr.Dataset:
 def _read_psd(path: Path) -> tuple[Array, Array]:
     """Frequencies in Hz and densities per Hz (n, 6) of a CSV file."""
     import numpy as np
-    import pandas as pd
 
-    try:
-        table = pd.read_csv(path, comment="#", skipinitialspace=True)
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, UnicodeDecodeError) as error:
-        raise click.UsageError(f"{path} cannot be read as a table: {error}") from error
-    names = list(table.columns)
-    unknown = [name for name in names if name not in ("frequency_hz", *AXES)]
-    if "frequency_hz" not in names or len(names) < 2 or unknown:
-        raise click.UsageError(
-            f"{path} has columns {', '.join(names)}; it must have frequency_hz and one or more of {', '.join(AXES)}."
-        )
-    try:
-        numbers = {name: np.asarray(table[name], dtype=float) for name in names}
-    except ValueError as error:
-        raise click.UsageError(f"{path} holds something that is no number: {error}") from error
-    density = np.stack([numbers.get(axis, np.zeros(len(table))) for axis in AXES], axis=1)
-    return numbers["frequency_hz"], density
+    from flexapod.tables import naming, parse_table, read_text
+
+    text = read_text(path)
+    with naming(path):
+        table = parse_table(text, {"frequency": "frequency", "f": "frequency", **{axis: axis for axis in AXES}}, _PSD)
+        frequency = table.column("frequency")
+        if frequency is None or len(table.columns) < 2:
+            raise ArgumentError(f"it has columns {', '.join(column.title for column in table.columns)}. {_PSD}")
+        hertz = table.numbers(frequency, {"Hz": (1, 1), "hz": (1, 1), "kHz": (1e3, 1)}, finite=False)
+        density = np.zeros((len(hertz), 6))
+        for column in table.columns:
+            if column.name in AXES:
+                density[:, AXES.index(column.name)] = table.numbers(column, _density_units(column.name), finite=False)
+    return hertz, density
+
+
+def _density_units(axis: str) -> dict[str, tuple[float, float]]:
+    """What people write for (m/s2)2/Hz, or with rad."""
+    unit = unit_of(axis)
+    return dict.fromkeys((f"{unit}2_per_s4_per_Hz", f"{unit}_per_s22_per_Hz", f"{unit}2_per_s3"), (1.0, 1.0))
 
 
 def _write(case: _Case, studies: dict[str, xr.Dataset], directory: Path) -> list[Path]:

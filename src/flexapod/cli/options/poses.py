@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from flexapod.workspace.box import Box
     from flexapod.workspace.pose_sets import PoseSet
 
+_FORM = "Give rows of six columns x,y,z,roll,pitch,yaw (m, degrees), with or without these titles."
+
 
 def box_of(hexapod: Hexapod, texts: Iterable[str], around: tuple[float, float] | None) -> Box:
     """The box of `--box x=-0.1:0.1,roll=-10:10 ...` or `--around 0.1 10`; the rest is held at the home pose."""
@@ -58,28 +60,35 @@ def read_poses(path: Path) -> Array:
     """Rows x y z (m) roll pitch yaw (deg) of a .npy file, or of a .csv file with or without a line of names."""
     import numpy as np
 
+    if path.suffix != ".npy":
+        return _read_csv(path)
     try:
-        binary = path.suffix == ".npy"
-        rows = np.load(path, allow_pickle=False).astype(np.float64) if binary else _csv(path)
+        rows = np.load(path, allow_pickle=False).astype(np.float64)
     except (OSError, ValueError) as error:
-        raise click.UsageError(
-            f"--poses {path} cannot be read: {error}. Give rows x,y,z,roll,pitch,yaw (m, deg)."
-        ) from None
+        raise click.UsageError(f"{path} cannot be read: {error}. {_FORM}") from None
     if rows.ndim != 2 or rows.shape[1] != 6:
-        raise click.UsageError(f"--poses {path} has shape {rows.shape}; it must have six columns x,y,z,roll,pitch,yaw.")
+        raise click.UsageError(f"{path} has shape {rows.shape}. {_FORM}")
     rows[:, 3:] = np.radians(rows[:, 3:])
     return rows
 
 
-def _csv(path: Path) -> Array:
+def _read_csv(path: Path) -> Array:
     import numpy as np
 
-    lines = [
-        line for line in path.read_text(encoding="utf-8-sig").splitlines() if line.strip() and line.lstrip()[0] != "#"
-    ]
-    if lines and lines[0].split(",")[0].strip().lower() == "x":
-        lines = lines[1:]
-    return np.array([[float(number) for number in line.split(",")] for line in lines]).reshape(len(lines), -1)
+    from flexapod.conventions import AXES, ROTATIONS
+    from flexapod.design.units import UNITS
+    from flexapod.errors import ArgumentError
+    from flexapod.tables import naming, parse_table, read_text
+
+    text = read_text(path)
+    with naming(path):
+        table = parse_table(text, {axis: axis for axis in AXES}, _FORM, titles=AXES)
+        columns = {column.name: column for column in table.columns}
+        if missing := [axis for axis in AXES if axis not in columns]:
+            raise ArgumentError(f"there is no column {', '.join(missing)}. {_FORM}")
+        units = {axis: UNITS["angle" if axis in ROTATIONS else "length"] for axis in AXES}
+        default = {axis: "deg" if axis in ROTATIONS else "m" for axis in AXES}
+        return np.column_stack([table.numbers(columns[a], units[a], default[a], finite=False) for a in AXES])
 
 
 def _parts(option: str, texts: Iterable[str]) -> dict[str, str]:

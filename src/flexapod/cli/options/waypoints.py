@@ -2,47 +2,39 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
+from flexapod.conventions import AXES, ROTATIONS, TRANSLATIONS
+from flexapod.errors import ArgumentError
 
 if TYPE_CHECKING:
     from flexapod.paths.trajectory import Ends, Trajectory
 
-COLUMNS = ("t", "x", "y", "z", "roll", "pitch", "yaw")
+COLUMNS = ("t", *AXES)
+NAMES = {"t": "t", "time": "t", "weight": "weight", **{axis: axis for axis in AXES}}
+FORM = f"Its first line must be {','.join(COLUMNS)} and may end in ,weight (s, m, degrees, or units as in x_mm)."
 
 
 def read(file: Path, ends: Ends) -> Trajectory:
-    """The path of a file. Raises UsageError, with the line, for what is no such file."""
-    import numpy as np
+    """The trajectory in a file. Raises ArgumentError, with the line, if it is not such a file."""
 
+    from flexapod.design.units import UNITS
     from flexapod.paths.trajectory import Trajectory
     from flexapod.pose import Pose
+    from flexapod.tables import TIMES, naming, parse_table, read_text
 
-    try:
-        text = file.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise click.UsageError(f"{file} cannot be read: {error}.") from error
-    lines = [line for line in csv.reader(text.splitlines()) if line and not line[0].lstrip().startswith("#")]
-    head = [name.strip() for name in lines[0]] if lines else []
-    if head not in ([*COLUMNS], [*COLUMNS, "weight"]):
-        raise click.UsageError(
-            f"{file} begins with {','.join(head) or 'nothing'}; its first line must be {','.join(COLUMNS)} and may "
-            "end in ,weight (s, m, degrees)."
-        )
-    rows = []
-    for number, line in enumerate(lines[1:], start=1):
-        try:
-            rows.append([float(cell) for cell in line])
-        except ValueError:
-            rows.append([])
-        if len(rows[-1]) != len(head):
-            raise click.UsageError(f"{file}: waypoint {number} is {','.join(line)}; {len(head)} numbers are needed.")
-    table = np.array(rows).reshape(-1, len(head))
-    poses = Pose.from_rpy(*table[:, 1:4].T, *np.radians(table[:, 4:7]).T)
-    return Trajectory(poses, table[:, 0], ends, table[:, 7] if len(head) > len(COLUMNS) else None)
+    text = read_text(file)
+    with naming(file):
+        table = parse_table(text, NAMES, FORM)
+        columns = {column.name: column for column in table.columns}
+        if missing := [name for name in COLUMNS if name not in columns]:
+            raise ArgumentError(f"there is no column {', '.join(missing)}. {FORM}")
+        times = table.numbers(columns["t"], TIMES)
+        place = [table.numbers(columns[name], UNITS["length"]) for name in TRANSLATIONS]
+        turn = [table.numbers(columns[name], UNITS["angle"], "deg") for name in ROTATIONS]
+        weights = table.numbers(columns["weight"]) if "weight" in columns else None
+        return Trajectory(Pose.from_rpy(*place, *turn), times, ends, weights)
 
 
 def written(path: Trajectory) -> str:
