@@ -132,6 +132,16 @@ def test_the_core_includes_downwards_and_knows_python_in_its_bindings_only(path)
         assert "nanobind" not in text
 
 
+def page_imports(text: str) -> list[str]:
+    """The other folders of the page that a TypeScript file imports."""
+    return re.findall(r"(?:from|import|import\()\s*'\.\./([\w-]+)/", text)
+
+
+def test_the_rule_sees_imports_of_the_page():
+    code = "import '../a/x'\nimport { b } from '../b/x'\nconst c = await import('../c/x')\nimport './d'\n"
+    assert page_imports(code) == ["a", "b", "c"]
+
+
 @pytest.mark.parametrize("path", PAGE_SOURCES, ids=lambda path: str(path.relative_to(PAGE)))
 def test_the_page_imports_downwards(path):
     """Biome holds the sizes of its functions (`make web-check`)."""
@@ -139,5 +149,5 @@ def test_the_page_imports_downwards(path):
     assert len(text.splitlines()) <= 250
     assert all(len(line) <= 120 for line in text.splitlines())
     here = PAGE_ORDER.index(path.parent.name)
-    for target in re.findall(r"(?:from|import|import\()\s*'\.\./([\w-]+)/", text):
+    for target in page_imports(text):
         assert PAGE_ORDER.index(target) < here, f"{path.parent.name} imports {target}"

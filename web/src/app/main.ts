@@ -107,7 +107,7 @@ async function restore({ presets, start }: Start, hash: string): Promise<void> {
   if (await open(text, preset, rest)) return
   if (page.design) return
   await open(presets[FIRST], FIRST)
-  await open(text, preset) // once more for its errors, now beside a machine
+  await open(text, preset) // again, to show its errors beside that machine
 }
 
 async function begin(): Promise<void> {

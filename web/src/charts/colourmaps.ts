@@ -32,7 +32,7 @@ function interpolated(samples: string[]): ColourMap {
 
 export const cividis = interpolated(CIVIDIS)
 export const viridis = interpolated(VIRIDIS)
-/** Blue over grey to orange, for numbers of both signs. */
+/** Blue over grey to orange, for signed numbers. */
 export const signed = interpolated(SIGNED)
 
 export const css = ([r, g, b]: Rgb): string => `rgb(${r},${g},${b})`

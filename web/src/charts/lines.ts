@@ -37,7 +37,7 @@ export class LinePlot {
     } else this.build()
   }
 
-  /** Draw anew, in another theme. */
+  /** Draw again, for instance in another theme. */
   readonly build = (): void => {
     this.plot?.destroy()
     this.plot = null
@@ -148,7 +148,7 @@ export class LinePlot {
   }
 }
 
-/** Whether a plot of one can show the other by new data alone. */
+/** Whether a plot of one shows the other when only its data are replaced. */
 function alike(a: Lines, b: Lines): boolean {
   return a.title === b.title && a.series.length === b.series.length && a.x.log === b.x.log && a.y.label === b.y.label
 }

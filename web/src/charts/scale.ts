@@ -75,7 +75,7 @@ export function span(series: ArrayLike<number | null>[], log: boolean, decades =
         .sort((a, b) => a - b),
     )
     const usual = Math.max(...sorted.map((values) => values[values.length >> 1] ?? 0))
-    const top = Math.min(high * 1.5, usual * 1e4) // an undamped peak has no top worth showing
+    const top = Math.min(high * 1.5, usual * 1e4) // an undamped peak is infinitely high
     const seen = sorted
       .flat()
       .filter((v) => v > top / 10 ** decades)

@@ -2,10 +2,10 @@
 
 /** Okabe and Ito's colours for categories, in an order in which neighbours differ most. */
 const ON_LIGHT = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9']
-/** The same hues, lighter where they would sink into a dark ground. */
+/** The same hues, lighter for a dark background. */
 const ON_DARK = ['#4d9bff', '#ff7f2a', '#1fc796', '#e08fc0', '#f2b632', '#8fd3ff']
 export const categories = (): string[] => (theme().dark ? ON_DARK : ON_LIGHT)
-/** Second mark of a category for those who see no colours: translations drawn through, rotations dashed. */
+/** Line styles that tell categories apart without colours: translations solid, rotations dashed. */
 export const DASHES = [[], [], [], [6, 3], [6, 3], [6, 3]]
 export const EXCEEDED = '#d55e00'
 

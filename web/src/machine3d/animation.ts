@@ -3,7 +3,7 @@
 import type { Scene } from './scene'
 import { noTwist, type Twist } from './twist'
 
-/** What moves: the twists of platform and base at a time of the page, s. */
+/** The displacements of platform and base at a time since the motion began, s. */
 export type Motion = (seconds: number) => [Twist, Twist]
 
 export class Animation {
@@ -39,7 +39,7 @@ export class Animation {
     requestAnimationFrame(this.step)
   }
 
-  /** For people who asked for less motion: the end of the swing. */
+  /** For users who prefer reduced motion: the largest displacement, without motion. */
   private stillPicture(): void {
     this.scene.machine.place(...this.motion!(0.25))
     this.motion = null

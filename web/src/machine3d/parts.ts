@@ -15,7 +15,7 @@ export function phong(colour: THREE.ColorRepresentation, more: THREE.MeshPhongMa
   return new THREE.MeshPhongMaterial({ color: colour, specular: 0x222222, shininess: 24, ...more })
 }
 
-/** A prism over the joints, taken in the order of their angle about z. */
+/** A prism over the joints, in the order of their angle about z. */
 export function plate(joints: THREE.Vector3[], thickness: number, material: THREE.Material): THREE.Mesh {
   const middle = joints.reduce((sum, j) => sum.add(j), new THREE.Vector3()).divideScalar(joints.length)
   const ring = [...joints].sort(
@@ -84,7 +84,7 @@ export function frame(length: number, r: number, text: string): THREE.Object3D[]
   })
 }
 
-/** The platform's mass centre, named G, on a machine of a size. */
+/** The platform's mass centre, labelled G; `size` of the machine, m. */
 export function massCentre(at: THREE.Vector3, size: number, text: string): THREE.Object3D[] {
   const more = { emissive: 0x5a3d00, depthTest: false, transparent: true, opacity: 0.95 }
   const ball = new THREE.Mesh(new THREE.SphereGeometry(0.045 * size, 20, 14), phong(0xe69f00, more))

@@ -1,4 +1,4 @@
-// The 3-D view: renderer, camera and views. Drawn when something changed, never for nothing.
+// The 3-D view: renderer, camera and views. It is drawn only when something has changed.
 
 import * as THREE from 'three'
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js'
@@ -21,7 +21,7 @@ interface Graphics {
   parameters: THREE.WebGLRendererParameters
 }
 
-/** Whether WebGL works, and by a graphics card or in software. There the context, costly to make, is kept for use. */
+/** Whether WebGL works, and whether in hardware. A context in software is costly to make, so it is kept for use. */
 function graphics(): Graphics {
   const canvas = document.createElement('canvas')
   const context = canvas.getContext('webgl2', { antialias: false, alpha: true })
@@ -106,7 +106,7 @@ export class Scene {
     this.draw()
   }
 
-  /** Look from a standard side, everything in view. */
+  /** Look from a standard direction, with the whole machine in view. */
   look(from: Standard): void {
     const points = this.machine.extent()
     const middle = new THREE.Box3().setFromPoints(points)
@@ -139,7 +139,7 @@ export class Scene {
     }, 0)
   }
 
-  /** The floor under the base, with lines at a round distance. */
+  /** The floor under the base, with grid lines at a power of ten of a metre. */
   paintGround(): void {
     const step = 10 ** Math.floor(Math.log10(this.machine.radius * 0.6))
     const t = theme()

@@ -26,7 +26,7 @@ const SHARES: [string, number][] = [
 ]
 const COLUMNS = [{ name: 'index' }, { name: 'ω₁ rad/s' }, { name: 'cond(H)' }, { name: '' }]
 
-/** Poses come as float32: nine digits hold one, and more would only look exact. */
+/** Poses are sent as float32, which nine digits represent exactly. */
 const rounded = (six: number[]) => six.map((v) => Number(v.toPrecision(9)))
 
 export class CloudPart {

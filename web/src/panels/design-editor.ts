@@ -10,7 +10,7 @@ const LINE = 18 // px
 
 export class DesignEditor {
   readonly element: HTMLElement
-  drafting = false // the text is no design, and not the one of the machine shown
+  drafting = false // the text is not a valid design, so the machine shown has another one
   private readonly area = h('textarea', {
     class: 'code',
     spellcheck: 'false',
@@ -38,7 +38,7 @@ export class DesignEditor {
     store.on(['design'], () => this.follow())
   }
 
-  /** Show a text that is no design. */
+  /** Show a text that is not a valid design. */
   draft(text: string, errors: FieldError[]): void {
     this.drafting = true
     this.area.value = text
@@ -52,7 +52,7 @@ export class DesignEditor {
     this.complain([])
   }
 
-  /** What was written: a design at once becomes the machine's. */
+  /** Show the machine of the text that was written, if it is a valid design. */
   private async read(text: string): Promise<void> {
     try {
       const design = await describe(text)

@@ -4,6 +4,7 @@ import type { Field } from '../state/answers'
 import { page, store } from '../state/store'
 import { button, h, select, status } from '../widgets/dom'
 import { saveText } from '../widgets/download'
+import { fileName } from '../widgets/format'
 import { spring } from '../widgets/layout'
 import { DesignEditor } from './design-editor'
 import { DesignForm } from './design-form'
@@ -22,7 +23,7 @@ export interface DesignPanel {
 
 function save(): void {
   const { design } = page
-  if (design) saveText(`${design.name.replace(/[^\w.-]+/g, '-')}.toml`, design.toml, 'application/toml')
+  if (design) saveText(`${fileName(design.name)}.toml`, design.toml, 'application/toml')
 }
 
 /** `reveal` brings the panel to the front. */

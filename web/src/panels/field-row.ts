@@ -52,7 +52,7 @@ export class FieldRow {
 
   private draw(): void {
     const value = shaped(this.value, this.rule.shapes, this.each)
-    let whole = structuredClone(value) // what the cells say, finished or not
+    let whole = structuredClone(value) // numbers in the cells; NaN where one is missing
     const write = (path: number[], text: string) => {
       whole = put(whole, path, parsed(text))
       const missing = flat(whole).filter(Number.isNaN).length

@@ -30,7 +30,8 @@ export function legColours(s: Snapshot): LegColours | null {
   const most = Math.max(...numbers.map(Math.abs)) || 1
   const both = page.colour === 'force' && Math.min(...numbers) < 0
   const [low, high] = both ? [-most, most] : [0, most]
-  const sequential: ColourMap = theme().dark ? (t) => cividis(0.22 + 0.78 * t) : cividis // not lost in a dark ground
+  const darkest = theme().dark ? 0.22 : 0 // what is darker cannot be seen on a dark background
+  const sequential: ColourMap = (t) => cividis(darkest + (1 - darkest) * t)
   const map = both ? signed : sequential
   return { colours: numbers.map((v) => css(map((v - low) / (high - low)))), label, low, high, map }
 }

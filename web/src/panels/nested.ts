@@ -6,7 +6,7 @@ export function allEqual(values: Nested[]): boolean {
   return values.every((value) => JSON.stringify(value) === JSON.stringify(values[0]))
 }
 
-/** A value of a shape without any number in it. */
+/** A value of a shape in which all numbers are missing (NaN). */
 export function blank(shape: number[]): Nested {
   return shape.length === 0 ? Number.NaN : Array.from({ length: shape[0] }, () => blank(shape.slice(1)))
 }

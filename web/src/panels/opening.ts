@@ -9,12 +9,12 @@ export const MOST_TEXT = 1024 * 1024
 type Draft = (text: string, errors: FieldError[]) => void
 let draft: Draft = () => undefined
 
-/** Who shows a text that is no design. */
+/** Set the function that shows a text that is not a design. */
 export function onDraft(show: Draft): void {
   draft = show
 }
 
-/** What the page takes over from a design that it shows now. */
+/** The change of the page's state when it shows a design. */
 export function shown(text: string, design: Design): Partial<Page> {
   return { text, preset: '', changes: {}, design, described: sourceKey(text, {}), error: '' }
 }

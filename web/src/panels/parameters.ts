@@ -14,7 +14,7 @@ export function change(key: string, value: unknown): void {
   store.set({ changes })
 }
 
-/** Slider position 0 to 1 to value and back: a factor of ten each way, or a stretch about the original. */
+/** From value to slider position (0 to 1) and back: a factor of ten each way, or linear about the original value. */
 function scaleOf(parameter: Parameter): { at(value: number): number; value(at: number): number } {
   const { original, size } = parameter
   if (parameter.logarithmic && original > 0) {
@@ -32,7 +32,7 @@ class ParameterRow {
   private readonly number: HTMLInputElement
   private readonly undo: HTMLButtonElement
   private readonly wrong = h('p', { class: 'wrong', role: 'alert', hidden: true })
-  private typing = false // a number that is being typed stays, whatever is answered meanwhile
+  private typing = false // answers do not replace a number that is being typed
 
   constructor(private parameter: Parameter) {
     const { key, label, unit } = parameter

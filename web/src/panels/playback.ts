@@ -92,7 +92,7 @@ export class Playback {
     })
   }
 
-  /** Another machine or pose is shown: the simulation does not move it. */
+  /** Stop: another machine or pose is shown. */
   private leave(): void {
     if (!this.run) return
     this.turn(false)

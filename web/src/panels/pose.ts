@@ -1,4 +1,4 @@
-// The six pose inputs. The pose lives in the page's state: a slider only shows it, and writes it when moved.
+// The six inputs of the pose. The page's state holds the pose; the inputs show and change it.
 
 import { COORDINATES } from '../state/answers'
 import { page, store } from '../state/store'
@@ -38,7 +38,7 @@ function row(i: number): Row {
     spellcheck: 'false',
   })
   const suffix = h('span', { class: 'unit' })
-  let typing = false // a number that is being typed stays, whatever is answered meanwhile
+  let typing = false // answers do not replace a number that is being typed
   const put = () => {
     typing = false
     const value = parsed(number.value)

@@ -53,7 +53,7 @@ export class Shaker {
     void this.start()
   }
 
-  /** The machine has changed: shake it anew, near its first mode if no frequency was given yet. */
+  /** After a change of the machine, shake it again. The first frequency is near that of the first mode. */
   private follow(): void {
     const first = page.snapshot?.damped?.frequency[0] ?? page.snapshot?.frequency[0]
     if (!this.frequency.value && first) this.frequency.value = field(Number((0.97 * first).toPrecision(4)))

@@ -4,6 +4,7 @@ import { onTheme, theme } from '../charts/theme'
 import type { Scene } from '../machine3d/scene'
 import { page, store } from '../state/store'
 import { button, h, select } from '../widgets/dom'
+import { fileName } from '../widgets/format'
 import { spring } from '../widgets/layout'
 import { colourBar, legColours } from './leg-colours'
 
@@ -57,7 +58,7 @@ function tools(scene: Scene): HTMLElement {
     scene.draw()
   }
   const labels = button('Labels', toggle, { 'aria-pressed': 'true', class: 'quiet' })
-  const file = () => (page.design?.name ?? 'hexapod').replace(/[^\w.-]+/g, '-')
+  const file = () => fileName(page.design?.name ?? 'hexapod')
   return h(
     'div',
     { class: 'bar tools over' },

@@ -20,7 +20,7 @@ export async function toAddress(page: Page): Promise<string> {
   return part.toString().replace(/%2C/g, ',')
 }
 
-/** State from an address; what it does not say or says wrongly stays as it is. */
+/** The state that an address holds, without what is missing or wrong in it. */
 export async function fromAddress(hash: string, presets: Record<string, string>): Promise<Partial<Page>> {
   const part = new URLSearchParams(hash.replace(/^#/, ''))
   const found: Partial<Page> = await design(part, presets)
@@ -51,7 +51,7 @@ async function design(part: URLSearchParams, presets: Record<string, string>): P
     const changes = JSON.parse(part.get('changes') ?? '{}')
     if (changes && typeof changes === 'object' && !Array.isArray(changes)) found.changes = changes
   } catch {
-    // an address cut short by a mail program: the rest of it still counts
+    // the address was cut short, by a mail program for instance: the rest of it is used
   }
   return found
 }

@@ -1,4 +1,4 @@
-// Talking to the server: one question in flight with the latest one next, and streams of binary points.
+// Requests to the server: single answers, answers that follow a state, and streams of binary numbers.
 
 import type { FieldError, JobFailure, JobMessage, Refusal } from './answers'
 
@@ -40,7 +40,7 @@ export async function get<T>(path: string): Promise<T> {
   return (await fetch(path)).json()
 }
 
-/** Asks again when told to, one question at a time; what was asked meanwhile is asked once, with the latest values. */
+/** Sends one request at a time. Requests made meanwhile become one, with the values of then. */
 export class Live<T> {
   private busy = false
   private stale = false
@@ -67,7 +67,7 @@ export class Live<T> {
         this.answered(answer)
       } catch (error) {
         if (!(error instanceof Refused)) throw error
-        const meant = JSON.stringify(asked) === JSON.stringify(this.body()) // else it is of numbers that are gone
+        const meant = JSON.stringify(asked) === JSON.stringify(this.body()) // otherwise a newer request follows
         if (meant) this.failed(error)
       } finally {
         if (!this.stale) this.busy = false

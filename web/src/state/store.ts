@@ -53,14 +53,14 @@ class Store {
     for (const [keys, listener] of this.listeners) if (keys.some((key) => changed.includes(key))) listener()
   }
 
-  /** What every question to the server carries. */
+  /** What every request to the server contains. */
   question(): { design: string; changes: Record<string, unknown>; pose: number[]; joint: JointModel } {
     const { text, changes, pose, joint } = this.page
     return { design: text, changes, pose, joint }
   }
 }
 
-/** Tells designs of the page apart. */
+/** Identifies a design: its text and the changes to it. */
 export const sourceKey = (text: string, changes: Record<string, unknown>): string =>
   `${JSON.stringify(changes)} ${text}`
 

@@ -1,4 +1,4 @@
-// Elements without templates: nothing here or elsewhere sets HTML from text.
+// Elements are built here; nowhere is HTML set from text.
 
 export type Child = Node | string | number | null | undefined | false
 export type Attributes = Record<string, unknown>

@@ -1,6 +1,6 @@
 // Numbers as people read them.
 
-/** Significant digits, with a thin exponent for the very large and small; a dash for what does not exist. */
+/** A number with significant digits, with an exponent if very large or small; a dash if there is no number. */
 export function sig(value: number | null | undefined, digits = 5): string {
   if (value === null || value === undefined || Number.isNaN(value)) return '–'
   if (!Number.isFinite(value)) return value > 0 ? '∞' : '−∞'
@@ -14,13 +14,13 @@ export function sig(value: number | null | undefined, digits = 5): string {
   return text.replace(/^-/, '−')
 }
 
-/** A number for an input field: all the digits that matter, none of the rounding. */
+/** A number for an input field, with up to twelve digits. */
 export function field(value: number): string {
   const exact = Number(value.toPrecision(12))
   return Math.abs(exact) >= 1e6 ? exact.toExponential().replace('e+', 'e') : String(exact)
 }
 
-/** A number typed by a person: decimal comma, spaces and a typographic minus are all right. NaN if it is none. */
+/** The number that a person typed, with decimal comma, spaces or a typographic minus; NaN if it is not a number. */
 export function parsed(text: string): number {
   const clean = text
     .trim()
@@ -28,6 +28,11 @@ export function parsed(text: string): number {
     .replace(/[\s_]/g, '')
     .replace(/^([^.]*),([^.,]*)$/, '$1.$2')
   return clean === '' ? Number.NaN : Number(clean)
+}
+
+/** A name without the characters that file names should not have. */
+export function fileName(name: string): string {
+  return name.replace(/[^\w.-]+/g, '-')
 }
 
 export function percent(share: number | null): string {

@@ -17,7 +17,7 @@ export class Runner {
     this.bar.hidden = true
   }
 
-  /** Run a job; one that still runs is stopped first. Resolves to whether it came to its end. */
+  /** Run a job; one that still runs is stopped first. Resolves to whether the job was completed. */
   async run(kind: string, spec: unknown, message: (message: Message, data: Uint8Array) => void): Promise<boolean> {
     this.running?.abort()
     const mine = new AbortController()
