@@ -45,8 +45,9 @@ struct Field {
   nb::tuple arrays() { return nb::make_tuple(value.array(), slope.array()); }
 };
 
-/// Values and derivatives along m directions at n poses, of what `what` asks for (bits: 1 frequencies, 2 H, 4 legs).
-///     "omega" (n, 6) and "rayleigh" (n, 6, 6, m); "H" (n, 36); "leg_length" (n, 6), "leg_distance" (n, 15 pairs) and
+/// Values and derivatives along m directions at n poses, of what `what` asks for (bits: 1 frequencies, 2 H, 4 legs, 8
+/// stiffness).
+///     "omega" (n, 6) and "rayleigh" (n, 6, 6, m); "H" and "stiffness" (n, 36); "leg_length" (n, 6), "leg_distance" (n, 15 pairs) and
 ///     "joint_cosine" (n, 12: universal, spherical), each as (value, derivative along the directions).
 /// directions: (m, 211). displacements: (n, m, 6), of the poses along each direction. home: one motion, or empty, and
 /// its displacements (m, 6).
@@ -60,10 +61,10 @@ nb::dict design_gradients(const Input& design, Joint joint, const Input& platfor
   const double* moves = rows(displacements, n * m, 6, "displacements");
   const Motion<double>* home_pose = home.size() == 0 ? nullptr : motions(home, 1, "home");
   const double* home_moves = home_pose == nullptr ? nullptr : rows(home_displacements, m, 6, "home_displacements");
-  const bool frequencies = what & 1, forces = what & 2, legs = what & 4;
+  const bool frequencies = what & 1, forces = what & 2, legs = what & 4, stiffness = what & 8;
 
   Output omega({n, 6}), rayleigh({n, 6, 6, m});
-  Field H(n, 36, m), length(n, 6, m), distance(n, 15, m), cosine(n, 12, m);
+  Field H(n, 36, m), K(n, 36, m), length(n, 6, m), distance(n, 15, m), cosine(n, 12, m);
   std::vector<Modes> modes(frequencies ? n : 0);
   double* w = omega.data();
   for (size_t i = 0; i < modes.size(); ++i) {
@@ -92,6 +93,10 @@ nb::dict design_gradients(const Input& design, Joint joint, const Input& platfor
         const Mat6<Seed> h = force_transformation(g);
         for (size_t a = 0; a < 36; ++a) H.put(i, a, h[a / 6][a % 6], first, count);
       }
+      if (stiffness) {
+        const Mat6<Seed> k = stiffness_matrix(moved.design, spring_directions(g));
+        for (size_t a = 0; a < 36; ++a) K.put(i, a, k[a / 6][a % 6], first, count);
+      }
       if (legs) {
         for (size_t a = 0; a < 6; ++a) length.put(i, a, norm(g.S[a]), first, count);
         size_t pair = 0;
@@ -107,6 +112,7 @@ nb::dict design_gradients(const Input& design, Joint joint, const Input& platfor
   nb::dict result;
   if (frequencies) result["omega"] = omega.array(), result["rayleigh"] = rayleigh.array();
   if (forces) result["H"] = H.arrays();
+  if (stiffness) result["stiffness"] = K.arrays();
   if (legs) {
     result["leg_length"] = length.arrays();
     result["leg_distance"] = distance.arrays();

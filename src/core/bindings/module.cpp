@@ -105,6 +105,24 @@ nb::object force_transformation_(const Input& design, const Input& platforms, co
   return nb::cast(H.array());
 }
 
+/// F: n matrices with one column for each spring.
+nb::object spring_matrix(const Input& design, const Input& platforms, const Input& bases) {
+  const Machine<double> machine = machine_of(design);
+  const RootStiffness<double> root(machine.design);
+  const States s(platforms, bases);
+  Output F({s.n, 6, size_t{spring_count}});
+  double* out = F.data();
+  for (size_t i = 0; i < s.n; ++i) write(out, root.scaled(spring_directions(geometry(machine, s, i))));
+  return nb::cast(F.array());
+}
+
+/// The leg of each spring.
+nb::tuple spring_legs() {
+  nb::list legs;
+  for (int j = 0; j < spring_count; ++j) legs.append(spring_leg(j));
+  return nb::tuple(legs);
+}
+
 nb::tuple equations_of_motion(const Input& design, Joint joint, const Input& platforms, const Input& bases) {
   const Machine<double> machine = machine_of(design, joint);
   const States s(platforms, bases);
@@ -273,6 +291,8 @@ NB_MODULE(_core, m) {
   m.def("leg_distance", &leg_distance);
   m.def("forward_kinematics", &forward_kinematics_);
   m.def("force_transformation", &force_transformation_);
+  m.def("spring_matrix", &spring_matrix);
+  m.attr("SPRING_LEGS") = spring_legs();
   m.def("equations_of_motion", &equations_of_motion);
   m.def("forward_dynamics", &forward_dynamics_);
   m.def("inverse_dynamics", &inverse_dynamics_);

@@ -19,6 +19,9 @@ template <class T> using SpringMatrix = Mat6<T, spring_count>;
 /// N/m.
 template <class D> const D& spring_stiffness(const Design<D>& design, int j) { return design.leg[j].stiffness; }
 
+/// The leg that a spring belongs to.
+inline constexpr int spring_leg(int j) { return j % 6; }
+
 /// Sets the directions of the springs of leg i, whose unit vector is s and whose platform joint is at q_p.
 template <class T, class P>
 void set_spring_directions(SpringMatrix<T>& directions, int i, const Vec3<P>& q_p, const Vec3<T>& s) {
@@ -56,6 +59,18 @@ template <class D> struct RootStiffness {
     return F;
   }
 };
+
+/// K = D diag(k) D^T.
+template <class T, class D> Mat6<T> stiffness_matrix(const Design<D>& design, const SpringMatrix<T>& directions) {
+  Mat6<T> K;
+  for (int r = 0; r < 6; ++r)
+    for (int c = 0; c <= r; ++c) {
+      for (int j = 0; j < spring_count; ++j)
+        K[r][c] += spring_stiffness(design, j) * (directions[r][j] * directions[c][j]);
+      K[c][r] = K[r][c];
+    }
+  return K;
+}
 
 /// How much each spring is longer than when it carries no force, m; L_0: the legs' unstretched lengths.
 template <class T> void elongations(const Geometry<T>& g, const double (&L_0)[6], T (&elongation)[spring_count]) {

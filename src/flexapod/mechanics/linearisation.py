@@ -12,6 +12,7 @@ from flexapod import _core
 from flexapod.conventions import TWO_PI, Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import ZERO, as_joint, single_pose, states, wrench
+from flexapod.mechanics.springs import spring_matrix
 from flexapod.mechanics.state_space import StateSpace, state_space_of
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.optional import needed
@@ -82,6 +83,8 @@ class Linearisation:
         A platform that moves rigidly with the base has x = carry x_b.
     gravity : ndarray
         Gravity, m/s2, (3,).
+    springs : ndarray
+        F, (6, m), a column for each spring: without load, gravity and damping K is F F^T.
     """
 
     M: Array
@@ -95,6 +98,7 @@ class Linearisation:
     rest: Equilibrium
     carry: Array
     gravity: Array
+    springs: Array
 
     def modes(self) -> DampedModes:
         """Compute the complex modes with the base fixed; of a pair of real poles, the slower or growing one."""
@@ -211,6 +215,7 @@ def linearise(
         hexapod.packed, as_joint(joint), s.platform, s.base, wrench(force, moment, ()), rest.unstretched_length
     )
     r = s.platform[0, :3] - s.base[0, :3]
+    F = spring_matrix(hexapod, pose, base=base)
     carry = np.eye(6)
     carry[:3, 3:] = skew(r).T
-    return Linearisation(M, C, K, M_b, C_b, K_b, H, hexapod.legs.stiffness, rest, carry, hexapod.gravity)
+    return Linearisation(M, C, K, M_b, C_b, K_b, H, hexapod.legs.stiffness, rest, carry, hexapod.gravity, F)

@@ -10,8 +10,8 @@ from flexapod import _core
 from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import as_joint, single_pose, states
-from flexapod.mechanics.kinematics import force_transformation
 from flexapod.mechanics.modes import natural_modes
+from flexapod.mechanics.springs import BY_LEG, spring_matrix
 from flexapod.pose import PoseLike, skew
 
 
@@ -105,8 +105,7 @@ def energy_shares(
     """
     s = states(hexapod, pose, base)
     shape = natural_modes(hexapod, pose, base=base, joint=joint).shape
-    stretch = np.swapaxes(force_transformation(hexapod, pose, base=base), -1, -2) @ shape
-    strain = hexapod.legs.stiffness[:, None] * stretch**2
+    strain = BY_LEG @ (np.swapaxes(spring_matrix(hexapod, pose, base=base), -1, -2) @ shape) ** 2
     with np.errstate(invalid="ignore"):
         strain = strain / strain.sum(axis=-2, keepdims=True)
     platform, legs = _core.inertia_parts(hexapod.packed, as_joint(joint), s.platform, s.base)

@@ -8,11 +8,11 @@ import numpy as np
 
 from flexapod import _core
 from flexapod.conventions import Array
-from flexapod.design.layout import HOME, PLACES
+from flexapod.design.layout import HOME
 from flexapod.pose import Motion, Pose
 from flexapod.workspace.worst import twist_of_coordinates
 
-_FREQUENCIES, _FORCES, _LEGS = 1, 2, 4
+_FREQUENCIES, _FORCES, _LEGS, _STIFFNESS = 1, 2, 4, 8
 _NO_HOME = np.zeros((0, _core.motion_size)), np.zeros((0, 6))
 
 
@@ -39,14 +39,12 @@ class Slopes:
 
     @cached_property
     def H(self) -> tuple[Array, Array]:
-        value, slope = self._core(_FORCES)["H"]
-        return value.reshape(-1, 6, 6), slope.reshape(-1, 6, 6, slope.shape[-1])
+        return _matrices(*self._core(_FORCES)["H"])
 
     @cached_property
     def stiffness(self) -> tuple[Array, Array]:
-        """Of the legs, (6,) N/m and (6, n)."""
-        place = PLACES["legs.stiffness"]
-        return self.numbers[place], self.jacobian[place]
+        """Of the unloaded machine at the platform, (k, 6, 6) and (k, 6, 6, n)."""
+        return _matrices(*self._core(_STIFFNESS)["stiffness"])
 
     @property
     def leg_length(self) -> tuple[Array, Array]:
@@ -87,6 +85,11 @@ class Slopes:
             np.ascontiguousarray(home_displacement),
             what,
         )
+
+
+def _matrices(value: Array, slope: Array) -> tuple[Array, Array]:
+    """Rows of 36 numbers as 6 x 6 matrices."""
+    return value.reshape(-1, 6, 6), slope.reshape(-1, 6, 6, slope.shape[-1])
 
 
 def soft_least(values: Array, slopes: Array, sharpness: float) -> tuple[Array, Array]:

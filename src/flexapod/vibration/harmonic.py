@@ -11,6 +11,7 @@ from scipy.linalg import eigh
 from flexapod.conventions import Array, Complex
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import Linearisation
+from flexapod.mechanics.springs import SPRING_LEG
 
 _BLOCK = 4096  # frequencies solved at a time: bounds the memory
 
@@ -63,8 +64,8 @@ class _Modes:
         left = self.shape.T
         self.square = square
         self.skew = left @ (0.5 * (linear.K - linear.K.T)) @ self.shape  # only a wrench that turns makes K unsymmetric
-        spring = linear.H * linear.leg_stiffness  # wrench of unit stretches
-        self.loss = left @ (spring * eta) @ linear.H.T @ self.shape
+        F = linear.springs
+        self.loss = left @ (F * eta[SPRING_LEG]) @ F.T @ self.shape
         self.friction = left @ linear.C @ self.shape
         # Rigid motion with the base meets no spring, and a turned base turns gravity: K carry + K_b is known without
         # the cancellation, which would drown slow motion. It meets no friction either, but in the model "spin_free".
@@ -74,7 +75,8 @@ class _Modes:
         rounding = 1e-14 * np.abs(linear.C).max() * np.abs(linear.carry).max()
         self.rubbed = left @ np.where(np.abs(rubbed) > rounding, rubbed, 0.0)
         self.inertia = left @ (linear.M @ linear.carry + linear.M_b)
-        self.given = np.hstack([left, left @ (spring * (1 + 1j * eta))])
+        command = linear.H * (linear.leg_stiffness * (1 + 1j * eta))  # wrench of unit commands
+        self.given = np.hstack([left, left @ command])
 
     def solve(self, omega: Array) -> Complex:
         """Displacements (n, 6, 18) per base displacement, wrench and command."""
