@@ -4,8 +4,8 @@ SI units and rad/s throughout. The everyday names are here; all names are in the
 `flexapod.control.lqg`. A name is loaded when it is first used, so that `import flexapod` is quick.
 """
 
-import lazy_loader
+from flexapod._suggestions import attach
 
 __version__ = "0.2.0"
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

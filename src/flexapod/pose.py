@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod._suggestions import Suggesting, suggests
 from flexapod.conventions import Array
 from flexapod.errors import FlexapodError, PoseError, shown
 
@@ -51,7 +52,17 @@ def _rotation_matrices(rotation: Any) -> Array:
     return matrix
 
 
-class Pose:
+_WORDS = dict.fromkeys("xyz", "position") | {
+    **dict.fromkeys(("roll", "pitch", "yaw", "angles", "euler", "orientation"), "rpy (roll, pitch, yaw), or rotation"),
+    **dict.fromkeys(("quaternion", "quat", "as_quat"), "rotation.as_quat()"),
+    **dict.fromkeys(("as_matrix", "rotation_matrix", "R"), "matrix"),
+    **dict.fromkeys(("from_euler", "from_angles", "from_xyzrpy"), "from_rpy"),
+    "from_rotation": "Pose(position, rotation)",
+}
+
+
+@suggests(_WORDS)
+class Pose(metaclass=Suggesting):
     """Position of a body's reference point and its orientation; one pose or many, equal and hashed by value.
 
     Parameters

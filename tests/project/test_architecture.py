@@ -11,6 +11,7 @@ CORE = SOURCE.parent / "core"
 
 #: Folders and modules directly below flexapod, from the ground up. Each may import those before it.
 ORDER = [
+    "_suggestions",
     "_core",
     "errors",
     "conventions",

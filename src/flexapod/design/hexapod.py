@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod._suggestions import Suggesting, suggests
 from flexapod.conventions import Array
 from flexapod.design import changes as design_changes
 from flexapod.design import design_file
@@ -24,9 +25,25 @@ from flexapod.design.tables import DEFAULT_GRAVITY, complete, flatten
 from flexapod.errors import DesignError, shown
 from flexapod.pose import Pose
 
+_WORDS = {
+    "load": "flexapod.load(name or path)",
+    "mass": "platform_mass",
+    "inertia": "platform_inertia",
+    "mass_center": "platform_mass_center",
+    "stiffness": "legs.stiffness",
+    "damping": "legs.damping",
+    "leg_length": "limits.leg_length, or flexapod.inverse_kinematics(hexapod)",
+    "pose": "home",
+    "joints": "base_joints or platform_joints",
+    "copy": "replace",
+    "to_dict": "values",
+    "plot": "flexapod.plots.machine(hexapod)",
+}
 
+
+@suggests(_WORDS)
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Hexapod(Value):
+class Hexapod(Value, metaclass=Suggesting):
     """A 6-UPS Stewart platform; it never changes, `replace` makes another one.
 
     Make one with `flexapod.load`, `from_circles`, `from_toml`, or from its parts.

@@ -9,9 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod._suggestions import suggests
 from flexapod.conventions import TWO_PI, Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import ZERO, as_joint, single_pose, states, wrench
+from flexapod.mechanics.modes import MODE_WORDS
 from flexapod.mechanics.springs import spring_matrix
 from flexapod.mechanics.state_space import StateSpace, state_space_of
 from flexapod.mechanics.statics import Equilibrium, hold
@@ -31,6 +33,7 @@ class RestOptions(TypedDict, total=False):
     joint: JointModel
 
 
+@suggests(MODE_WORDS | {"poles": "pole"})
 class DampedModes(NamedTuple):
     """The six modes of the linearised dynamics with the base fixed.
 
@@ -57,6 +60,18 @@ class DampedModes(NamedTuple):
         return self.omega / TWO_PI
 
 
+_WORDS = {
+    "mass_matrix": "M",
+    "damping_matrix": "C",
+    "stiffness_matrix": "K",
+    "poles": "modes() (its pole)",
+    "frequency": "modes() (its frequency in Hz)",
+    "omega": "modes() (its omega in rad/s)",
+    "damping_ratio": "modes() (its damping_ratio)",
+}
+
+
+@suggests(_WORDS)
 @dataclass(frozen=True, eq=False)
 class Linearisation:
     """Linear dynamics M x'' + C x' + K x + M_b x_b'' + C_b x_b' + K_b x_b = H f + w about rest.

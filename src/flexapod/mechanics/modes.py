@@ -7,12 +7,21 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import _core
+from flexapod._suggestions import suggests
 from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import as_joint, states
 from flexapod.pose import PoseLike
 
+#: Words for what modes have.
+MODE_WORDS = {
+    **dict.fromkeys(("frequencies", "freq", "hz", "f", "frequency_hz"), "frequency (Hz), or omega (rad/s)"),
+    **dict.fromkeys(("shapes", "mode_shapes", "vectors", "eigenvectors", "vector"), "shape"),
+    **dict.fromkeys(("zeta", "damping", "damping_ratios"), "damping_ratio"),
+}
 
+
+@suggests(MODE_WORDS)
 class NaturalModes(NamedTuple):
     """The six undamped modes about a pose; unpacks as `omega, shape`.
 

@@ -3,6 +3,6 @@
 May import: paths and what lies below it.
 """
 
-import lazy_loader
+from flexapod._suggestions import attach
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

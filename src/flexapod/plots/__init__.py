@@ -6,6 +6,6 @@
 Without `ax` a new figure is made. May import: all subject packages.
 """
 
-import lazy_loader
+from flexapod._suggestions import attach
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)
