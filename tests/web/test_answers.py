@@ -109,6 +109,9 @@ def test_refusals_have_their_type(client: TestClient) -> None:
         answer = client.post("/api/design", json=asked)
         assert answer.status_code == 422
         fits(answer.json(), answers.Refusal)
+    answer = client.post("/api/design", json=ASKED, headers={"origin": "https://evil.example"})
+    assert answer.status_code == 403
+    fits(answer.json(), answers.Refusal)
 
 
 @pytest.mark.parametrize(

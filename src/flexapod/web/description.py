@@ -13,6 +13,7 @@ from flexapod.design.units import printed, si_unit
 from flexapod.web import pose_ranges
 from flexapod.web.answers import Design, Field
 from flexapod.web.designs import Source, built, original
+from flexapod.web.geometry import mean_leg_length
 from flexapod.web.parameters import main_parameters
 
 
@@ -44,7 +45,7 @@ def described(source: Source) -> Design:
         "parameters": main_parameters(hexapod, original(source.text)),
         "home": home,
         "box": pose_ranges.box(hexapod),
-        "leg": pose_ranges.mean_leg_length(hexapod, home),
+        "leg": mean_leg_length(hexapod, home),
         "toml": source.text if source.changes == "{}" else hexapod.to_toml(),
     }
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 import struct
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from starlette.responses import Response
+
+from flexapod.web.answers import JobMessage
 
 
 class JSONAnswer(Response):
@@ -40,7 +41,7 @@ def _plain(value: Any) -> Any:
     return value
 
 
-def frame(message: Mapping[str, object], data: bytes = b"") -> bytes:
+def frame(message: JobMessage, data: bytes = b"") -> bytes:
     """One message of a stream: two little-endian 32-bit lengths, JSON, bytes."""
     head = as_json(message)
     return struct.pack("<II", len(head), len(data)) + head + data

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import DesignError
 from flexapod.web.answers import Parameter
+from flexapod.web.geometry import mean_radius
 
 RADII = {"base.radius", "platform.radius"}  #: keys of the page only: joints scaled from the z axis
 
@@ -62,8 +60,3 @@ def with_radius(hexapod: Hexapod, key: str, radius: Any) -> Hexapod:
     joints = getattr(hexapod, f"{plate}_joints")
     scale = radius / mean_radius(joints)
     return hexapod.replace({f"{plate}.joints": joints * [scale, scale, 1.0]})
-
-
-def mean_radius(joints: Array) -> float:
-    """Mean distance of joints from the plate's z axis, m."""
-    return float(np.hypot(joints[:, 0], joints[:, 1]).mean())

@@ -5,16 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod.design.hexapod import Hexapod
-from flexapod.pose import Pose
 from flexapod.web.answers import PoseBox
-from flexapod.web.parameters import mean_radius
+from flexapod.web.geometry import in_degrees, mean_leg_length, mean_radius
 
 
 def home(hexapod: Hexapod) -> list[float]:
     """The home pose in m and degrees; if the design has none, the platform over the base at a usual height."""
     if hexapod.home is not None:
-        home = hexapod.home
-        return [*home.position.tolist(), *np.round(np.degrees(home.rpy), 12).tolist()]
+        return in_degrees([*hexapod.home.position, *hexapod.home.rpy])
     base, platform = hexapod.base_joints, hexapod.platform_joints
     centre = base.mean(axis=0) - platform.mean(axis=0)
     height = 1.2 * mean_radius(base)
@@ -39,13 +37,6 @@ def box(hexapod: Hexapod) -> PoseBox:
     turn = min(30.0, float(np.degrees(reach / max(mean_radius(hexapod.platform_joints), 1e-9))))
     span = np.array([_rounded(v) for v in (reach, reach, reach, turn, turn, turn)])
     return {"low": np.round(at - span, 9).tolist(), "high": np.round(at + span, 9).tolist()}
-
-
-def mean_leg_length(hexapod: Hexapod, six: list[float]) -> float:
-    """Mean distance between the joints of a leg at a pose in m and degrees: how long to draw the parts of a leg."""
-    pose = Pose.from_rpy(*six[:3], *np.radians(six[3:]))
-    ends = pose.position + hexapod.platform_joints @ pose.matrix.T
-    return float(np.linalg.norm(ends - hexapod.base_joints, axis=1).mean())
 
 
 def _rounded(value: float) -> float:

@@ -15,6 +15,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import FlexapodError
 from flexapod.pose import Pose
 from flexapod.web import designs
+from flexapod.web.geometry import pose_at
 from flexapod.web.security import MAX_BODY
 
 
@@ -104,8 +105,8 @@ def _finite(value: Any) -> bool:
 
 @lru_cache(maxsize=64)
 def pose_of(six: tuple[float, ...]) -> Pose:
-    """The pose of x, y, z in m and roll, pitch, yaw in degrees."""
-    return Pose.from_rpy(*six[:3], *np.radians(six[3:]))
+    """The pose of coordinates in m and degrees."""
+    return pose_at(six)
 
 
 def box(asked: dict[str, Any]) -> tuple[Array, Array]:

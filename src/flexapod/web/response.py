@@ -13,6 +13,7 @@ from flexapod.vibration.grid import grid_around
 from flexapod.vibration.harmonic import complex_poles
 from flexapod.web import requests
 from flexapod.web.answers import FrequencyResponse, ShakenBase
+from flexapod.web.geometry import farthest
 
 QUANTITIES = ("absolute", "relative", "compliance", "command", "leg_force")
 POINTS = 400  #: frequencies over the range, beside those at the resonances
@@ -66,7 +67,7 @@ def shake(asked: dict[str, Any]) -> ShakenBase:
     moved = data["absolute"].to_numpy()[0, :, AXES.index(axis)]
     base = np.eye(6)[AXES.index(axis)]
     hexapod = question.hexapod
-    size = float(np.linalg.norm(hexapod.platform_joints, axis=1).max())
+    size = farthest(hexapod.platform_joints)
     largest = max(
         _reach(np.abs(moved), hexapod.platform_joints), _reach(base, hexapod.base_joints), np.finfo(float).tiny
     )
@@ -80,4 +81,4 @@ def shake(asked: dict[str, Any]) -> ShakenBase:
 
 def _reach(twist: Array, joints: Array) -> float:
     """An upper bound of the displacement of the farthest joint, m."""
-    return float(np.linalg.norm(twist[:3]) + np.linalg.norm(twist[3:]) * np.linalg.norm(joints, axis=1).max())
+    return float(np.linalg.norm(twist[:3]) + np.linalg.norm(twist[3:]) * farthest(joints))

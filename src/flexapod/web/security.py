@@ -9,6 +9,8 @@ from starlette.datastructures import Headers, MutableHeaders
 from starlette.responses import JSONResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from flexapod.web.answers import Refusal
+
 LOCAL_HOSTS = ("127.0.0.1", "localhost", "::1")
 MAX_BODY = 8 * 1024 * 1024  #: bytes; enough for a recorded base motion of about 60 000 rows
 
@@ -44,7 +46,8 @@ class Guard:
         refused = self._refusal(scope["method"], headers)
         if refused is not None:
             status, reason = refused
-            await JSONResponse({"error": reason}, status)(scope, receive, send)
+            refusal: Refusal = {"error": reason, "fields": []}
+            await JSONResponse(refusal, status)(scope, receive, send)
             return
         await self.app(scope, receive, send)
 

@@ -19,6 +19,7 @@ from flexapod.simulation.time_simulation import simulate
 from flexapod.web import requests
 from flexapod.web.answers import Message, SimulationRun
 from flexapod.web.encode import float32
+from flexapod.web.geometry import farthest
 
 KINDS = ("harmonic", "sweep", "shock", "step", "csv")
 ROWS = 4000  #: instants of one simulation that are sent
@@ -116,8 +117,7 @@ def _rows(data: Any) -> Array:
 
 def _run(question: requests.Question, rows: Array, words: str) -> SimulationRun:
     """How to play the rows: speed, factor of displacements, and remarks."""
-    hexapod = question.hexapod
-    size = float(np.linalg.norm(hexapod.platform_joints, axis=1).max())
+    size = farthest(question.hexapod.platform_joints)
     moved, turned = (np.linalg.norm(rows[:, [[a, a + 1, a + 2] for a in at]], axis=2) for at in ((1, 7), (4, 10)))
     largest = max(float((moved + turned * size).max()), np.finfo(float).tiny)
     return {

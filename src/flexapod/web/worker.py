@@ -24,16 +24,19 @@ def serve(pipe: Connection) -> None:
     while True:
         try:
             kind, spec = pipe.recv()
-        except EOFError:
-            return
-        try:
-            for message in KINDS[kind](spec):
+            for message in _messages(kind, spec):
                 pipe.send(message)
-            pipe.send(({"type": "done"}, b""))
-        except FlexapodError as error:
-            pipe.send(({"type": "failed", "error": str(error)}, b""))
-        except (BrokenPipeError, ConnectionResetError):
+        except (EOFError, BrokenPipeError, ConnectionResetError):
             return
-        except Exception as error:  # a defect of the program: traced on the server's terminal
-            traceback.print_exc()
-            pipe.send(({"type": "failed", "error": f"internal error ({type(error).__name__}); see the server"}, b""))
+
+
+def _messages(kind: str, spec: dict[str, Any]) -> Iterator[Message]:
+    """The messages of one job, and how it ended."""
+    try:
+        yield from KINDS[kind](spec)
+        yield {"type": "done"}, b""
+    except FlexapodError as error:
+        yield {"type": "failed", "error": str(error)}, b""
+    except Exception as error:  # a defect of the program: traced on the server's terminal
+        traceback.print_exc()
+        yield {"type": "failed", "error": f"internal error ({type(error).__name__}); see the server"}, b""

@@ -13,6 +13,7 @@ from flexapod.conventions import AXES, Array
 from flexapod.web import requests
 from flexapod.web.answers import Message, Progress
 from flexapod.web.encode import float32
+from flexapod.web.geometry import in_degrees, in_radians
 from flexapod.workspace.box import Box
 from flexapod.workspace.pose_sets import random_poses
 from flexapod.workspace.quantities import evaluate
@@ -63,24 +64,29 @@ def worst(spec: dict[str, Any]) -> Iterator[Message]:
 
     question = requests.question(spec)
     found = worst_pose(question.hexapod, _box(spec), joint=question.joint)
-    pose = [*found.pose[:3].tolist(), *np.round(np.degrees(found.pose[3:]), 12).tolist()]
     what = "singular poses lie in the box; here the index is" if found.singular else "least index"
     edge = f"; on the box's edge in {', '.join(found.at_bounds)}" if found.at_bounds else ""
     words = f"{what} {found.omega_1:.5g} rad/s, found by {found.agreed} of {found.starts} searches{edge}"
-    yield {"type": "found", "pose": pose, "index": found.omega_1, "words": words[0].upper() + words[1:]}, b""
+    yield (
+        {
+            "type": "found",
+            "pose": in_degrees(found.pose),
+            "index": found.omega_1,
+            "words": words[0].upper() + words[1:],
+        },
+        b"",
+    )
 
 
 def _box(spec: dict[str, Any]) -> Box:
     """The pose box of a request, in m and rad."""
     low, high = requests.box(spec)
-    scale = np.repeat([1.0, np.pi / 180], 3)
-    return Box(*zip(low * scale, high * scale, strict=True))
+    return Box(*zip(in_radians(low), in_radians(high), strict=True))
 
 
 def _quantities(question: requests.Question, six: Array, names: tuple[str, ...]) -> Array:
     """Quantities of many poses (m, degrees), one column each, with half of the threads: other pages need some."""
-    rows = six * np.repeat([1.0, np.pi / 180], 3)
-    found = evaluate(question.hexapod, rows, names, question.joint, max(1, thread_count(None) // 2))
+    found = evaluate(question.hexapod, in_radians(six), names, question.joint, max(1, thread_count(None) // 2))
     return np.stack([np.asarray(found[name], dtype=float) for name in names], axis=1)
 
 
