@@ -13,7 +13,7 @@ def main() -> float:
     machine = fx.load("motion-base")
     tilt = np.radians(12)
     poses = fx.Pose.from_rpy([0, 0.2, 0, -0.2, 0], 0, 2.39, [0, tilt, 0, -tilt, 0], 0, 0)
-    path = fx.Trajectory(poses, [0, 1, 2, 3, 4], "periodic")
+    path = fx.Trajectory(poses, [0, 1, 2, 3, 4], ends="periodic")
     motion = path(np.linspace(0, 4, 401))
     leg_force = fx.inverse_dynamics(machine, motion)
     carried = fx.joint_reactions(machine, motion, leg_force=leg_force)

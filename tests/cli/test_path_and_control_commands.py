@@ -40,7 +40,7 @@ def test_path_of_a_file(result, tmp_path):
     found = result("path", "mukherjee-i", file, "--ends", "free")
     poses = fx.Pose.from_rpy([0, 0.05, 0], [0, 0.02, 0], [0.89, 0.9, 0.95], np.radians([0, 5, 0]), 0,
                              np.radians([0, 10, 0]))  # fmt: skip
-    path = fx.Trajectory(poses, [0, 1, 2], "free", weights=[1, 3, 1])
+    path = fx.Trajectory(poses, [0, 1, 2], ends="free", weights=[1, 3, 1])
     expected = fx.path_index(fx.load("mukherjee-i"), path)
     assert found["least_index_rad_s"] == pytest.approx(expected.minimum)
     assert found["weighted_mean_index_rad_s"] == pytest.approx(expected.weighted_mean)

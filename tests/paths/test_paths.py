@@ -23,7 +23,7 @@ def waypoints(closed=False):
 def path(ends="rest", **more):
     poses = waypoints(ends == "periodic")
     times = np.cumsum([0.0, 0.7, 0.5, 0.9, 0.6, 0.8])[: poses.shape[0]] + 2.0
-    return fx.Trajectory(poses, times, ends, **more)
+    return fx.Trajectory(poses, times, ends=ends, **more)
 
 
 @pytest.mark.parametrize("ends", ["rest", "free", "periodic"])
@@ -176,18 +176,29 @@ def test_leg_forces_follow_from_the_full_dynamics(machine, measured):
 @pytest.mark.parametrize(
     ("build", "words"),
     [
-        (lambda: fx.Trajectory(waypoints(), [0, 1, 1, 2, 3]), r"times\[2\] is 1 s, after 1 s; times must increase"),
-        (lambda: fx.Trajectory(waypoints(), [0, 1, 2]), r"one number for each of the 5 waypoints"),
-        (lambda: fx.Trajectory(waypoints()[0], [0]), "at least two poses"),
+        (lambda: fx.Trajectory(waypoints(), [0, 1, 2]), r"times has shape \(3,\); it must have shape \(5,\)"),
         (lambda: fx.Trajectory(waypoints(), [0, 1, 2, 3, np.nan]), "NaN or infinity"),
-        (lambda: fx.Trajectory(waypoints(), range(5), "stop"), "it must be 'rest', 'free' or 'periodic'"),
-        (lambda: fx.Trajectory(waypoints(), range(5), "periodic"), "must end where it starts"),
+        (lambda: fx.Trajectory(waypoints(), range(5), ends="stop"), "it must be one of 'rest', 'free', 'periodic'"),
         (lambda: fx.Trajectory(waypoints(), range(5), weights=[1, 1, -1, 1, 1]), "weights must be >= 0"),
+        (lambda: path().retimed(0), "must be finite and > 0"),
+        (lambda: fx.path_index(fx.load("mukherjee-i"), path(), bound=-1), "bound is -1 rad/s; it must be finite and > 0"),
+        (lambda: fx.path_index(fx.load("mukherjee-i"), waypoints()), "must be a flexapod Trajectory"),
+        (lambda: fx.paths.plan_slice(fx.load("mukherjee-i"), path()), "what flexapod.plan_path gives"),
+    ],
+)  # fmt: skip
+def test_wrong_arguments_are_told(build, words):
+    with pytest.raises(fx.ArgumentError, match=words):
+        build()
+
+
+@pytest.mark.parametrize(
+    ("build", "words"),
+    [
+        (lambda: fx.Trajectory(waypoints(), [0, 1, 1, 2, 3]), r"times\[2\] is 1 s, after 1 s; times must increase"),
+        (lambda: fx.Trajectory(waypoints()[0], [0]), "at least two poses"),
+        (lambda: fx.Trajectory(waypoints(), range(5), ends="periodic"), "must end where it starts"),
         (lambda: fx.Trajectory(fx.Pose.from_rpy(0, 0, 1, 0, 0, np.array([-0.1, 0, 0.1, 3.1])), range(4)), "Split the path"),
         (lambda: path()(10.0), "the path runs from 2 to"),
-        (lambda: path().retimed(0), "must be > 0"),
-        (lambda: fx.path_index(fx.load("mukherjee-i"), path(), bound=-1), "a bound on the index must be > 0"),
-        (lambda: fx.path_index(fx.load("mukherjee-i"), waypoints()), "must be a flexapod Trajectory"),
     ],
 )  # fmt: skip
 def test_wrong_paths_are_told_what_is_wrong(build, words):

@@ -16,7 +16,6 @@ import flexapod as fx
 PENDING = {
     "workspace",
     "excitation",
-    "paths",
     "optimisation",
 }
 PENDING |= {"plots"}

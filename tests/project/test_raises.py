@@ -146,15 +146,21 @@ PROVOKED = {
     ("pareto_front", "InfeasibleError"): lambda: fx.pareto_front(
         MACHINE, [fx.Variable("platform.mass", 20, 40)], fx.optimisation.TotalMass(1.0), trials=2, points=8
     ),
-    ("path_index", "PathError"): lambda: fx.path_index(MACHINE, LINE, bound=-1.0),
+    ("path_index", "ArgumentError"): lambda: fx.path_index(MACHINE, LINE, bound=-1.0),
     ("path_index", "PoseError"): lambda: fx.path_index(
         MACHINE, fx.Trajectory(fx.Pose([MEETING.position, HOME.position]), [0, 1])
     ),
     ("path_index", "SingularPoseError"): lambda: fx.path_index(MACHINE, THROUGH),
-    ("path_loads", "PathError"): lambda: fx.paths.path_loads(MACHINE, LINE, samples=2),
+    ("path_loads", "ArgumentError"): lambda: fx.paths.path_loads(MACHINE, LINE, samples=2),
     ("path_loads", "SingularPoseError"): lambda: fx.paths.path_loads(MACHINE, THROUGH),
+    ("plan_path", "ArgumentError"): lambda: fx.plan_path(MACHINE, *LINE.waypoints, 1.0, timing=0.0),
+    ("plan_path", "MissingExtraError"): without(
+        "ompl",
+        lambda: fx.plan_path(fx.load("mukherjee-i"), [0, 0, 0.89, 0, -0.57, -0.18], [0, 0, 0.89, 0, 0.78, 0.92], 110.0),
+    ),
     ("plan_path", "PathError"): lambda: fx.plan_path(MACHINE, HOME, HOME, 1.0),
     ("plan_path", "PoseError"): lambda: fx.plan_path(MACHINE, BATCH, HOME, 1.0),
+    ("plan_slice", "ArgumentError"): lambda: fx.paths.plan_slice(MACHINE, LINE),
     ("plan_slice", "PathError"): lambda: fx.paths.plan_slice(MACHINE, fx.plan_path(MACHINE, *LINE.waypoints, 1.0)),
     ("polynomial", "ArgumentError"): lambda: fx.excitation.polynomial("z", []),
     ("pose_grid", "ArgumentError"): lambda: fx.pose_grid(x=[0, np.nan]),

@@ -7,11 +7,12 @@ import slycot
 import control
 import flexapod as fx
 from flexapod.control import isolation
+from flexapod.control.h_infinity_synthesis import suboptimal_controller
 from flexapod.control.plant import Controller, Plant
 from flexapod.mechanics import statics
 from flexapod.mechanics.linearisation import linearise
 from flexapod.paths.ompl_planner import search
-from flexapod.paths.planning import _Task
+from flexapod.paths.planning_task import PlanningTask
 from flexapod.paths.requirements import Margins
 from flexapod.plots import animation
 from flexapod.pose import rotation_from_vector
@@ -126,9 +127,9 @@ def test_the_planner_goes_round_what_is_in_its_way():
 
 def test_a_way_without_a_smooth_path_is_said_so(machine, monkeypatch):
     pytest.importorskip("ompl")
-    monkeypatch.setattr("flexapod.paths.planning._WAYPOINTS", (8,))
-    monkeypatch.setattr("flexapod.paths.planning._MARGINS", (0.005,))
-    monkeypatch.setattr(_Task, "worst", lambda task, path, samples=400: np.array([-0.1, 0.2]))
+    monkeypatch.setattr("flexapod.paths.planning_task.WAYPOINTS", (8,))
+    monkeypatch.setattr("flexapod.paths.planning_task._MARGINS", (0.005,))
+    monkeypatch.setattr(PlanningTask, "worst", lambda task, path, samples=400: np.array([-0.1, 0.2]))
     with pytest.raises(fx.errors.PathError, match=r"a way was found, but no smooth path along it .* misses by 1"):
         fx.plan_path(machine, fx.Pose([0, 0, 0.89]), fx.Pose.from_rpy(0.05, 0, 0.9), 90.0)
 
@@ -192,20 +193,20 @@ class Routine:
         return (None, *(np.full((1, 1), gamma),) * 4)
 
 
-SYSTEM = isolation._Weighted(*(np.zeros((2, 2)),) * 4)
+SYSTEM = (np.zeros((2, 2)),) * 4
 
 
 @pytest.mark.parametrize("least", [0.003, 0.7, 40.0])
 def test_gamma_is_a_fifth_above_the_least_wherever_that_is(least, monkeypatch):
     monkeypatch.setattr(slycot, "sb10ad", Routine(least))
-    gamma, matrices = isolation._suboptimal(SYSTEM, 6)
+    gamma, matrices = suboptimal_controller(SYSTEM, 6)
     assert 1.2 * least <= gamma <= 1.2 * 1.01 * least
     assert matrices[0] == gamma
 
 
 def test_a_gamma_at_which_the_routine_fails_is_passed_by(monkeypatch):
     monkeypatch.setattr(slycot, "sb10ad", Routine(0.7, fails=lambda gamma: 0.8 < gamma < 0.9))
-    gamma, _ = isolation._suboptimal(SYSTEM, 6)
+    gamma, _ = suboptimal_controller(SYSTEM, 6)
     assert gamma == pytest.approx(0.7 * 1.1, rel=0.02)
 
 
@@ -219,7 +220,7 @@ def test_designs_that_cannot_be_made_are_told(isolator, monkeypatch):
         with pytest.raises(
             fx.errors.UnstableError, match=r"too badly conditioned\. Raise effort and noise, or lower the depth"
         ):
-            isolation._suboptimal(SYSTEM, 6)
+            suboptimal_controller(SYSTEM, 6)
     with monkeypatch.context() as patched:
         patched.setattr(isolation, "is_stable", lambda *given: False)
         with pytest.raises(fx.errors.UnstableError, match=r"too badly conditioned to be used\. Raise effort and noise"):

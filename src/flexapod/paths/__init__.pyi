@@ -1,9 +1,9 @@
 from .analysis import PathIndex as PathIndex
 from .analysis import path_index as path_index
 from .analysis import path_loads as path_loads
-from .planning import LegSpeed as LegSpeed
-from .planning import Plan as Plan
+from .leg_speed import LegSpeed as LegSpeed
+from .plan import Plan as Plan
+from .plan import plan_slice as plan_slice
 from .planning import plan_path as plan_path
-from .planning import plan_slice as plan_slice
 from .requirements import PathRequirements as PathRequirements
 from .trajectory import Trajectory as Trajectory

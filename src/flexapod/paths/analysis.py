@@ -1,4 +1,4 @@
-"""The dynamic stability index along a path (the paper's conclusion 1), and what the legs do on it."""
+"""The dynamic stability index along a trajectory, and what the legs do on it."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from numpy.typing import ArrayLike
 from scipy.integrate import cumulative_simpson
 from scipy.optimize import brentq, minimize_scalar
 
-from flexapod.conventions import LEGS, Array, JointModel
+from flexapod.checks import one_of, positive, whole
+from flexapod.conventions import LEGS, TRANSLATIONS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import PathError, PoseError, SingularPoseError
+from flexapod.errors import ArgumentError, PoseError, SingularPoseError
 from flexapod.mechanics.dynamics import inverse_dynamics
-from flexapod.mechanics.inputs import ZERO
+from flexapod.mechanics.inputs import ZERO, as_hexapod
 from flexapod.mechanics.joint_limits import check_limits
 from flexapod.mechanics.kinematics import condition_number, force_transformation, leg_rates
 from flexapod.mechanics.modes import natural_modes
@@ -28,15 +29,34 @@ _ZERO_INDEX = 1e-6  # of the largest index on the path: what a singular pose lea
 
 @dataclass(frozen=True, eq=False)
 class PathIndex:
-    """The index along a path; see `path_index`.
+    """The dynamic stability index along a trajectory, as `path_index` gives it.
 
-    samples: Dataset over `time` (s) with `index` (rad/s), `condition_number`, `within_limits` (bool), `weight`,
-    `cumulative_index` (integral of weight times index from the start, rad), `position` (m) and `rpy` (rad).
-    minimum, minimum_time, minimum_pose: the least index, rad/s, refined between samples, and where. bound: rad/s or
-    None. below: (start, end) times, s, between which the index lies below the bound. weighted_mean: rad/s.
-    crossings: times, s, at which the path passes through a singular pose (only with singular="keep").
+    Attributes
+    ----------
+    samples : xarray.Dataset
+        Over `time` (s): index (rad/s), condition_number, within_limits (bool), weight, cumulative_index (integral of
+        weight times index from the start, rad), position (time, axis) (m) and rpy (time, axis) (rad).
+    minimum : float
+        Least index, rad/s, refined between samples.
+    minimum_time : float
+        Its time, s.
+    minimum_pose : Pose
+        Its pose.
+    bound : float or None
+        The bound given, rad/s.
+    below : tuple of (float, float)
+        Start and end times, s, between which the index lies below the bound.
+    weighted_mean : float
+        Mean index, rad/s, weighted by the trajectory's weights.
+    crossings : tuple of float
+        Times, s, at which the trajectory passes through a singular pose; only with ``singular="keep"``.
 
-    Source: conclusion 1.
+    Examples
+    --------
+    >>> hexapod = fx.load("mukherjee-i")
+    >>> found = fx.path_index(hexapod, fx.Trajectory([[0, 0, 0.89, 0, 0, 0], [0.1, 0, 0.89, 0, 0, 0]], [0, 1]))
+    >>> found.samples["index"].dims, found.below
+    (('time',), ())
     """
 
     samples: xr.Dataset
@@ -50,7 +70,7 @@ class PathIndex:
 
     @property
     def above(self) -> bool:
-        """Whether the index stays at or above the bound all along."""
+        """Say whether the index stays at or above the bound all along."""
         return not self.below and not self.crossings
 
 
@@ -63,16 +83,65 @@ def path_index(
     joint: JointModel = "universal",
     singular: str = "raise",
 ) -> PathIndex:
-    """The lowest natural frequency along a path, against a bound (rad/s), and its weighted cumulative value.
+    """Compute the lowest natural frequency along a trajectory, and where it falls below a bound.
 
-    The minimum and the times at which the bound is crossed are refined between samples. The path's weights are joined
-    by straight lines in time; weighted_mean = integral of w omega dt / integral of w dt.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The design.
+    path : Trajectory
+        The motion of the platform; its speed does not matter here.
+    bound : float, optional
+        Bound on the index, rad/s.
+    samples : int, optional
+        Number of instants at which the index is computed, at least 8. Its minima and its crossings of the bound are
+        refined between them.
+    joint : {"universal", "spin_free"}, optional
+        Model of the joint between a leg and the base.
+    singular : {"raise", "keep"}, optional
+        Whether a singular pose on the way is an error, or recorded in `crossings`.
 
-    Raises: SingularPoseError where the path passes through a singular pose (with singular="keep" it is recorded
-    instead); PathError for a bound that is not > 0 or too few samples; PoseError at a pose that no leg can take.
-    Source: conclusion 1.
+    Returns
+    -------
+    PathIndex
+        The index over time, its minimum, where it lies below the bound, and its weighted mean.
+
+    Raises
+    ------
+    SingularPoseError
+        If the trajectory passes through a singular pose.
+    PoseError
+        If the legs cannot take a pose of the trajectory.
+    ArgumentError
+        If the bound is not > 0, there are too few samples, or `path` is not a Trajectory.
+
+    See Also
+    --------
+    path_loads : leg forces and speeds along a trajectory.
+    plan_path : a trajectory that keeps a bound.
+
+    Notes
+    -----
+    The index and its use as a bound for paths are those of [1]_, conclusion 1. The weights of the trajectory are joined
+    by straight lines in time; the weighted mean is the integral of weight times index over that of the weight.
+
+    References
+    ----------
+    .. [1] P. Mukherjee, B. Dasgupta and A. K. Mallik, "Dynamic stability index and vibration analysis of a flexible
+       Stewart platform", Journal of Sound and Vibration (2007).
+
+    Examples
+    --------
+    >>> hexapod = fx.load("mukherjee-i")
+    >>> path = fx.Trajectory([[0, 0, 0.89, 0, 0, 0], [0.1, 0, 0.89, 0, 0, 0]], times=[0.0, 1.0])
+    >>> found = fx.path_index(hexapod, path, bound=90.0)
+    >>> found.above, round(found.minimum, 1)
+    (True, 173.1)
     """
-    _check(path, bound, samples, singular)
+    _check(hexapod, path, samples)
+    if bound is not None:
+        positive(bound, "bound", "rad/s")
+    one_of(singular, "singular", ("raise", "keep"))
     times = path.grid(samples)
 
     def index(t: ArrayLike) -> Array:
@@ -108,16 +177,57 @@ def path_loads(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> xr.Dataset:
-    """Leg forces and leg travel along a path under the full dynamics.
+    """Compute leg forces, leg speeds and actuator power along a trajectory, under the full dynamics.
 
-    force (N), moment (N m): on the platform, in its frame, (3,) or (samples, 3). Dataset over (time, leg): `leg_force`
-    N (positive pushes), `static_force` N (the same at rest), `leg_length` m, `leg_rate` m/s, `leg_acceleration` m/s2,
-    `power` W of each actuator; over leg: `stroke` m, `peak_force` N; over time: `within_limits`.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The design.
+    path : Trajectory
+        The motion of the platform.
+    samples : int, optional
+        Number of instants, at least 8.
+    force, moment : array_like, optional
+        Force (N) and moment (N m) on the platform at its reference point, in the platform's axes: (3,), or a row for
+        each instant.
+    joint : {"universal", "spin_free"}, optional
+        Model of the joint between a leg and the base.
 
-    Raises: SingularPoseError where no leg forces can drive the path; PathError for too few samples.
-    Source: Eq. 34, solved for F.
+    Returns
+    -------
+    xarray.Dataset
+        Over `time` (s) and `leg`: leg_force (N, positive: compression), static_force (N, the same at rest), leg_length
+        (m), leg_rate (m/s), leg_acceleration (m/s2), power (W) of each actuator; over `leg`: stroke (m), peak_force
+        (N); over `time`: within_limits.
+
+    Raises
+    ------
+    SingularPoseError
+        If no leg forces can drive the trajectory somewhere.
+    ArgumentError
+        If there are too few samples, or `path` is not a Trajectory.
+
+    See Also
+    --------
+    path_index : the dynamic stability index along a trajectory.
+
+    Notes
+    -----
+    The leg forces solve Eq. 34 of [1]_ at every instant.
+
+    References
+    ----------
+    .. [1] P. Mukherjee, B. Dasgupta and A. K. Mallik, "Dynamic stability index and vibration analysis of a flexible
+       Stewart platform", Journal of Sound and Vibration (2007).
+
+    Examples
+    --------
+    >>> hexapod = fx.load("mukherjee-i")
+    >>> path = fx.Trajectory([[0, 0, 0.89, 0, 0, 0], [0.1, 0, 0.89, 0, 0, 0]], times=[0.0, 1.0])
+    >>> fx.paths.path_loads(hexapod, path).peak_force.dims
+    ('leg',)
     """
-    _check(path, None, samples, "raise")
+    _check(hexapod, path, samples)
     times = path.grid(samples)
     motion = path(times)
     crossings = _crossings(hexapod, path, times)
@@ -148,15 +258,11 @@ def path_loads(
     return dataset.assign_attrs(design=hexapod.name, digest=hexapod.digest)
 
 
-def _check(path: Trajectory, bound: float | None, samples: int, singular: str) -> None:
+def _check(hexapod: Hexapod, path: Trajectory, samples: int) -> None:
+    as_hexapod(hexapod)
     if not isinstance(path, Trajectory):
-        raise PathError(f"path is {type(path).__name__}; it must be a flexapod Trajectory")
-    if bound is not None and not (np.isfinite(bound) and bound > 0):
-        raise PathError(f"bound is {bound} rad/s; a bound on the index must be > 0")
-    if samples < 8:
-        raise PathError(f"samples is {samples}; at least 8 are needed to see a path")
-    if singular not in ("raise", "keep"):
-        raise PathError(f"singular is {singular!r}; it must be 'raise' or 'keep'")
+        raise ArgumentError(f"path is {type(path).__name__}; it must be a flexapod Trajectory.")
+    whole(samples, "samples", 8)
 
 
 def _all_possible(path: Trajectory, times: Array, values: Array) -> None:
@@ -216,5 +322,5 @@ def _samples(hexapod: Hexapod, path: Trajectory, times: Array, values: Array, jo
         "position": (("time", "axis"), pose.position, {"units": "m"}),
         "rpy": (("time", "axis"), pose.rpy, {"units": "rad"}),
     }
-    coordinates = {"time": ("time", times, {"units": "s"}), "axis": ["x", "y", "z"]}
+    coordinates = {"time": ("time", times, {"units": "s"}), "axis": list(TRANSLATIONS)}
     return xr.Dataset(variables, coordinates, {"design": hexapod.name, "digest": hexapod.digest, "joint": joint})

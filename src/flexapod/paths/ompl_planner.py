@@ -30,7 +30,7 @@ def search(
     *,
     step: float,
     seed: int = 0,
-    progress: Callable[[float], None] | None = None,
+    progress: Callable[[float], object] | None = None,
 ) -> Search:
     """A short polyline from ends[0] to ends[1] within [low, high] whose every point meets met((n, k)) -> (n,) bool.
 

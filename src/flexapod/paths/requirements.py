@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 
-from flexapod.conventions import Array, JointModel
+from flexapod.checks import number, one_of, positive
+from flexapod.conventions import JOINT_MODELS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import PathError
+from flexapod.errors import ArgumentError, PathError
 from flexapod.mechanics.joint_limits import check_limits, limit_excess
 from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
 from flexapod.pose import Pose
@@ -21,16 +22,42 @@ _SHARPNESS = 80.0  # of smooth minima: they lie below the true one by at most lo
 class PathRequirements:
     """What a planned path keeps to, all along.
 
-    index: least natural frequency, rad/s. condition_number: most that H's (in metres) may have; None: no bound but the
-    index, which is zero at a singular pose. clearance: least distance between leg axes, m, in place of the design's.
-    limits: whether the design's limits hold. reach: how far the search may leave the box around start and goal, m;
-    default: half the mean leg length. turn: the same for rotations, rad. joint: the joint model of the index.
+    Parameters
+    ----------
+    index : float
+        Least natural frequency, rad/s.
+    condition_number : float, optional
+        Largest condition number of the force transformation H (in metres). By default only the index keeps away from
+        singular poses, at which it is zero.
+    clearance : float, optional
+        Least distance between leg axes, m, in place of that in the design's limits.
+    limits : bool, optional
+        Whether the design's limits are kept.
+    reach : float, optional
+        How far the search may leave the box around start and goal, m; half the mean leg length by default.
+    turn : float, optional
+        The same for rotations, rad.
+    joint : {"universal", "spin_free"}, optional
+        Model of the joint between a leg and the base.
 
-    Raises: PathError for a bound that nothing could keep.
-    Source: conclusion 1; limits and clearance are our own.
+    Raises
+    ------
+    ArgumentError
+        If no path could keep a bound, such as one that is not > 0.
+
+    See Also
+    --------
+    plan_path : a path that keeps requirements.
+
+    Examples
+    --------
+    >>> needs = fx.PathRequirements(100.0, condition_number=20.0)
+    >>> needs.turn
+    0.5
     """
 
     index: float
+    _: KW_ONLY
     condition_number: float | None = None
     clearance: float | None = None
     limits: bool = True
@@ -40,12 +67,12 @@ class PathRequirements:
 
     def __post_init__(self) -> None:
         for name, unit in (("index", "rad/s"), ("reach", "m"), ("turn", "rad"), ("clearance", "m")):
-            value = getattr(self, name)
-            if value is not None and not (np.isfinite(value) and value > 0):
-                raise PathError(f"{name} is {value} {unit}; it must be > 0")
-        if self.condition_number is not None and not self.condition_number > 1:
-            raise PathError(
-                f"condition_number is {self.condition_number}; no H has less than 1, so nothing could satisfy it"
+            if getattr(self, name) is not None:
+                positive(getattr(self, name), name, unit)
+        one_of(self.joint, "joint", JOINT_MODELS)
+        if self.condition_number is not None and not number(self.condition_number, "condition_number") > 1:
+            raise ArgumentError(
+                f"condition_number is {self.condition_number}; it must be > 1, as no H has a smaller one."
             )
 
 
@@ -132,7 +159,10 @@ class Margins:
 
 
 def smooth_minimum(values: Array) -> Array:
-    """-log(sum exp(-a x))/a over the last axis: smooth, and below the least value by at most log(n)/a."""
+    """-log(sum exp(-a x))/a over the last axis: smooth, and below the least value by at most log(n)/a.
+
+    Margins may be negative, where `optimisation.derivatives.soft_least` takes positive frequencies and their slopes.
+    """
     least = values.min(axis=-1, keepdims=True)
     least = np.where(np.isfinite(least), least, -1e3)
     return least[..., 0] - np.log(np.exp(-_SHARPNESS * (values - least)).sum(axis=-1)) / _SHARPNESS

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import minimize
@@ -11,19 +10,13 @@ from scipy.optimize import minimize
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.kinematics import leg_rates
+from flexapod.paths.chart import Chart, turning
+from flexapod.paths.leg_speed import LegSpeed, duration
 from flexapod.paths.requirements import Margins, smooth_minimum
-from flexapod.paths.trajectory import Chart, spline, turning
-from flexapod.pose import Motion
+from flexapod.paths.trajectory import spline
 
 _STEP = 1e-6  # of central differences, in scaled coordinates: truncation and rounding both near 1e-10
 _ROUGHNESS = 2e-3  # weight of the mean squared acceleration against length: fixes how fast the line is run
-
-
-class Speeds(NamedTuple):
-    """What every leg can do: rate m/s and acceleration m/s2; infinite: no bound."""
-
-    rate: float
-    acceleration: float
 
 
 class Knots:
@@ -49,8 +42,8 @@ def resampled(points: Array, count: int) -> Array:
 class Smoother:
     """Optimises the inner waypoints of a spline in scaled chart coordinates z: position / size, rotation vector."""
 
-    def __init__(self, margins: Margins, chart: Chart, size: float, speeds: Speeds | None) -> None:
-        self.margins, self.chart, self.speeds = margins, chart, speeds
+    def __init__(self, margins: Margins, chart: Chart, size: float, speed: LegSpeed | None) -> None:
+        self.margins, self.chart, self.speed = margins, chart, speed
         self.scale = np.repeat([size, 1.0], 3)
         self.hexapod: Hexapod = margins.hexapod
 
@@ -63,7 +56,7 @@ class Smoother:
         # A bound that an end just meets cannot be kept with a margin near it.
         room = np.minimum(margin, np.maximum(ends - 1e-6, -np.inf))
         inner = np.tile(np.stack([low, high], axis=1), (len(start) - 2, 1))
-        timed = self.speeds is not None
+        timed = self.speed is not None
         x = start[1:-1].ravel()
         if timed:
             x = np.append(x, self._duration(knots, start))
@@ -134,8 +127,8 @@ class Smoother:
 
     def _speed_margins(self, knots: Knots, P: Array, T: float) -> tuple[Array, Array]:
         """1 - |L'| / (rate T) and 1 - |L''| / (acceleration T^2), smooth minima over the legs, derivatives by P, T."""
-        assert self.speeds is not None
-        bound = self.speeds
+        assert self.speed is not None
+        bound = self.speed
 
         def margin(q: Array, rate: Array, acceleration: Array, duration: Array) -> Array:
             motion = self.chart.motions(q * self.scale, rate * self.scale, acceleration * self.scale)
@@ -159,16 +152,9 @@ class Smoother:
 
     def _duration(self, knots: Knots, P: Array) -> float:
         """Least time, s, in which the legs can follow the spline at the speeds they have."""
-        assert self.speeds is not None
+        assert self.speed is not None
         q, rate, acceleration = ((B @ P) * self.scale for B in knots.B)
-        return duration(self.hexapod, self.chart.motions(q, rate, acceleration), self.speeds)
-
-
-def duration(hexapod: Hexapod, motions: Motion, speeds: Speeds) -> float:
-    """Least time, s, for a path given by motions that run through it in one second."""
-    legs = leg_rates(hexapod, motions)
-    by_rate = np.abs(legs.rate).max() / speeds.rate
-    return float(max(by_rate, np.sqrt(np.abs(legs.acceleration).max() / speeds.acceleration)))
+        return duration(self.hexapod, self.chart.motions(q, rate, acceleration), self.speed)
 
 
 class _Cached:

@@ -1,115 +1,84 @@
-"""Paths: waypoints with times, joined by a smooth motion on SE(3)."""
+"""Trajectories: waypoints with times, joined by a smooth motion on SE(3)."""
 
 from __future__ import annotations
 
-from math import factorial, pi
 from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike
 
+from flexapod.checks import numbers, one_of, positive
 from flexapod.conventions import Array
-from flexapod.errors import PathError
-from flexapod.pose import Motion, Pose, skew
+from flexapod.errors import ArgumentError, PathError
+from flexapod.paths.chart import Chart
+from flexapod.pose import Motion, Pose, PoseLike, as_pose
 
 Ends = Literal["rest", "free", "periodic"]
-_WIDEST = 0.9 * pi  # of a turn from the middle orientation: the rotation vector's chart ends at pi
-
-# a = (1 - cos t)/t^2 and b = (t - sin t)/t^3 as power series in t^2. Within the chart, t < pi, 18 terms are exact.
-_A = np.array([(-1) ** k / factorial(2 * k + 2) for k in range(18)])
-_B = np.array([(-1) ** k / factorial(2 * k + 3) for k in range(18)])
-
-
-class Chart:
-    """Poses near a middle orientation as six numbers: position (m), and the rotation vector (rad) that turns it.
-
-    R = exp(e) R_0, in outer axes. Straight lines of these numbers are the "straight" motions of paths and plans.
-    """
-
-    def __init__(self, middle: Array) -> None:
-        self.middle = middle
-
-    @classmethod
-    def about(cls, poses: Pose) -> Chart:
-        """The chart about the mean orientation of poses. Raises PathError where one is turned too far from it."""
-        middle = poses.rotation.mean().as_matrix()
-        chart = cls(middle)
-        turn = np.linalg.norm(chart.coordinates(poses)[..., 3:], axis=-1)
-        if turn.max(initial=0.0) > _WIDEST:
-            raise PathError(
-                f"orientations lie up to {np.degrees(turn.max()):.4g} deg from their mean; at most "
-                f"{np.degrees(_WIDEST):.4g} deg can be joined. Split the path into parts."
-            )
-        return chart
-
-    def coordinates(self, poses: Pose) -> Array:
-        """(..., 6) numbers of poses."""
-        from scipy.spatial.transform import Rotation
-
-        turned = (poses.matrix @ self.middle.T).reshape(-1, 3, 3)
-        vectors = Rotation.from_matrix(turned).as_rotvec().reshape(*poses.shape, 3)
-        return np.concatenate([poses.position, vectors], axis=-1)
-
-    def poses(self, coordinates: Array) -> Pose:
-        """Poses of (..., 6) numbers."""
-        from scipy.spatial.transform import Rotation
-
-        flat = coordinates[..., 3:].reshape(-1, 3)
-        matrix = Rotation.from_rotvec(flat).as_matrix() @ self.middle
-        return Pose(coordinates[..., :3], matrix.reshape(*coordinates.shape[:-1], 3, 3))
-
-    def motions(self, q: Array, q_dot: Array, q_ddot: Array) -> Motion:
-        """Motions of (..., 6) numbers and their two time derivatives."""
-        e, e_dot, e_ddot = q[..., 3:], q_dot[..., 3:], q_ddot[..., 3:]
-        jacobian, rate = turning(e), _turning_rate(e, e_dot)
-        angular = np.einsum("...ij,...j->...i", jacobian, e_dot)
-        angular_rate = np.einsum("...ij,...j->...i", jacobian, e_ddot) + np.einsum("...ij,...j->...i", rate, e_dot)
-        return Motion(self.poses(q), q_dot[..., :3], angular, q_ddot[..., :3], angular_rate)
-
-
-def turning(e: Array) -> Array:
-    """(..., 3, 3), angular velocity (outer axes) from the rate of the rotation vector e: E + a e~ + b e~ e~."""
-    x = (e * e).sum(axis=-1)[..., None, None]
-    cross = skew(e)
-    return np.eye(3) + polynomial.polyval(x, _A) * cross + polynomial.polyval(x, _B) * cross @ cross
-
-
-def _turning_rate(e: Array, e_dot: Array) -> Array:
-    x = (e * e).sum(axis=-1)[..., None, None]
-    x_dot = 2 * (e * e_dot).sum(axis=-1)[..., None, None]
-    cross, cross_dot = skew(e), skew(e_dot)
-    a, b = polynomial.polyval(x, _A), polynomial.polyval(x, _B)
-    a_dot, b_dot = (x_dot * polynomial.polyval(x, polynomial.polyder(series)) for series in (_A, _B))
-    return a_dot * cross + a * cross_dot + b_dot * cross @ cross + b * (cross_dot @ cross + cross @ cross_dot)
 
 
 class Trajectory:
-    """A smooth motion through waypoints: `path(t)` is the platform's Motion at times t.
+    """A smooth motion of the platform through waypoints: ``trajectory(t)`` is its Motion at times t.
 
-    waypoints: Pose of shape (n,), n >= 2, in the base frame. times: (n,) s, increasing. ends: "rest" (starts and stops
-    with no velocity and acceleration), "free" (natural spline, no acceleration at the ends), "periodic" (the last
-    waypoint is the first again, and the motion goes on smoothly).
+    Parameters
+    ----------
+    waypoints : Pose or array_like
+        At least two poses in the base frame, a Pose of shape (n,), or rows (n, 6) of x, y, z (m), roll, pitch, yaw
+        (rad).
+    times : array_like
+        Time of each waypoint, (n,) s, increasing.
+    ends : {"rest", "free", "periodic"}, optional
+        Whether the motion starts and stops with no velocity and acceleration ("rest"), has no acceleration at its ends
+        ("free"), or goes on smoothly from the last waypoint, which is the first again ("periodic").
+    weights : array_like, optional
+        How much each waypoint matters in the means of `path_index`, (n,), >= 0; 1 by default.
 
-    Positions and rotation vectors about the mean orientation are splines: quintic, or cubic with free ends; velocity
-    and acceleration are continuous throughout. weights: (n,) >= 0, how much each waypoint matters, for `path_index`.
+    Attributes
+    ----------
+    waypoints : Pose
+        The waypoints, of shape (n,).
+    times, weights : ndarray
+        Times (s) and weights of the waypoints, (n,).
+    ends : str
+        As given.
+    start, duration : float
+        Time of the first waypoint, and from the first to the last, s.
 
-    Raises: PathError for waypoints, times or weights that make no path.
-    Source: own: B-splines of rotation vectors.
+    Raises
+    ------
+    PathError
+        If the waypoints or times make no path, or the waypoints' orientations lie too far apart.
+    ArgumentError
+        If `times`, `ends` or `weights` has a wrong shape or value.
+
+    See Also
+    --------
+    path_index : the dynamic stability index along a trajectory.
+    plan_path : a trajectory that keeps requirements.
+
+    Notes
+    -----
+    Positions and rotation vectors about the waypoints' mean orientation are B-splines: quintic, or cubic with free
+    ends. Velocity and acceleration are continuous throughout.
+
+    Examples
+    --------
+    >>> trajectory = fx.Trajectory([[0, 0, 1.0, 0, 0, 0], [0.1, 0, 1.1, 0, 0, 0.2]], times=[0.0, 2.0])
+    >>> trajectory(1.0).pose.position.round(3)
+    array([0.05, 0.  , 1.05])
     """
 
     def __init__(
-        self, waypoints: Pose, times: ArrayLike, ends: Ends = "rest", weights: ArrayLike | None = None
+        self, waypoints: PoseLike, times: ArrayLike, *, ends: Ends = "rest", weights: ArrayLike | None = None
     ) -> None:
-        if not isinstance(waypoints, Pose) or len(waypoints.shape) != 1 or waypoints.shape[0] < 2:
-            what = f"shape {waypoints.shape}" if isinstance(waypoints, Pose) else type(waypoints).__name__
-            raise PathError(f"waypoints is {what}; a Pose of shape (n,) with at least two poses is needed")
-        self.waypoints = waypoints
-        self.times = _times(times, waypoints.shape[0])
-        self.weights = _weights(weights, waypoints.shape[0])
+        poses = as_pose(waypoints, "waypoints")
+        if len(poses.shape) != 1 or poses.shape[0] < 2:
+            raise PathError(f"waypoints has batch axes {poses.shape}; a row of at least two poses is needed.")
+        self.waypoints = poses
+        self.times = _times(times, poses.shape[0])
+        self.weights = _weights(weights, poses.shape[0])
         self.ends = ends
-        self.chart = Chart.about(waypoints)
-        self._splines = spline(self.times, self.chart.coordinates(waypoints), ends)
+        self.chart = Chart.about(poses)
+        self._splines = spline(self.times, self.chart.coordinates(poses), ends)
 
     @property
     def start(self) -> float:
@@ -122,7 +91,7 @@ class Trajectory:
         return float(self.times[-1] - self.times[0])
 
     def __call__(self, t: ArrayLike) -> Motion:
-        """Motion at times t (...), s. Raises PathError outside the path's times."""
+        """Give the motion at times t (...), s; raises PathError outside the path's times."""
         when = np.asarray(t, dtype=np.float64)
         slack = 1e-12 * (abs(self.times[0]) + abs(self.times[-1]))
         if when.size and not (when.min() >= self.times[0] - slack and when.max() <= self.times[-1] + slack):
@@ -133,18 +102,18 @@ class Trajectory:
         return self.chart.motions(*(curve(when) for curve in self._splines))
 
     def grid(self, samples: int) -> Array:
-        """At least `samples` times over the path, evenly within each piece, with every waypoint among them."""
+        """Give at least `samples` times over the path, evenly within each piece, with every waypoint among them."""
         share = np.diff(self.times) / self.duration
         counts = np.maximum(2, np.ceil(share * samples)).astype(int)
         pieces = zip(self.times[:-1], self.times[1:], counts, strict=True)
         return np.concatenate([*(np.linspace(a, b, n, endpoint=False) for a, b, n in pieces), self.times[-1:]])
 
     def poses(self, samples: int) -> Pose:
-        """At least `samples` poses of the path, with every waypoint among them: the path as a region."""
+        """Give at least `samples` poses of the path, with every waypoint among them: the path as a region."""
         return self(self.grid(samples)).pose
 
     def length(self, characteristic_length: float = 1.0) -> float:
-        """Integral of the speed, m; one radian of rotation counts as `characteristic_length`, m."""
+        """Integrate the speed, m; one radian of rotation counts as `characteristic_length`, m."""
         nodes, weights = np.polynomial.legendre.leggauss(12)
         a, b = self.times[:-1, None], self.times[1:, None]
         motion = self(((a + b) + (b - a) * nodes) / 2)
@@ -152,14 +121,10 @@ class Trajectory:
         return float((np.sqrt(speed2) * weights * (b - a) / 2).sum())
 
     def retimed(self, duration: float) -> Trajectory:
-        """The same curve in space, run in another time, s.
-
-        Raises: PathError for a duration that is not > 0.
-        """
-        if not (np.isfinite(duration) and duration > 0):
-            raise PathError(f"duration is {duration} s; it must be > 0")
-        times = self.times[0] + (self.times - self.times[0]) * (duration / self.duration)
-        return Trajectory(self.waypoints, times, self.ends, self.weights)
+        """Give the same curve in space, run in another time, s."""
+        wanted = positive(duration, "duration", "s")
+        times = self.times[0] + (self.times - self.times[0]) * (wanted / self.duration)
+        return Trajectory(self.waypoints, times, ends=self.ends, weights=self.weights)
 
     def __repr__(self) -> str:
         return f"<Trajectory of {len(self.times)} waypoints, {self.duration:.6g} s, ends {self.ends}>"
@@ -169,8 +134,7 @@ def spline(times: Array, values: Array, ends: Ends) -> tuple[Any, Any, Any]:
     """The interpolating spline of (n, k) values and its first two derivatives. It is linear in the values."""
     from scipy.interpolate import make_interp_spline
 
-    if ends not in get_args(Ends):
-        raise PathError(f"ends is {ends!r}; it must be 'rest', 'free' or 'periodic'")
+    one_of(ends, "ends", get_args(Ends))
     width = values.shape[1:]
     still = [(1, np.zeros(width)), (2, np.zeros(width))]
     if ends == "rest":
@@ -198,30 +162,18 @@ def _periodic(times: Array, values: Array) -> Any:
 
 
 def _times(value: ArrayLike, count: int) -> Array:
-    times = _row(value, "times", count, "s")
+    times = numbers(value, "times", (count,))
     late = np.flatnonzero(np.diff(times) <= 0)
     if late.size:
         i = int(late[0])
-        raise PathError(f"times[{i + 1}] is {times[i + 1]:.6g} s, after {times[i]:.6g} s; times must increase")
+        raise PathError(f"times[{i + 1}] is {times[i + 1]:.6g} s, after {times[i]:.6g} s; times must increase.")
     return times
 
 
 def _weights(value: ArrayLike | None, count: int) -> Array:
     if value is None:
         return np.ones(count)
-    weights = _row(value, "weights", count, "")
+    weights = numbers(value, "weights", (count,))
     if weights.min() < 0 or not weights.max() > 0:
-        raise PathError(f"weights is {weights.tolist()}; weights must be >= 0, and one of them > 0")
+        raise ArgumentError(f"weights is {weights.tolist()}; weights must be >= 0, and one of them > 0.")
     return weights
-
-
-def _row(value: ArrayLike, name: str, count: int, unit: str) -> Array:
-    try:
-        row = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise PathError(f"{name} is {value!r}; {count} numbers are needed") from error
-    if row.shape != (count,):
-        raise PathError(f"{name} has shape {row.shape}; one number for each of the {count} waypoints is needed")
-    if not np.isfinite(row).all():
-        raise PathError(f"{name} holds NaN or infinity; all must be finite{', in ' + unit if unit else ''}")
-    return row.copy()

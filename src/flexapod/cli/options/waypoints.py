@@ -34,7 +34,7 @@ def read(file: Path, ends: Ends) -> Trajectory:
         place = [table.numbers(columns[name], UNITS["length"]) for name in TRANSLATIONS]
         turn = [table.numbers(columns[name], UNITS["angle"], "deg") for name in ROTATIONS]
         weights = table.numbers(columns["weight"]) if "weight" in columns else None
-        return Trajectory(Pose.from_rpy(*place, *turn), times, ends, weights)
+        return Trajectory(Pose.from_rpy(*place, *turn), times, ends=ends, weights=weights)
 
 
 def written(path: Trajectory) -> str:

@@ -11,7 +11,9 @@ from flexapod.cli.options.path import Options
 from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
 from flexapod.paths.analysis import path_index, path_loads
-from flexapod.paths.planning import LegSpeed, Plan, plan_path, plan_slice
+from flexapod.paths.leg_speed import LegSpeed
+from flexapod.paths.plan import Plan, plan_slice
+from flexapod.paths.planning import plan_path
 from flexapod.paths.requirements import PathRequirements
 from flexapod.pose import Pose
 from flexapod.report.studies.path import PathFindings, study
@@ -47,7 +49,13 @@ def _planned(hexapod: Hexapod, options: Options, report: Report) -> PathFindings
     assert options.start is not None
     assert options.goal is not None
     assert options.bound is not None
-    needed = PathRequirements(options.bound, options.condition, options.clearance, options.limits, joint=options.joint)
+    needed = PathRequirements(
+        options.bound,
+        condition_number=options.condition,
+        clearance=options.clearance,
+        limits=options.limits,
+        joint=options.joint,
+    )
     plan: Plan = plan_path(
         hexapod,
         _pose(options.start),
@@ -56,7 +64,7 @@ def _planned(hexapod: Hexapod, options: Options, report: Report) -> PathFindings
         objective=options.objective,  # type: ignore[arg-type]
         timing=_timing(options),
         seed=options.seed,
-        progress=report,
+        progress=lambda share: report("planning", share),
     )
     index = path_index(hexapod, plan.path, bound=options.bound, joint=options.joint)
     loads = path_loads(hexapod, plan.path, joint=options.joint)

@@ -13,7 +13,7 @@ from flexapod import plots
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
 from flexapod.paths.analysis import PathIndex
-from flexapod.paths.planning import Plan
+from flexapod.paths.plan import Plan
 from flexapod.paths.trajectory import Trajectory
 from flexapod.report.numbers import DASH, pose_numbers, pose_words, shown
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table

@@ -1,0 +1,55 @@
+"""How fast actuators are, and the time that a motion takes with them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flexapod.design.hexapod import Hexapod
+from flexapod.errors import ArgumentError
+from flexapod.mechanics.kinematics import leg_rates
+from flexapod.pose import Motion
+
+
+@dataclass(frozen=True)
+class LegSpeed:
+    """What the actuators can do: a path timed with it takes the least time that they allow.
+
+    Parameters
+    ----------
+    rate : float, optional
+        Largest leg rate, m/s; no bound by default.
+    acceleration : float, optional
+        Largest leg acceleration, m/s2; no bound by default.
+
+    Raises
+    ------
+    ArgumentError
+        If a bound is not > 0, or there is none.
+
+    See Also
+    --------
+    plan_path : takes it as `timing`.
+
+    Examples
+    --------
+    >>> fx.paths.LegSpeed(rate=0.5, acceleration=2.0)
+    LegSpeed(rate=0.5, acceleration=2.0)
+    """
+
+    rate: float = np.inf
+    acceleration: float = np.inf
+
+    def __post_init__(self) -> None:
+        if not (self.rate > 0 and self.acceleration > 0):
+            raise ArgumentError(f"leg speed is {self.rate} m/s and {self.acceleration} m/s2; both must be > 0.")
+        if not (np.isfinite(self.rate) or np.isfinite(self.acceleration)):
+            raise ArgumentError("leg speed has no bound; give a rate (m/s), an acceleration (m/s2), or both.")
+
+
+def duration(hexapod: Hexapod, motions: Motion, speed: LegSpeed) -> float:
+    """Least time, s, for a path given by motions that run through it in one second."""
+    legs = leg_rates(hexapod, motions)
+    by_rate = np.abs(legs.rate).max() / speed.rate
+    return float(max(by_rate, np.sqrt(np.abs(legs.acceleration).max() / speed.acceleration)))

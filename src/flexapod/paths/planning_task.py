@@ -1,0 +1,152 @@
+"""One planning problem: its requirements, its coordinates, and the steps from a straight line to a smooth path."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from flexapod.checks import one_of, positive
+from flexapod.conventions import Array
+from flexapod.design.hexapod import Hexapod
+from flexapod.errors import ArgumentError, PathError, SingularPoseError
+from flexapod.mechanics.inputs import single_pose
+from flexapod.mechanics.kinematics import force_transformation
+from flexapod.mechanics.modes import natural_modes
+from flexapod.paths.chart import Chart
+from flexapod.paths.leg_speed import LegSpeed, duration
+from flexapod.paths.ompl_planner import search
+from flexapod.paths.plan import Plan
+from flexapod.paths.requirements import Margins, PathRequirements
+from flexapod.paths.smoothing import Smoother, resampled
+from flexapod.paths.trajectory import Trajectory
+from flexapod.pose import Pose, PoseLike
+
+Objective = Literal["length", "time"]
+WAYPOINTS = (8, 12, 18, 26)  # tried in turn: more of them follow a narrow way more closely
+_STEP = 0.02  # between checked points of a line, in platform sizes and rad
+_MARGINS = (0.005, 0.02, 0.04)  # kept at the samples of the smoothing, so that the bounds hold between them
+
+
+class PlanningTask:
+    """One planning problem in scaled coordinates z: position / size, rotation vector about the middle of the ends."""
+
+    def __init__(
+        self,
+        hexapod: Hexapod,
+        start: PoseLike,
+        goal: PoseLike,
+        requirements: PathRequirements | float,
+        *,
+        objective: Objective = "length",
+        timing: LegSpeed | float = 1.0,
+    ) -> None:
+        one_of(objective, "objective", get_args(Objective))
+        if not isinstance(timing, LegSpeed):
+            if objective == "time":
+                raise ArgumentError(
+                    f"timing is {timing!r}; least time needs a LegSpeed, which says what the actuators can do."
+                )
+            positive(timing, "timing", "s")
+        start, goal = single_pose(hexapod, start, "start"), single_pose(hexapod, goal, "goal")
+        needed = requirements if isinstance(requirements, PathRequirements) else PathRequirements(requirements)
+        self.hexapod, self.required, self.objective, self.timing = hexapod, needed, objective, timing
+        self.margins = Margins(hexapod, needed)
+        both = Pose(np.stack([start.position, goal.position]), np.stack([start.matrix, goal.matrix]))
+        for pose, name in ((start, "start"), (goal, "goal")):
+            self.margins.check(pose, name)
+        sides = np.linalg.slogdet(force_transformation(hexapod, both))[0]
+        if sides[0] != sides[1]:
+            raise SingularPoseError(
+                "start and goal lie on different sides of the singular poses (det H changes its sign), so every path "
+                "between them passes through one. Choose both on the same side."
+            )
+        self.chart = Chart.about(both)
+        self.size = float(np.sqrt((hexapod.platform_joints**2).sum(axis=1).mean()))
+        self.scale = np.repeat([self.size, 1.0], 3)
+        self.ends = self.chart.coordinates(both) / self.scale
+        if not np.abs(self.ends[1] - self.ends[0]).max() > 1e-9:
+            raise PathError("start and goal are the same pose; there is nothing to plan")
+        room = np.repeat([self.margins.reach_from(both) / self.size, needed.turn], 3)
+        self.low, self.high = self.ends.min(axis=0) - room, self.ends.max(axis=0) + room
+
+    def met(self, z: Array) -> np.ndarray:
+        """(n,) whether points (n, 6) meet every requirement."""
+        return self.margins.met(self.chart.poses(z * self.scale))
+
+    def worst(self, path: Trajectory, samples: int = 400) -> Array:
+        return self.margins.worst(path(path.grid(samples)).pose)
+
+    def explore(self, seed: int, progress: Callable[[float], object]) -> tuple[Array, int]:
+        found = search(self.met, self.ends, self.low, self.high, step=_STEP, seed=seed, progress=progress)
+        if found.points is None:
+            raise PathError(self._why_not(seed))
+        return found.points, found.batches
+
+    def _why_not(self, seed: int) -> str:
+        """What stands in the way, from samples of the search box."""
+        points = self.low + (self.high - self.low) * np.random.default_rng(seed).random((2000, 6))
+        poses = self.chart.poses(points * self.scale)
+        index = self.margins.frequencies(poses)[:, 0]
+        share = float(self.margins.met(poses).mean())
+        stiff = float((index >= self.required.index).mean())
+        return (
+            f"no path was found that keeps the index above {self.required.index:.5g} rad/s and all limits: of poses "
+            f"sampled around start and goal {stiff:.2%} have that index and {share:.2%} also keep the limits "
+            f"(the highest index seen is {index.max():.5g} rad/s). Lower the bound, widen the limits, or raise "
+            "reach and turn so that the search may go farther."
+        )
+
+    def smoothed(self, rough: Array, progress: Callable[[float], object]) -> Trajectory:
+        """The best spline that keeps every requirement on a dense check. Raises PathError where none does."""
+        speed = self.timing if isinstance(self.timing, LegSpeed) and self.objective == "time" else None
+        smoother = Smoother(self.margins, self.chart, self.size, speed)
+        tries = [(count, margin) for count in WAYPOINTS for margin in _MARGINS]
+        nearest = -np.inf
+        for number, (count, margin) in enumerate(tries):
+            done = [0]
+
+            def report(number: int = number, done: list[int] = done) -> None:
+                done[0] += 1
+                progress((number + min(done[0], 60) / 60) / len(tries))
+
+            first = resampled(rough, count)
+            points = smoother.run(first, 4 * count + 1, margin, self.low, self.high, report)
+            path = self.path(points)
+            worst = float(self.worst(path, 16 * count).min())
+            if worst >= 0:
+                progress(1.0)
+                return path
+            nearest = max(nearest, worst)
+        raise PathError(
+            f"a way was found, but no smooth path along it keeps every requirement: the best one misses by "
+            f"{-nearest:.2%}. Lower the bound on the index by as much, or try another seed."
+        )
+
+    def path(self, z: Array) -> Trajectory:
+        """The path through scaled waypoints, in the time that `timing` allows."""
+        poses = self.chart.poses(z * self.scale)
+        unit = Trajectory(poses, np.linspace(0.0, 1.0, len(z)))
+        if not isinstance(self.timing, LegSpeed):
+            return unit.retimed(float(self.timing))
+        motions = unit(np.linspace(0.0, 1.0, 801))
+        return unit.retimed(duration(self.hexapod, motions, self.timing))
+
+    def plan(self, path: Trajectory, straight: Trajectory, rough: Pose | None, batches: int) -> Plan:
+        def least(path: Trajectory) -> float:
+            return float(
+                natural_modes(self.hexapod, path(path.grid(800)).pose, joint=self.required.joint).omega[:, 0].min()
+            )
+
+        values: dict[str, Any] = {
+            "requirements": self.required,
+            "size": self.size,
+            "length": path.length(self.size),
+            "straight_length": straight.length(self.size),
+            "least_index": least(path),
+            "straight_least_index": least(straight),
+            "margin": float(self.worst(path, 1600).min()),
+            "batches": batches,
+        }
+        return Plan(path, straight, rough, **values)
