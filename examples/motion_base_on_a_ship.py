@@ -19,7 +19,7 @@ def main() -> float:
         "roll": lambda w: 0.05j / (1 - (w / 0.6) ** 2 + 0.2j * w / 0.6),
         "pitch": lambda w: 0.02j / (1 + (w / peak) ** 4),
     }
-    deck = fx.excitation.sea_motion(sea, ship, seed=3, lines=60).ramped(5.0)
+    deck = fx.excitation.sea_motion(sea, ship, seed=3, samples=60).ramped(5.0)
     run = fx.simulate(machine, home, base_motion=deck, duration=60.0, samples=1201, rtol=1e-6, energies=False)
 
     rest = fx.hold(machine, home).leg_force

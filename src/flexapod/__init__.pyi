@@ -22,11 +22,11 @@ from .errors import KinematicsError as KinematicsError
 from .errors import PoseError as PoseError
 from .errors import SingularPoseError as SingularPoseError
 from .excitation.excitation import Excitation as Excitation
-from .excitation.excitation import half_sine_shock as half_sine_shock
-from .excitation.excitation import harmonic as harmonic
-from .excitation.excitation import sine_sweep as sine_sweep
+from .excitation.piecewise import half_sine_shock as half_sine_shock
+from .excitation.random_phases import random_motion as random_motion
 from .excitation.recordings import read_time_series as read_time_series
-from .excitation.spectra import random_motion as random_motion
+from .excitation.sines import harmonic as harmonic
+from .excitation.sines import sine_sweep as sine_sweep
 from .excitation.spectra import vc_curve as vc_curve
 from .mechanics.assembly import forward_kinematics as forward_kinematics
 from .mechanics.dynamics import equations_of_motion as equations_of_motion

@@ -40,7 +40,7 @@ def test_every_drive_is_what_the_library_makes_of_it(result, tmp_path):
     base = (
         fx.harmonic("z", 1e-6, 200 * np.pi)
         + fx.sine_sweep("roll", 1e-6, 200, 900, 0.01)
-        + fx.half_sine_shock("x", 0.980665, 2e-3, 8e-3)
+        + fx.half_sine_shock("x", 0.980665, 2e-3, recovery=8e-3)
         + fx.random_motion("pitch", fx.excitation.flat_spectrum(0.5, 100, 900), seed=5)
         + fx.excitation.time_series(times, 2e-7 * np.sin(300 * times), "y")
     )

@@ -13,7 +13,7 @@ from flexapod.control.plant import Plant, is_stable, joined, poles
 from flexapod.control.sampled_prediction import Clock, predict
 from flexapod.control.sampled_simulation import simulate_sampled
 from flexapod.control.scaled_plant import ScaledPlant
-from flexapod.excitation.excitation import harmonic
+from flexapod.excitation.sines import harmonic
 from flexapod.mechanics.linearisation import linearise
 from flexapod.simulation.run import SimulationRun
 

@@ -15,7 +15,7 @@ KINDS = {
     "harmonic": fx.harmonic("z", 2.0, 7.0, 0.3),
     "sum of harmonics": fx.harmonic("z", [1.0, 0.5, -0.2], [3.0, 11.0, 0.0], [0.0, 1.0, 2.0]),
     "many harmonics": fx.random_motion(
-        "z", fx.excitation.flat_spectrum(1.0, 2.0, 40.0, "displacement"), seed=1, lines=50
+        "z", fx.excitation.flat_spectrum(1.0, 2.0, 40.0, quantity="displacement"), seed=1, samples=50
     ),
     "linear sweep": fx.sine_sweep("z", 1.0, 5.0, 30.0, 1.5, law="linear"),
     "log sweep": fx.sine_sweep("z", 1.0, 30.0, 5.0, 1.5, hold="velocity"),
@@ -26,8 +26,8 @@ KINDS = {
     "polynomial": fx.excitation.polynomial("z", [0.1, -0.2, 0.3, 0.0, 0.5]),
     "smooth step": fx.excitation.smooth_step("z", 0.7, 1.33),
     "recorded values": fx.excitation.time_series(RECORD, np.sin(5 * RECORD), "z"),
-    "recorded velocity": fx.excitation.time_series(RECORD, np.sin(5 * RECORD), "z", "velocity"),
-    "recorded acceleration": fx.excitation.time_series(RECORD, np.sin(5 * RECORD), "z", "acceleration"),
+    "recorded velocity": fx.excitation.time_series(RECORD, np.sin(5 * RECORD), "z", recorded="velocity"),
+    "recorded acceleration": fx.excitation.time_series(RECORD, np.sin(5 * RECORD), "z", recorded="acceleration"),
     "ramped": fx.harmonic("z", 2.0, 7.0, 0.3).ramped(1.1),
     "stopped": fx.harmonic("z", 2.0, 7.0, 0.3).ramped(0.3).stopped(1.01, 0.7),
     "delayed": (3 * fx.harmonic("z", 2.0, 7.0)).delayed(0.21),
@@ -155,7 +155,7 @@ def test_a_sum_of_both_kinds_of_rotation_is_refused():
     ],
 )
 def test_random_motion_has_its_spectrum(spectrum, derivative):
-    motion = fx.random_motion("z", spectrum, seed=7, lines=500)
+    motion = fx.random_motion("z", spectrum, seed=7, samples=500)
     length = 100 * 2 * np.pi * 500 / spectrum.omega_max
     values = motion.evaluate(np.linspace(0, length, 10000))[derivative][:, 2]
     # Sum of A^2 / 2 over the lines against the integral of the density: bands of 1/500 of the range, and a finite time.
@@ -222,7 +222,7 @@ def test_recording_is_splined_smoothly():
 
 def test_recorded_acceleration_is_integrated_from_rest():
     times = np.linspace(0, 2, 2001)
-    found = fx.excitation.time_series(times, np.cos(3 * times), "z", "acceleration").evaluate(times)
+    found = fx.excitation.time_series(times, np.cos(3 * times), "z", recorded="acceleration").evaluate(times)
     exact = (1 - np.cos(3 * times)) / 9, np.sin(3 * times) / 3, np.cos(3 * times)
     for value, expected in zip(found, exact, strict=True):
         np.testing.assert_allclose(value[:, 2], expected, atol=1e-10)  # cubics on steps of 3 mrad: 1e-11
@@ -279,7 +279,7 @@ def test_missing_recording(tmp_path):
 @pytest.mark.parametrize(
     ("make", "words"),
     [
-        (lambda: fx.harmonic("up", 1.0, 1.0), "channel is 'up'"),
+        (lambda: fx.harmonic("up", 1.0, 1.0), "axis is 'up'"),
         (lambda: fx.harmonic("x", np.nan, 1.0), "NaN"),
         (lambda: fx.harmonic("x", 1.0, -1.0), "omega is -1"),
         (lambda: fx.sine_sweep("x", 1.0, 0.0, 2.0, 1.0), "omega_start is 0"),
@@ -292,12 +292,12 @@ def test_missing_recording(tmp_path):
         (lambda: fx.harmonic("x", 1.0, 1.0).ramped(0.0), "ramp duration is 0"),
         (lambda: fx.harmonic("x", 1.0, 1.0).ramped(2.0).stopped(1.0, 1.0), "before a term has risen"),
         (lambda: fx.vc_curve("VC-Z"), "VC-Z"),
-        (lambda: fx.excitation.ground_noise("loud"), "'low' or 'high'"),
+        (lambda: fx.excitation.ground_noise("loud"), "'low', 'high'"),
         (lambda: fx.excitation.sea_spectrum(2.0, 8.0, 0.5), "gamma is 0.5"),
         (lambda: fx.excitation.flat_spectrum(1.0, 3.0, 2.0), "below the second"),
-        (lambda: fx.random_motion("x", fx.vc_curve("VC-A"), seed=1, lines=0), "lines is 0"),
+        (lambda: fx.random_motion("x", fx.vc_curve("VC-A"), seed=1, samples=0), "samples is 0"),
         (lambda: fx.excitation.time_series(RECORD, np.sin(RECORD)[:-1], "x"), "are needed"),
-        (lambda: fx.excitation.time_series(RECORD, np.sin(RECORD), "x", "jerk"), "recorded is 'jerk'"),
+        (lambda: fx.excitation.time_series(RECORD, np.sin(RECORD), "x", recorded="jerk"), "recorded is 'jerk'"),
     ],
 )
 def test_bad_numbers_are_refused(make, words):

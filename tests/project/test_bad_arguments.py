@@ -76,8 +76,8 @@ CASES = [
     (lambda: fx.Workspace(POINT), A, "a workspace needs a range of at least one coordinate"),
     # excitations and spectra
     (lambda: drawn(lambda omega: -omega), A, "the density holds NaN, infinity or negative numbers"),
-    (lambda: drawn(np.ones_like, "jerk"), A, "the spectrum is of 'jerk'; it must be of displacement, velocity"),
-    (lambda: excitation.flat_spectrum(-1.0, 1.0, 2.0), A, "rms is -1.0; it must be > 0 and finite"),
+    (lambda: drawn(np.ones_like, "jerk"), A, "quantity of the spectrum is 'jerk'; it must be one of 'displacement', 'velocity'"),
+    (lambda: excitation.flat_spectrum(-1.0, 1.0, 2.0), A, "rms is -1.0; it must be finite and > 0"),
     (
         lambda: excitation.sea_motion(excitation.sea_spectrum(2, 8), {"roll": lambda omega: omega * np.nan}, seed=1),
         A,

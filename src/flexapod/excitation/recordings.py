@@ -10,10 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly, make_interp_spline
 
+from flexapod.checks import one_of
 from flexapod.conventions import AXES, LEGS, ROTATIONS, Array
 from flexapod.design.units import UNITS
 from flexapod.errors import ArgumentError
-from flexapod.excitation.excitation import Excitation, sampled_term
+from flexapod.excitation.excitation import Excitation
+from flexapod.excitation.piecewise import sampled_term
 from flexapod.tables import TIMES, Units, naming, parse_table, read_text
 
 Recorded = Literal["value", "velocity", "acceleration"]
@@ -33,20 +35,50 @@ FORM = (
 
 
 def time_series(
-    times: ArrayLike, values: ArrayLike, channels: str | Sequence[str], recorded: Recorded = "value"
+    times: ArrayLike, values: ArrayLike, axis: str | Sequence[str], *, recorded: Recorded = "value"
 ) -> Excitation:
-    """A recording as an excitation that begins with its first sample at t = 0.
+    """Return a recording as an excitation.
 
-    times: (n,) s, ascending; values: (n,) or (n, k) for k channels. recorded: "value" (the channel's own unit), or its
-    "velocity" or "acceleration", integrated from rest at zero. Values are splined by quintics, derivatives by cubics,
-    so that acceleration is smooth.
+    Parameters
+    ----------
+    times : array_like, shape (n,)
+        Times of the samples, s, ascending; the first becomes t = 0. At least six.
+    values : array_like, shape (n,) or (n, k)
+        Samples on one axis, or on k axes.
+    axis : str or list of str
+        One of x, y, z, roll, pitch, yaw, or a leg "1" to "6", for each column of `values`.
+    recorded : {"value", "velocity", "acceleration"}, optional
+        What was recorded: the value in the unit of the axis (m, rad, N or N m), or a derivative, which is integrated
+        from rest at zero.
 
-    Raises: ArgumentError, which names the sample, for NaN, times that do not ascend, gaps, and less than six samples.
-    Source: own, with SciPy's splines.
+    Returns
+    -------
+    Excitation
+        The recording as splines; it holds nothing after its last sample.
+
+    Raises
+    ------
+    ArgumentError
+        If a sample is not finite, the times do not ascend or have a gap (the message names the sample), there are fewer
+        than six samples, or a name is unknown.
+
+    See Also
+    --------
+    read_time_series : The same from a CSV file.
+
+    Notes
+    -----
+    Values are interpolated by splines of degree five, derivatives by cubic ones, so that the acceleration is smooth.
+
+    Examples
+    --------
+    >>> times = np.linspace(0, 1, 101)
+    >>> shaken = fx.excitation.time_series(times, 1e-3 * np.sin(10 * times), "z")
+    >>> round(float(shaken.evaluate(0.5)[0][2]), 6)
+    -0.000959
     """
-    names = [channels] if isinstance(channels, str) else list(channels)
-    if recorded not in INTEGRATIONS:
-        raise ArgumentError(f"recorded is {recorded!r}; it must be one of {', '.join(INTEGRATIONS)}.")
+    names = [axis] if isinstance(axis, str) else list(axis)
+    one_of(recorded, "recorded", INTEGRATIONS)
     t, x = _checked(times, values, names)
     t = t - t[0]
     spacing = float(np.median(np.diff(t)))
@@ -60,15 +92,42 @@ def time_series(
     return total
 
 
-def read_time_series(path: str | Path, recorded: Recorded | None = None) -> Excitation:
-    """A recording from the CSV file at `path`: a header with `time` and channels, then numbers.
+def read_time_series(path: str | Path, *, recorded: Recorded | None = None) -> Excitation:
+    """Read a recording from a CSV file.
 
-    Channels are x, y, z, roll, pitch, yaw or leg1 to leg6, with their unit behind them if it is not SI, as `z_um`,
-    `roll_deg`, `x_mm_per_s2` or `time_ms`. recorded: as in `time_series`; by default what the units say. Lines that
-    begin with # are left out.
+    Parameters
+    ----------
+    path : str or Path
+        The file: a header with time and axes, then numbers.
+    recorded : {"value", "velocity", "acceleration"}, optional
+        What was recorded. Default: what the units in the header say, else the value.
 
-    Raises: ArgumentError as `time_series`, and for what cannot be read.
-    Source: own.
+    Returns
+    -------
+    Excitation
+        The recording, from its first sample at t = 0 on.
+
+    Raises
+    ------
+    ArgumentError
+        If the file cannot be read, a column or a unit is unknown, or as in `time_series`.
+
+    See Also
+    --------
+    time_series : The same from arrays.
+
+    Notes
+    -----
+    Columns are time (or t), x, y, z, roll, pitch, yaw, and leg1 to leg6, with their unit if it is not SI, as in
+    ``z_um``, ``Roll [deg]``, ``x_mm_per_s2`` or ``time_ms``. Commas, semicolons or tabs separate; with the last two,
+    numbers may have decimal commas. Lines that begin with # and columns named note or comment are left out.
+
+    Examples
+    --------
+    >>> rows = np.column_stack([10 * np.arange(20), np.sin(0.1 * np.arange(20))])
+    >>> np.savetxt("shaker.csv", rows, delimiter=",", header="time_ms,z_um", comments="")
+    >>> fx.read_time_series("shaker.csv")
+    <Excitation of z, 1 terms>
     """
     file = Path(path)
     text = read_text(file)
@@ -92,7 +151,7 @@ def parse_time_series(text: str, recorded: Recorded | None = None) -> Excitation
         table.numbers(time, TIMES, finite=False),
         values,
         [column.name for column in channels],
-        recorded or (said or {"value"}).pop(),
+        recorded=recorded or (said or {"value"}).pop(),
     )
 
 

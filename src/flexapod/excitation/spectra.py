@@ -1,63 +1,43 @@
-"""Power spectra of floors, the ground and the sea, and random motions that have them."""
+"""Power spectra of floors, the ground and the sea."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.conventions import Array
+from flexapod.checks import number, one_of, positive, whole
+from flexapod.conventions import TWO_PI, Array
 from flexapod.errors import ArgumentError
-from flexapod.excitation.excitation import Excitation, harmonic
+from flexapod.excitation.noise_models import HIGH_NOISE, LOW_NOISE
 
 Quantity = Literal["displacement", "velocity", "acceleration"]
-HERTZ = 2 * np.pi  # rad/s
+QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 
 VC_SPEED = {"VC-A": 50.0, "VC-B": 25.0, "VC-C": 12.5, "VC-D": 6.25, "VC-E": 3.12, "VC-F": 1.56, "VC-G": 0.78}  # um/s
 
-# Peterson's models: level a + b log10(period) in dB of 1 (m/s2)2/Hz from each period (s) to the next.
-LOW_NOISE = (
-    (0.10, -162.36, 5.64),
-    (0.17, -166.70, 0.00),
-    (0.40, -170.00, -8.30),
-    (0.80, -166.40, 28.90),
-    (1.24, -168.60, 52.48),
-    (2.40, -159.98, 29.81),
-    (4.30, -141.10, 0.00),
-    (5.00, -71.36, -99.77),
-    (6.00, -97.26, -66.49),
-    (10.00, -132.18, -31.57),
-    (12.00, -205.27, 36.16),
-    (15.60, -37.65, -104.33),
-    (21.90, -114.37, -47.10),
-    (31.60, -160.58, -16.28),
-    (45.00, -187.50, 0.00),
-    (70.00, -216.47, 15.70),
-    (101.00, -185.00, 0.00),
-)
-HIGH_NOISE = (
-    (0.10, -108.73, -17.23),
-    (0.22, -150.34, -80.50),
-    (0.32, -122.31, -23.87),
-    (0.80, -116.85, 32.51),
-    (3.80, -108.48, 18.08),
-    (4.60, -74.66, -32.95),
-    (6.30, 0.66, -127.18),
-    (7.90, -93.37, -22.42),
-    (15.40, 73.54, -162.98),
-    (20.00, -151.52, 10.01),
-)
-
 
 class Spectrum(NamedTuple):
-    """A one-sided power spectral density per rad/s.
+    """A one-sided power spectral density of a motion on one axis, per rad/s.
 
-    density(omega): takes and gives arrays; zero outside the range. quantity: "displacement", "velocity" or
-    "acceleration". omega_min, omega_max: the range, rad/s.
+    Attributes
+    ----------
+    density : callable
+        From angular frequencies (n,) in rad/s to densities (n,): the square of m, m/s or m/s2 (or with rad) per rad/s;
+        zero outside the range.
+    quantity : {"displacement", "velocity", "acceleration"}
+        What the density is of.
+    omega_min, omega_max : float
+        The range of frequencies, rad/s.
 
-    Source: own.
+    Examples
+    --------
+    >>> fx.vc_curve("VC-C").quantity
+    'velocity'
+    >>> round(fx.excitation.Spectrum(lambda w: 0 * w + 4.0, "velocity", 1.0, 2.0).rms(), 6)
+    2.0
     """
 
     density: Callable[[Array], Array]
@@ -65,80 +45,181 @@ class Spectrum(NamedTuple):
     omega_min: float
     omega_max: float
 
-    def rms(self, lines: int = 20000) -> float:
-        """Root mean square of the quantity."""
-        omega = np.geomspace(self.omega_min, self.omega_max, lines)
+    def rms(self, samples: int = 20000) -> float:
+        """Return the root mean square of the quantity.
+
+        Parameters
+        ----------
+        samples : int, optional
+            Number of frequencies of the integral, at equal ratios.
+        """
+        omega = np.geomspace(self.omega_min, self.omega_max, whole(samples, "samples", 2))
         return float(np.sqrt(np.trapezoid(self.density(omega), omega)))
 
 
-def flat_spectrum(rms: float, omega_min: float, omega_max: float, quantity: Quantity = "acceleration") -> Spectrum:
-    """The same density from omega_min to omega_max (rad/s).
+def flat_spectrum(rms: float, omega_min: float, omega_max: float, *, quantity: Quantity = "acceleration") -> Spectrum:
+    """Return a spectrum with the same density over a range of frequencies.
 
-    rms: root mean square of the quantity ("displacement", "velocity", "acceleration"), m, m/s or m/s2; rad and so on.
+    Parameters
+    ----------
+    rms : float
+        Root mean square of the quantity, m, m/s or m/s2, or with rad; > 0.
+    omega_min, omega_max : float
+        Range of frequencies, rad/s, > 0.
+    quantity : {"displacement", "velocity", "acceleration"}, optional
+        What the spectrum is of.
 
-    Raises: ArgumentError for a value or a range that is not > 0.
-    Source: own.
+    Returns
+    -------
+    Spectrum
+        The spectrum; zero outside its range.
+
+    Raises
+    ------
+    ArgumentError
+        If a number is not > 0, or the range does not ascend.
+
+    Notes
+    -----
+    The density is rms^2 / (omega_max - omega_min).
+
+    Examples
+    --------
+    >>> round(fx.excitation.flat_spectrum(0.01, 5.0, 200.0).rms(), 6)
+    0.01
     """
-    _range(omega_min, omega_max)
-    level = _positive(rms, "rms") ** 2 / (omega_max - omega_min)
-    return _limited(lambda omega: np.full(np.shape(omega), level), quantity, omega_min, omega_max)
+    low, high = number(omega_min, "omega_min", "rad/s"), number(omega_max, "omega_max", "rad/s")
+    if not 0 < low < high:
+        raise ArgumentError(f"frequencies are {low} to {high} rad/s; the first must be > 0 and below the second.")
+    level = positive(rms, "rms") ** 2 / (high - low)
+    return _limited(lambda omega: np.full(np.shape(omega), level), quantity, low, high)
 
 
 def vc_curve(name: str) -> Spectrum:
-    """A floor that just meets a vibration criterion: RMS velocity (m/s) in every one-third octave band.
+    """Return the spectrum of a floor that just meets a vibration criterion.
 
-    name: "VC-A" to "VC-G". VC-A and VC-B: constant acceleration from 4 Hz, constant velocity from 8 to 80 Hz; the
-    others: constant velocity from 1 to 80 Hz. Spread over each band evenly, so that the density goes with 1/omega.
+    Parameters
+    ----------
+    name : str
+        The criterion, "VC-A" to "VC-G".
 
-    Raises: ArgumentError for a criterion that is none.
-    Source: C. G. Gordon, Generic criteria for vibration-sensitive equipment, Proc. SPIE 1619 (1991); IEST-RP-CC012.
+    Returns
+    -------
+    Spectrum
+        Of velocity, (m/s)^2 per rad/s.
+
+    Raises
+    ------
+    ArgumentError
+        If the criterion is unknown.
+
+    Notes
+    -----
+    The criteria [1]_ give the RMS velocity in every one-third octave band. VC-A and VC-B: constant acceleration from
+    4 Hz, constant velocity from 8 to 80 Hz; the others: constant velocity from 1 to 80 Hz. It is spread evenly over
+    each band, so that the density goes with 1/omega.
+
+    References
+    ----------
+    .. [1] C. G. Gordon, "Generic criteria for vibration-sensitive equipment", Proc. SPIE 1619 (1991); IEST-RP-CC012.
+
+    Examples
+    --------
+    >>> floor = fx.vc_curve("VC-C")
+    >>> round(floor.rms() * 1e6, 1)
+    54.4
     """
-    if name not in VC_SPEED:
-        raise ArgumentError(f"criterion is {name!r}; it must be one of {', '.join(VC_SPEED)}.")
+    one_of(name, "name", VC_SPEED)
     speed = VC_SPEED[name] * 1e-6
     band = 2 ** (1 / 6) - 2 ** (-1 / 6)  # width of a one-third octave band over its middle
     lifted = name in ("VC-A", "VC-B")
 
     def density(omega: Array) -> Array:
-        level = speed * np.where(lifted & (omega < 8 * HERTZ), 8 * HERTZ / omega, 1.0)
+        level = speed * np.where(lifted & (omega < 8 * TWO_PI), 8 * TWO_PI / omega, 1.0)
         return level**2 / (band * omega)
 
-    return _limited(density, "velocity", (4 if lifted else 1) * HERTZ, 80 * HERTZ)
+    return _limited(density, "velocity", (4 if lifted else 1) * TWO_PI, 80 * TWO_PI)
 
 
 def ground_noise(model: Literal["low", "high"] = "high") -> Spectrum:
-    """Ground between 0.01 and 10 Hz: acceleration (m/s2) by Peterson's low and high noise models.
+    """Return the spectrum of the ground between 0.01 and 10 Hz.
 
-    model: "low" for quiet ground, "high" for noisy ground.
+    Parameters
+    ----------
+    model : {"low", "high"}, optional
+        The low noise model is that of quiet places, the high noise model that of noisy ones.
 
-    Raises: ArgumentError for a model that is neither "low" nor "high".
-    Source: J. Peterson, Observations and modeling of seismic background noise, USGS Open-File Report 93-322 (1993).
+    Returns
+    -------
+    Spectrum
+        Of acceleration, (m/s2)^2 per rad/s.
+
+    Raises
+    ------
+    ArgumentError
+        If the model is unknown.
+
+    Notes
+    -----
+    J. Peterson, "Observations and modeling of seismic background noise", USGS Open-File Report 93-322 (1993).
+
+    Examples
+    --------
+    >>> round(fx.excitation.ground_noise("high").rms() * 1e6)
+    49
     """
-    tables = {"low": LOW_NOISE, "high": HIGH_NOISE}
-    if model not in tables:
-        raise ArgumentError(f"noise model is {model!r}; it must be 'low' or 'high'.")
-    period, a, b = np.array(tables[model]).T
+    one_of(model, "model", ("low", "high"))
+    period, a, b = np.array(LOW_NOISE if model == "low" else HIGH_NOISE).T
 
     def density(omega: Array) -> Array:
-        T = HERTZ / np.asarray(omega, dtype=float)
+        T = TWO_PI / np.asarray(omega, dtype=float)
         row = np.clip(np.searchsorted(period, T * (1 + 1e-12), side="right") - 1, 0, None)
-        return 10 ** ((a[row] + b[row] * np.log10(T)) / 10) / HERTZ
+        return 10 ** ((a[row] + b[row] * np.log10(T)) / 10) / TWO_PI
 
-    return _limited(density, "acceleration", 0.01 * HERTZ, 10 * HERTZ)
+    return _limited(density, "acceleration", 0.01 * TWO_PI, 10 * TWO_PI)
 
 
 def sea_spectrum(height: float, period: float, gamma: float = 1.0) -> Spectrum:
-    """Elevation of a sea of significant wave height (m) and peak period (s): JONSWAP, or Pierson-Moskowitz at gamma 1.
+    """Return the spectrum of the elevation of a sea.
 
-    The level is set so that 4 RMS is the height.
+    Parameters
+    ----------
+    height : float
+        Significant wave height, m, > 0.
+    period : float
+        Peak period, s, > 0.
+    gamma : float, optional
+        Peak enhancement of JONSWAP, from 1 (the Pierson-Moskowitz spectrum) to 10.
 
-    Raises: ArgumentError for a height or period that is not > 0, or gamma not from 1 to 10.
-    Source: K. Hasselmann and others, Dtsch. Hydrogr. Z. A8(12) (1973); W. J. Pierson and L. Moskowitz (1964).
+    Returns
+    -------
+    Spectrum
+        Of displacement, m^2 per rad/s.
+
+    Raises
+    ------
+    ArgumentError
+        If a number is out of range.
+
+    Notes
+    -----
+    JONSWAP [1]_, which is that of Pierson and Moskowitz [2]_ at gamma 1. The level is set so that four times the RMS is
+    the height.
+
+    References
+    ----------
+    .. [1] K. Hasselmann and others, Deutsche Hydrographische Zeitschrift A8(12) (1973).
+    .. [2] W. J. Pierson and L. Moskowitz, Journal of Geophysical Research 69 (1964).
+
+    Examples
+    --------
+    >>> round(4 * fx.excitation.sea_spectrum(3.0, 9.0, gamma=3.3).rms(), 3)
+    3.0
     """
-    H, T = _positive(height, "wave height"), _positive(period, "peak period")
-    if not 1 <= gamma <= 10:
+    H, T = positive(height, "height", "m"), positive(period, "period", "s")
+    if not 1 <= number(gamma, "gamma") <= 10:
         raise ArgumentError(f"gamma is {gamma}; it must be from 1 (Pierson-Moskowitz) to 10; JONSWAP's mean is 3.3.")
-    peak = HERTZ / T
+    peak = TWO_PI / T
 
     def shape(omega: Array) -> Array:
         width = np.where(omega <= peak, 0.07, 0.09)
@@ -151,57 +232,6 @@ def sea_spectrum(height: float, period: float, gamma: float = 1.0) -> Spectrum:
     return _limited(lambda omega: level * shape(omega), "displacement", low, high)
 
 
-def random_motion(channel: str, spectrum: Spectrum, *, seed: int, lines: int = 400) -> Excitation:
-    """A sum of `lines` sinusoids on a channel (x to yaw) with random phases that has a spectrum.
-
-    The spectrum is of displacement, velocity or acceleration (m, rad). One frequency (rad/s) is drawn in each of
-    `lines` bands of equal width, so that the motion does not repeat.
-
-    Raises: ArgumentError for an unknown channel, no lines, or a density that none can be.
-    Source: M. Shinozuka and G. Deodatis, Appl. Mech. Rev. 44 (1991).
-    """
-    omega, amplitude, phase = _lines(spectrum, seed, lines)
-    return harmonic(channel, amplitude, omega, phase)
-
-
-def sea_motion(
-    spectrum: Spectrum, response: Mapping[str, Callable[[Array], ArrayLike]], *, seed: int, lines: int = 400
-) -> Excitation:
-    """Motions of a ship in one sea: `response` gives each channel's complex motion per elevation at omega (rad/s).
-
-    spectrum: of the sea's elevation, by `sea_spectrum`. All channels follow the same waves, with the phases that their
-    responses give them (m/m, rad/m). lines: how many sinusoids, as in `random_motion`.
-
-    Raises: ArgumentError for an unknown channel, no lines, or a response that is not finite.
-    Source: M. St. Denis and W. J. Pierson, Trans. SNAME 61 (1953).
-    """
-    omega, amplitude, phase = _lines(spectrum, seed, lines)
-    total = Excitation()
-    for channel, operator in response.items():
-        factor = np.broadcast_to(np.asarray(operator(omega), dtype=complex), omega.shape)
-        if not np.isfinite(factor).all():
-            raise ArgumentError(f"the response of {channel} holds NaN or infinity; it must be finite for all omega.")
-        total = total + harmonic(channel, amplitude * np.abs(factor), omega, phase + np.angle(factor))
-    return total
-
-
-def _lines(spectrum: Spectrum, seed: int, lines: int) -> tuple[Array, Array, Array]:
-    """Frequencies, displacement amplitudes and phases."""
-    if lines < 1:
-        raise ArgumentError(f"lines is {lines}; it must be >= 1.")
-    rng = np.random.default_rng(seed)
-    edges = np.linspace(spectrum.omega_min, spectrum.omega_max, lines + 1)
-    omega = edges[:-1] + np.diff(edges) * rng.uniform(size=lines)
-    density = np.asarray(spectrum.density(omega), dtype=float)
-    if not np.isfinite(density).all() or (density < 0).any():
-        raise ArgumentError("the density holds NaN, infinity or negative numbers; it must be >= 0 and finite.")
-    if spectrum.quantity not in get_args(Quantity):
-        raise ArgumentError(f"the spectrum is of {spectrum.quantity!r}; it must be of {', '.join(get_args(Quantity))}.")
-    power = get_args(Quantity).index(spectrum.quantity)
-    amplitude = np.sqrt(2 * density * np.diff(edges)) / omega**power
-    return omega, amplitude, rng.uniform(0, 2 * np.pi, lines)
-
-
 def _limited(density: Callable[[Array], Array], quantity: Quantity, low: float, high: float) -> Spectrum:
     def limited(omega: ArrayLike) -> Array:
         w = np.asarray(omega, dtype=float)
@@ -209,14 +239,3 @@ def _limited(density: Callable[[Array], Array], quantity: Quantity, low: float, 
         return np.where(inside, density(np.clip(w, low, high)), 0.0)
 
     return Spectrum(limited, quantity, float(low), float(high))
-
-
-def _range(low: float, high: float) -> None:
-    if not (np.isfinite(high) and 0 < low < high):
-        raise ArgumentError(f"frequencies are {low} to {high} rad/s; the first must be > 0 and below the second.")
-
-
-def _positive(value: float, name: str) -> float:
-    if not (np.isfinite(value) and value > 0):
-        raise ArgumentError(f"{name} is {value}; it must be > 0 and finite.")
-    return float(value)

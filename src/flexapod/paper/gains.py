@@ -23,7 +23,7 @@ from flexapod.control.plant import Plant, held, joined
 from flexapod.control.sampled_simulation import simulate_control
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import load
-from flexapod.excitation.excitation import half_sine_shock
+from flexapod.excitation.piecewise import half_sine_shock
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import advised_sampling_time
 from flexapod.paper import Claim, Part, Settings, agrees

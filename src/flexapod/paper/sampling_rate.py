@@ -22,7 +22,8 @@ from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import load
 from flexapod.errors import UnstableError
 from flexapod.excitation.excitation import Excitation
-from flexapod.excitation.spectra import flat_spectrum, random_motion
+from flexapod.excitation.random_phases import random_motion
+from flexapod.excitation.spectra import flat_spectrum
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import advised_sampling_time
 from flexapod.paper import Claim, Part, Settings, agrees

@@ -15,7 +15,7 @@ import xarray as xr
 
 from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import load
-from flexapod.excitation.excitation import harmonic
+from flexapod.excitation.sines import harmonic
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees

@@ -16,7 +16,7 @@ from flexapod.checks import one_of, positive
 from flexapod.conventions import AXES, TWO_PI, Array, Complex, JointModel, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
-from flexapod.excitation.excitation import harmonic
+from flexapod.excitation.sines import harmonic
 from flexapod.mechanics.inputs import single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.pose import Motion, Pose, PoseLike

@@ -12,8 +12,10 @@ import numpy as np
 
 from flexapod.conventions import AXES, TWO_PI, Array
 from flexapod.errors import SimulationError
-from flexapod.excitation.excitation import Excitation, half_sine_shock, harmonic, sine_sweep, smooth_step
+from flexapod.excitation.excitation import Excitation
+from flexapod.excitation.piecewise import half_sine_shock, smooth_step
 from flexapod.excitation.recordings import parse_time_series
+from flexapod.excitation.sines import harmonic, sine_sweep
 from flexapod.mechanics.modes import natural_modes
 from flexapod.simulation.time_simulation import simulate
 from flexapod.web import requests
@@ -89,7 +91,7 @@ def _motion(spec: dict[str, Any], duration: float) -> Excitation:
         text = spec.get("csv")
         if not isinstance(text, str):
             raise requests.RequestError("csv must be the text of a CSV file")
-        return parse_time_series(text.lstrip("\ufeff"))
+        return parse_time_series(text)
     axis = requests.choice(spec, "axis", AXES)
     if kind == "shock":
         return half_sine_shock(

@@ -90,23 +90,24 @@ drive_options = common.stack(
 
 def drives(given: dict[str, Any]) -> dict[str, Excitation]:
     """Excitations by argument of `simulate`, from the options above. Raises UsageError for an unknown channel."""
-    from flexapod.excitation import excitation, recordings, spectra
+    from flexapod.excitation import piecewise, random_phases, recordings, sines
+    from flexapod.excitation.excitation import Excitation
 
     def shock(use: str, channel: str, peak: float, duration: float) -> Excitation:
         if use != "base_motion":
-            return excitation.half_sine_pulse(channel, peak, duration)
-        return excitation.half_sine_shock(channel, peak, duration, recovery=4 * duration)  # brings the base to rest
+            return piecewise.half_sine_pulse(channel, peak, duration)
+        return piecewise.half_sine_shock(channel, peak, duration, recovery=4 * duration)  # brings the base to rest
 
     makers: dict[str, Callable[..., Excitation]] = {
-        "harmonic": excitation.harmonic,
-        "sweep": excitation.sine_sweep,
-        "step": excitation.smooth_step,
-        "spin": lambda channel, rate: excitation.polynomial(channel, [0.0, rate]),
+        "harmonic": sines.harmonic,
+        "sweep": sines.sine_sweep,
+        "step": piecewise.smooth_step,
+        "spin": lambda channel, rate: piecewise.polynomial(channel, [0.0, rate]),
     }
     total: dict[str, Excitation] = {}
 
     def add(use: str, drive: Excitation) -> None:
-        total[use] = total.get(use, excitation.Excitation()) + drive
+        total[use] = total.get(use, Excitation()) + drive
 
     for name, make in makers.items():
         for channel, *numbers in given[name]:
@@ -117,7 +118,7 @@ def drives(given: dict[str, Any]) -> dict[str, Excitation]:
         add(use, shock(use, own, *numbers))
     for i, (channel, text) in enumerate(given["random"]):
         use, own = _channel(channel)
-        add(use, spectra.random_motion(own, _spectrum(text), seed=given["seed"] + i))
+        add(use, random_phases.random_motion(own, _spectrum(text), seed=given["seed"] + i))
     for use, file in given["recording"]:
         add(USES[use], recordings.read_time_series(file))
     if given["ramp"] is not None:

@@ -26,7 +26,8 @@ from flexapod.control.sampling_rate import sampling_time
 from flexapod.conventions import TWO_PI
 from flexapod.design.hexapod import Hexapod
 from flexapod.excitation.excitation import Excitation
-from flexapod.excitation.spectra import flat_spectrum, random_motion
+from flexapod.excitation.random_phases import random_motion
+from flexapod.excitation.spectra import flat_spectrum
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.modes import natural_modes
 from flexapod.pose import Pose
