@@ -70,7 +70,9 @@ def _with_progress(compute: Callable[[Callable[[float], object]], Any]) -> Gener
 
     def work() -> None:
         try:
-            news.put(("result", compute(lambda fraction: news.put(("fraction", fraction)))))
+            result = compute(lambda fraction: news.put(("fraction", fraction)))
+            news.put(("fraction", 1.0))  # a very short simulation ends before its first report
+            news.put(("result", result))
         except Exception as error:  # raised again below
             news.put(("error", error))
 
