@@ -14,14 +14,17 @@ from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import linearise
 from flexapod.pose import PoseLike
+from flexapod.vibration.grid import asked, grid_around
+from flexapod.vibration.harmonic import complex_poles
 
 
 def controlled_transmissibility(
     hexapod: Hexapod,
     pose: PoseLike | None,
     controller: ControlLaw,
-    omega: ArrayLike,
+    omega: ArrayLike | None = None,
     *,
+    frequency: ArrayLike | None = None,
     base: PoseLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
@@ -37,8 +40,11 @@ def controlled_transmissibility(
         Where the platform is held at rest: x, y, z in m, roll, pitch, yaw in rad. None is the home pose.
     controller : ControlLaw
         A PID, ForceFeedback or VelocityFeedback, or a Controller. A sampled one acts with its hold.
-    omega : array_like, shape (n,)
-        Angular frequencies > 0, rad/s; below pi/dt for a sampled controller.
+    omega : array_like, shape (n,), optional
+        Angular frequencies > 0, rad/s; below pi/dt for a sampled controller. By default the grid of
+        `vibration.frequency_grid` for the machine without control, as far as it lies below 0.99 pi/dt.
+    frequency : array_like, shape (n,), optional
+        The same in Hz, in place of `omega`.
     base : Pose or array_like, shape (6,), optional
         Pose of the base in the inertial frame. The identity by default.
     force, moment : array_like, shape (3,), optional
@@ -73,11 +79,14 @@ def controlled_transmissibility(
     >>> round(float(passive[0]), 1), round(float(controlled[0]), 1)
     (9.3, 1.4)
     """
-    w = np.atleast_1d(np.asarray(omega, dtype=np.float64))
-    if w.ndim != 1 or not w.size or not np.isfinite(w).all() or w.min() <= 0:
-        raise ArgumentError(f"omega has shape {w.shape}; give a row of finite frequencies > 0, rad/s")
+    w = asked(omega, frequency)
     plant = Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint))
     law = controller_for(plant.linear, controller)
+    if w is None:
+        w = grid_around(complex_poles(plant.linear))
+        w = w if law.dt is None else w[w < 0.99 * np.pi / law.dt]
+    if not w.size or w.min() == 0:
+        raise ArgumentError("omega is empty or holds zero; the loop needs frequencies > 0.")
     if law.dt is not None and w.max() >= np.pi / law.dt:
         raise ArgumentError(
             f"omega reaches {w.max():.5g} rad/s; a controller sampled every {law.dt:.5g} s has a response only "
