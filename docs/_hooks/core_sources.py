@@ -19,7 +19,7 @@ LINK = re.compile(r'href="core:([^"#]*)(?:#([^"]*))?"')
 
 #: How the first line of a definition looks, the likelier form first. A line that ends in ; only declares or calls.
 DEFINITIONS = (
-    r"\b(?:struct|class|enum|union|concept|namespace)\s+(?:class\s+)?{name}\b(?!.*;\s*(?://.*)?$)",
+    r"\b(?:struct|class|enum|union|concept|namespace)\s+(?:class\s+)?{name}\b(?![^{{]*;\s*(?://.*)?$)",
     r"\busing\s+{name}\s*=|#define\s+{name}\b",
     r"^(?!\s*(?:return|else|throw|if|for|while|case)\b)[\w\s:<>,&*~\[\]]*(?<![\w.>]){name}\s*\((?!.*;\s*(?://.*)?$)",
     r"^\s*(?:(?:inline|static|extern|const|constexpr|constinit)\s+)+[\w\s:<>,&*]*\b{name}\s*[=({{\[]",

@@ -42,7 +42,9 @@ def names_of(package: str) -> list[str]:
     """Full names of what a page shows, without `flexapod.` in front; each is on the page of its own package."""
     if package == "errors":
         module = import_module("flexapod.errors")
-        names = sorted(name for name, thing in vars(module).items() if isinstance(thing, type) and name != "Any")
+        names = sorted(
+            name for name, thing in vars(module).items() if isinstance(thing, type) and issubclass(thing, BaseException)
+        )
         return [name if name in flexapod.__all__ else f"errors.{name}" for name in names]
     if package == "top":
         return [name for name in flexapod.__all__ if _home(name) == "pose"]

@@ -65,7 +65,7 @@ def test_every_key_of_a_design_is_in_the_table():
         ("model/leg.hpp", "leg_inertia", "Sym3<T> leg_inertia("),
         ("model/leg.hpp", "LegAxes::W", "Vec3<T> W(const"),
         ("model/equations.hpp", "base_coupling", "Mat6<T> base_coupling("),
-        ("model/design.hpp", "Joint", "enum class Joint"),
+        ("model/joint.hpp", "Joint", "enum class Joint"),
     ],
 )
 def test_a_symbol_of_the_core_is_found_where_it_is_defined(file, symbol, line):
