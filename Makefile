@@ -43,8 +43,13 @@ lint: build
 types: build
 	$(BIN)/mypy
 
-bench: $(VENV)/.bench ## Flexapod and other tools: one table, one figure, ratios from one interleaved run
+bench: $(VENV)/.bench build/bench/flexapod_bench ## Flexapod and other tools: one table, one figure, ratios from one interleaved run
 	$(BIN)/python -m benchmarks
+
+build/bench/flexapod_bench: $(VENV)/.tools $(CORE)
+	$(BIN)/cmake -S . -B build/bench -G Ninja -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja -DCMAKE_BUILD_TYPE=Release \
+	  -DSKBUILD_PROJECT_NAME=flexapod -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python -DFLEXAPOD_BENCH=ON >/dev/null
+	$(BIN)/cmake --build build/bench --target flexapod_bench
 
 bench-readme: bench ## the same into benchmarks/README.md
 	$(BIN)/python -m benchmarks --update --redraw out/benchmarks/results.json

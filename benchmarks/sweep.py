@@ -8,11 +8,13 @@ that counts) over what a loop of independent multiply-adds of the same vector wi
 
 import multiprocessing
 import os
+import subprocess
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from functools import reduce
 from operator import or_
+from pathlib import Path
 from statistics import median
 
 import numpy as np
@@ -23,6 +25,7 @@ from benchmarks._contest import OURS, Contender, Contest, Plan, cpu_seconds
 from flexapod import _core
 
 TURNS = 9
+BENCH = Path(__file__).parents[1] / "build" / "bench" / "flexapod_bench"
 KERNEL_POSES, BATCH_POSES, PINOCCHIO_POSES = 400_000, 4_000, 20
 TASKS = {"omega_1 + cond_H": ("omega_1", "cond_H"), "all six + cond_H": ("omega", "cond_H")}
 THREADS = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -31,10 +34,6 @@ THREADS = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 
 def random_poses(n: int) -> np.ndarray:
     middle, half = np.array([0.1, 0.2, 0.8, 0, 0, 0]), np.array([0.15, 0.15, 0.15, 0.3, 0.3, 0.3])
     return middle + half * np.random.default_rng(1).uniform(-1, 1, (n, 6))
-
-
-def no_limits() -> np.ndarray:
-    return np.concatenate([np.zeros(36), np.tile([-np.inf, np.inf], 6), [np.inf, np.inf, -np.inf]])
 
 
 def bits(quantities: tuple[str, ...]) -> _core.SweepQuantity:
@@ -46,16 +45,27 @@ def bits(quantities: tuple[str, ...]) -> _core.SweepQuantity:
 
 def kernel_rate(quantities: tuple[str, ...], threads: int) -> float:
     design, poses = fx.load("mukherjee-i").packed, random_poses(KERNEL_POSES)
-    arguments = design, _core.Joint.universal, poses, bits(quantities), no_limits(), threads
+    arguments = design, _core.Joint.universal, poses, bits(quantities), _core.SweepLimits(), threads
     _core.sweep(*arguments)
     return KERNEL_POSES / seconds(lambda: _core.sweep(*arguments))
 
 
-def peak_rate() -> float:
+def bench(*arguments: str, given: bytes = b"") -> float:
+    """What the program that `make bench` builds prints."""
+    if not BENCH.exists():
+        raise SystemExit("the operations of a pose and the processor's peak need a program of their own: make bench")
+    return float(subprocess.run([BENCH, *arguments], input=given, capture_output=True, check=True).stdout)
+
+
+def peak_rate(instruction_set: str) -> float:
     """FLOP/s of one thread."""
-    rounds = 4_000_000
-    start = time.perf_counter()
-    return _core.peak_flops(rounds) / (time.perf_counter() - start)
+    return bench("peak", instruction_set, "4000000")
+
+
+def flops_of_a_pose(hexapod, quantities: tuple[str, ...]) -> float:
+    """Sums, products, quotients and roots, the mean over random poses."""
+    numbers = hexapod.packed.tobytes() + random_poses(2_000).tobytes()
+    return bench("flops", str(bits(quantities).value), given=numbers)
 
 
 def seconds(call: Callable) -> float:
@@ -166,7 +176,7 @@ def _error(hexapod, poses, omega, cond_H) -> float:
 
 def check(hexapod, poses, pinocchio) -> None:
     """All contenders compute the same: to rounding times the condition."""
-    found = _core.sweep(hexapod.packed, _core.Joint.universal, poses, bits(("omega", "cond_H")), no_limits(), 1)
+    found = _core.sweep(hexapod.packed, _core.Joint.universal, poses, bits(("omega", "cond_H")), _core.SweepLimits(), 1)
     omega, cond_H = array_modes(np, hexapod, poses)
     error = np.abs(found["omega"] / omega - 1).max(axis=1) / (omega[:, 5] / omega[:, 0])
     assert error.max() < 1e-13, error.max()
@@ -195,7 +205,7 @@ def main() -> None:
     contenders["both              Pinocchio"] = lambda: (
         PINOCCHIO_POSES / seconds(lambda: [pinocchio(six) for six in poses[:PINOCCHIO_POSES]])
     )
-    peaks = {f"peak {name}": lambda k=kernel: k(peak_rate) for name, kernel in kernels.items()}
+    peaks = {f"peak {name}": lambda name=name: peak_rate(name) for name in kernels}
     turns = [{label: run() for label, run in (contenders | peaks).items()} for _ in range(TURNS)]
     report(hexapod, contenders, turns)
     for kernel in kernels.values():
@@ -209,7 +219,7 @@ def report(hexapod, contenders, turns) -> None:
         ratio = median(turn[label] / turn["both              NumPy + LAPACK"] for turn in turns)
         print(f"{label:42s} {median(rate):10.3g} {max(rate):10.3g} {ratio:8.1f}")
     for task, quantities in TASKS.items():
-        flops = _core.sweep_flops(hexapod.packed, _core.Joint.universal, random_poses(2_000), bits(quantities))
+        flops = flops_of_a_pose(hexapod, quantities)
         shares = []
         for name in _core.simd_available():
             label = f"{task:17s} {name:8s} 1 thread"

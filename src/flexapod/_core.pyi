@@ -1,7 +1,8 @@
-# What the compiled core offers, by position only. design: Hexapod.packed; platform, base, start: rows of 24 numbers.
+# What the compiled core offers; functions take arguments by position only. design: Hexapod.packed; platform, base,
+# start: motions, rows of `motion_size` numbers; poses: rows of the first 12 of these.
 from collections.abc import Callable
 from enum import Enum, Flag
-from typing import Any
+from typing import Any, overload
 
 from numpy import float64, int64
 from numpy.typing import NDArray
@@ -100,64 +101,181 @@ def energy(design: _A, joint: Joint, platform: _A, base: _A, unstretched: _A, /)
 def natural_modes(design: _A, joint: Joint, platform: _A, base: _A, /) -> tuple[_A, _A]: ...
 def inertia_parts(design: _A, joint: Joint, platform: _A, base: _A, /) -> tuple[_A, _A]: ...
 def frequency_derivatives(design: _A, joint: Joint, platform: _A, base: _A, /) -> tuple[_A, _A]: ...
-def tangent(design: _A, joint: Joint, platform: _A, base: _A, wrench: _A, unstretched: _A, /) -> tuple[_A, ...]: ...
+def tangent(design: _A, joint: Joint, platform: _A, base: _A, wrench: _A, unstretched: _A, /) -> _A: ...
 def settle(design: _A, joint: Joint, start: _A, base: _A, wrench: _A, unstretched: _A, /) -> tuple[_A, Rest]: ...
 
-setup_size: int
+class SimulationOptions:
+    """How accurately and how long to integrate, and what to keep."""
 
-def simulate(
-    designs: _A,
-    joint: Joint,
-    setups: _A,
-    excitations: list[_A],
-    times: _A,
-    options: _A,
-    progress: Callable[[float], object] | None,
-    /,
-) -> tuple[_A, _A, _A, _A, _A, _A, _A, _A, _A, _A]: ...
-def control_loop(
-    design: _A,
-    joint: Joint,
-    setup: _A,
-    base: _A,
-    controller: list[_A],
-    noise: _A,
-    timing: _A,
-    progress: Callable[[float], object] | None,
-    /,
-) -> tuple[_A, _A, _A, _A, _A]: ...
+    def __init__(
+        self,
+        *,
+        rtol: float,
+        atol: float,
+        max_step: float,
+        max_steps: float,
+        stop_at_singular: bool,
+        motions: bool,
+        works: bool,
+        threads: int,
+    ) -> None: ...
+    rtol: float
+    atol: float
+    max_step: float
+    max_steps: float
+    stop_at_singular: bool
+    motions: bool
+    works: bool
+    threads: int
+
+class SimulationSetup:
+    """A machine at rest on its base and what drives it from t = 0; poses of 12 numbers, inertial axes."""
+
+    def __init__(
+        self,
+        *,
+        design: _A,
+        joint: Joint,
+        platform: _A,
+        base: _A,
+        leg_force: _A,
+        wrench: _A,
+        displacement: _A,
+        velocity: _A,
+        roll_pitch_yaw: bool,
+        carried: bool,
+        base_motion: _A,
+        load: _A,
+        command: _A,
+    ) -> None: ...
+    @property
+    def joint(self, /) -> Joint: ...
+    @property
+    def roll_pitch_yaw(self, /) -> bool: ...
+    @property
+    def carried(self, /) -> bool: ...
+
+class SimulationResult:
+    """Rows for n simulations at m instants, NaN after the end of one that was stopped."""
+
+    @property
+    def displacement(self, /) -> _A: ...
+    @property
+    def relative(self, /) -> _A: ...
+    @property
+    def work(self, /) -> _A: ...
+    @property
+    def platform(self, /) -> _A: ...
+    @property
+    def base(self, /) -> _A: ...
+    @property
+    def leg_force(self, /) -> _A: ...
+    @property
+    def outcome(self, /) -> list[Outcome]: ...
+    @property
+    def time(self, /) -> _A: ...
+    @property
+    def last(self, /) -> _A: ...
+    @property
+    def steps(self, /) -> NDArray[int64]: ...
+
+class ControllerMatrices:
+    """A sampled controller that is shown all measurements."""
+
+    def __init__(self, *, A: _A, B: _A, C: _A, D: _A, limit: _A) -> None: ...
+    @property
+    def order(self, /) -> int: ...
+
+class ControlRecord:
+    """One run of a sampled controller: rows at every step's end (measured, displacement), and at every sample."""
+
+    @property
+    def measured(self, /) -> _A: ...
+    @property
+    def displacement(self, /) -> _A: ...
+    @property
+    def force(self, /) -> _A: ...
+    @property
+    def cut(self, /) -> _A: ...
+    @property
+    def outcome(self, /) -> Outcome: ...
 
 class Equations:
-    def __init__(self, design: _A, joint: Joint, setup: _A, excitations: list[_A], /) -> None: ...
+    """y' = rates(t, y) from y = start(), for other integrators."""
+
+    def __init__(self, setup: SimulationSetup, /) -> None: ...
     def start(self, /) -> _A: ...
     def rates(self, t: float, y: _A, /) -> _A: ...
 
+def simulate(
+    setups: list[SimulationSetup],
+    times: _A,
+    options: SimulationOptions,
+    progress: Callable[[float], object] | None,
+    /,
+) -> SimulationResult: ...
+def control_loop(
+    setup: SimulationSetup,
+    controller: ControllerMatrices,
+    noise: _A,
+    dt: float,
+    steps: int,
+    progress: Callable[[float], object] | None,
+    /,
+) -> ControlRecord: ...
 def excitation(terms: _A, times: _A, /) -> _A: ...
 def base_motion(terms: _A, roll_pitch_yaw: bool, rest: _A, times: _A, /) -> _A: ...
 def sweep_designs(designs: _A, joint: Joint, poses: _A, paired: bool, modes: int, threads: int, /) -> _A: ...
-def design_gradients(
-    design: _A,
-    joint: Joint,
-    platforms: _A,
-    directions: _A,
-    displacements: _A,
-    home: _A,
-    home_displacements: _A,
-    what: int,
-    /,
-) -> dict[str, Any]: ...
 
-# The pose sweep. limits: neutral directions (36), leg length bounds (12), largest universal and spherical angle, least
-# leg distance. Gives arrays by name, and "status": a value of SweepStatus.
+class DesignDirections:
+    """A machine at n poses and m directions of its design; values come with their derivatives along these."""
+
+    def __init__(
+        self,
+        *,
+        design: _A,
+        joint: Joint,
+        platform: _A,
+        directions: _A,
+        displacements: _A,
+        home: _A,
+        home_displacements: _A,
+    ) -> None: ...
+    def frequencies(self, /) -> tuple[_A, _A]: ...
+    def force_transformation(self, /) -> tuple[_A, _A]: ...
+    def stiffness(self, /) -> tuple[_A, _A]: ...
+    def legs(self, /) -> tuple[tuple[_A, _A], tuple[_A, _A], tuple[_A, _A]]: ...
+
+class SweepLimits:
+    """What joints and legs allow; without arguments, everything."""
+
+    @overload
+    def __init__(self, /) -> None: ...
+    @overload
+    def __init__(
+        self,
+        *,
+        neutral: _A,
+        leg_length: _A,
+        universal_angle: float,
+        spherical_angle: float,
+        leg_distance: float,
+    ) -> None: ...
+    @property
+    def universal_angle(self, /) -> float: ...
+    @property
+    def spherical_angle(self, /) -> float: ...
+    @property
+    def leg_distance(self, /) -> float: ...
+
+# The pose sweep: arrays by name, and "status", values of SweepStatus.
 SWEEP_ARRAYS: dict[str, SweepQuantity]  # array -> what to ask for
 
 def sweep(
-    design: _A, joint: Joint, poses: _A, quantities: SweepQuantity, limits: _A, threads: int, /
+    design: _A, joint: Joint, poses: _A, quantities: SweepQuantity, limits: SweepLimits, threads: int, /
 ) -> dict[str, NDArray[Any]]: ...
-def sweep_flops(design: _A, joint: Joint, poses: _A, quantities: SweepQuantity, /) -> float: ...
 
 compiler: str  # name and version
 
 def simd() -> str: ...
 def simd_available() -> tuple[str, ...]: ...
-def peak_flops(rounds: int, /) -> float: ...

@@ -24,14 +24,25 @@ std::vector<double> read() {
 
 void write(const std::vector<double>& numbers) { std::fwrite(numbers.data(), sizeof(double), numbers.size(), stdout); }
 
-void sweep(const double* design, const double* limits, const double* poses, std::size_t n) {
+/// Limits that some poses keep and others do not; compare.py has the same.
+sweep_task::Limits some_limits() {
+  sweep_task::Limits limits{};
+  for (auto& side : limits.neutral)
+    for (auto& direction : side) direction[2] = 1.0;
+  for (auto& length : limits.length) length[1] = 1.0;
+  limits.universal_angle = limits.spherical_angle = 0.5, limits.leg_distance = 0.01;
+  return limits;
+}
+
+void sweep(const double* design, const double* poses, std::size_t n) {
   std::vector<double> omega(6 * n), cond(n), length(6 * n), distance(n), force(n), stiffness(n);
   std::vector<double> universal(6 * n), spherical(6 * n), gradient(6 * n), lowest(n);
   std::vector<std::uint8_t> status(n);
   const std::unique_ptr<bool[]> within(new bool[n]);
+  const sweep_task::Limits limits = some_limits();
   sweep_task::Task task{};
   task.design = design, task.joint = Joint::universal, task.poses = poses, task.width = 6, task.quantities = 1023;
-  task.limits = reinterpret_cast<const sweep_task::Limits*>(limits);
+  task.limits = &limits;
   task.omega_1_ = lowest.data(), task.omega_ = omega.data(), task.cond_H_ = cond.data();
   task.leg_length_ = length.data(), task.leg_distance_ = distance.data(), task.leg_force_ = force.data();
   task.lowest_stiffness_ = stiffness.data(), task.universal_angle_ = universal.data();
@@ -57,11 +68,10 @@ void dynamics(const Design<double>& design, const Motion<double>* platform, std:
 
 int main() {
   const std::vector<double> numbers = read();
-  constexpr std::size_t head = design_size + sweep_task::limits_size;
-  const std::size_t n = (numbers.size() - head) / (6 + motion_size);
+  const std::size_t n = (numbers.size() - design_size) / (6 + motion_size);
   const double* design = numbers.data();
-  const double* poses = design + head;
-  sweep(design, design + design_size, poses, n);
+  const double* poses = design + design_size;
+  sweep(design, poses, n);
   dynamics(*reinterpret_cast<const Design<double>*>(design), reinterpret_cast<const Motion<double>*>(poses + 6 * n), n);
   std::fprintf(stderr, "%d lanes in a vector\n", Lanes::lanes);
 }

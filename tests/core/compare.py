@@ -38,6 +38,14 @@ CENTER = {"mukherjee-i": (0.0, 0.0, 0.89), "mukherjee-ii": (0.0, 0.0, 0.085)}  #
 JOINT = _core.Joint.universal
 TOLERANCE = 1e-11  # of the largest number of a pose; conditions here are below 1e3
 
+LIMITS = _core.SweepLimits(  # as in check.cpp
+    neutral=np.tile([0, 0, 1.0], 12),
+    leg_length=np.tile([0, 1.0], 6),
+    universal_angle=0.5,
+    spherical_angle=0.5,
+    leg_distance=0.01,
+)
+
 
 class Build(NamedTuple):
     compiler: str
@@ -69,9 +77,8 @@ class Problem:
         motions = np.concatenate(
             [fx.Motion(fx.Pose.from_rpy(*poses.T)).packed[:, :12], rng.normal(size=(POSES, 12))], 1
         )
-        limits = np.concatenate([np.tile([0, 0, 1.0], 12), np.tile([0, 1.0], 6), [0.5, 0.5, 0.01]])
-        self.input = np.concatenate([hexapod.packed, limits, poses.ravel(), motions.ravel()]).tobytes()
-        self.expected = _core.sweep(hexapod.packed, JOINT, poses, reduce(or_, _core.SweepQuantity), limits, 1)
+        self.input = np.concatenate([hexapod.packed, poses.ravel(), motions.ravel()]).tobytes()
+        self.expected = _core.sweep(hexapod.packed, JOINT, poses, reduce(or_, _core.SweepQuantity), LIMITS, 1)
         rest = np.tile(fx.Motion(fx.Pose([0.0, 0.0, 0.0])).packed, (POSES, 1))
         none = np.zeros((POSES, 6))
         self.expected["acceleration"] = _core.forward_dynamics(hexapod.packed, JOINT, motions, rest, none, none)

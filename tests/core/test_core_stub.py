@@ -4,51 +4,72 @@ import ast
 import enum
 import re
 from importlib import resources
+from typing import NamedTuple, get_args
 
 import pytest
 
-from flexapod import _core
+from flexapod import _core, conventions
+from flexapod.control import linear_controller
 
 STUB = ast.parse((resources.files("flexapod") / "_core.pyi").read_text(encoding="utf-8"))
 ALL_CLASSES = {node.name: node for node in STUB.body if isinstance(node, ast.ClassDef)}
 ENUMS = {name: node for name, node in ALL_CLASSES.items() if node.bases}
 CLASSES = {name: node for name, node in ALL_CLASSES.items() if name not in ENUMS}
-FUNCTIONS = {node.name: node for node in STUB.body if isinstance(node, ast.FunctionDef)}
 VALUES = {node.target.id: node for node in STUB.body if isinstance(node, ast.AnnAssign)}
-METHODS = {
-    f"{name}.{item.name}": item
-    for name, node in CLASSES.items()
-    for item in node.body
-    if isinstance(item, ast.FunctionDef)
-}
-
-# What the stub says -> what the compiled module says, which has no words for arrays that it makes, nor for callables.
-SAME = {"_A": "ndarray", "list[_A]": "Sequence[ndarray]", "Callable[[float], object] | None": "object | None"}
 
 
-def compiled(name: str) -> ast.FunctionDef:
-    """The signature that a compiled function has, read as the stub is."""
+class Signature(NamedTuple):
+    positional: list[str]  # types
+    named: list[tuple[str, str]]  # names and types
+    result: str
+
+
+def functions(body: list[ast.stmt], before: str = "") -> dict[str, list[ast.FunctionDef]]:
+    """Functions by name, overloads together."""
+    found: dict[str, list[ast.FunctionDef]] = {}
+    for node in body:
+        if isinstance(node, ast.FunctionDef):
+            found.setdefault(before + node.name, []).append(node)
+    return found
+
+
+FUNCTIONS = functions(STUB.body)
+for _name, _node in CLASSES.items():
+    FUNCTIONS |= functions(_node.body, f"{_name}.")
+
+
+def signature(function: ast.FunctionDef) -> Signature:
+    given = function.args
+    plain = [argument for argument in given.posonlyargs + given.args if argument.arg != "self"]
+    return Signature(
+        [argument_type(argument) for argument in plain],
+        [(argument.arg, argument_type(argument)) for argument in given.kwonlyargs],
+        simple(ast.unparse(function.returns)).split("[")[0],
+    )
+
+
+def argument_type(argument: ast.arg) -> str:
+    """As the compiled module says it, which has no words for callables, and takes any sequence for a list."""
+    kind = simple(ast.unparse(argument.annotation)).replace("list[", "Sequence[")
+    return kind.replace("Callable[[float], object]", "object")
+
+
+def simple(kind: str) -> str:
+    return re.sub(r"NDArray\[\w+\]|\b_A\b", "ndarray", kind)
+
+
+def compiled(name: str) -> list[Signature]:
+    """The signatures that a compiled function has, read as those of the stub are."""
     here = _core
     for part in name.split("."):
         here = getattr(here, part)
     here = here.fget if isinstance(here, property) else here
-    ((signature, *_),) = here.__nb_signature__
-    plain = re.sub(r"ndarray\[[^\]]*\]", "ndarray", signature).replace("collections.abc.", "")
-    plain = plain.replace("flexapod._core.", "").replace("def (", "def get(")
-    return ast.parse(f"{plain}: ...").body[0]
-
-
-def arguments(function: ast.FunctionDef) -> list[str | None]:
-    named = [argument.arg for argument in function.args.args + function.args.kwonlyargs]
-    assert named in ([], ["self"]), f"{function.name} takes arguments by position only"
-    types = [argument.annotation and ast.unparse(argument.annotation) for argument in function.args.posonlyargs]
-    types += [None] * len(named)
-    return [SAME.get(kind, kind) for kind in types]
-
-
-def result(function: ast.FunctionDef) -> str:
-    kind = ast.unparse(function.returns)
-    return "object" if kind == "_A" else kind.split("[")[0]
+    found = []
+    for text, *_ in here.__nb_signature__:
+        plain = re.sub(r"(numpy\.)?ndarray\[[^\]]*\]", "ndarray", text).replace("collections.abc.", "")
+        plain = plain.replace("flexapod._core.", "").replace("def (", "def get(")
+        found.append(signature(ast.parse(f"{plain}: ...").body[0]))
+    return found
 
 
 def public(thing) -> set[str]:
@@ -56,11 +77,12 @@ def public(thing) -> set[str]:
 
 
 def test_the_names_are_those_of_the_module():
-    assert {*ALL_CLASSES, *FUNCTIONS, *VALUES} == public(_core)
+    names = {name for name in FUNCTIONS if "." not in name}
+    assert {*ALL_CLASSES, *names, *VALUES} == public(_core)
     for name, node in CLASSES.items():
-        assert {item.name for item in node.body if isinstance(item, ast.FunctionDef)} - {"__init__"} == public(
-            getattr(_core, name)
-        )
+        attributes = {item.target.id for item in node.body if isinstance(item, ast.AnnAssign)}
+        methods = {item.name for item in node.body if isinstance(item, ast.FunctionDef)} - {"__init__"}
+        assert attributes | methods == public(getattr(_core, name))
 
 
 @pytest.mark.parametrize("name", ENUMS)
@@ -71,15 +93,28 @@ def test_an_enumeration_has_its_members(name):
     assert stub == {member.name: member.value for member in found}
 
 
-@pytest.mark.parametrize("name", [*FUNCTIONS, *METHODS])
+@pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_signature_is_that_of_the_function(name):
-    stub, found = {**FUNCTIONS, **METHODS}[name], compiled(name)
-    assert arguments(stub) == arguments(found)
-    if not stub.decorator_list or result(found) != "object":  # a property that makes its value is just an object
-        assert result(stub) == result(found)
+    stub, found = [signature(function) for function in FUNCTIONS[name]], compiled(name)
+    # An array that a function makes is just an object to the compiled module.
+    assert stub == [f._replace(result="ndarray") if f.result == "object" else f for f in found]
+
+
+@pytest.mark.parametrize("name", CLASSES)
+def test_an_attribute_has_its_type(name):
+    for item in CLASSES[name].body:
+        if isinstance(item, ast.AnnAssign):
+            ((got,), set_) = compiled(f"{name}.{item.target.id}"), getattr(_core, name).__dict__[item.target.id].fset
+            assert got.result == ast.unparse(item.annotation)
+            assert set_ is not None, "an attribute of the stub may be set"
 
 
 @pytest.mark.parametrize("name", VALUES)
 def test_a_value_has_its_type(name):
     kind = ast.unparse(VALUES[name].annotation).split("[")[0]
     assert type(getattr(_core, name)).__name__ == kind
+
+
+def test_names_written_for_type_checkers_are_those_of_the_core():
+    assert conventions.JOINT_MODELS == get_args(conventions.JointModel) == tuple(_core.Joint.__members__)
+    assert get_args(linear_controller.Measurement) == linear_controller.MEASUREMENTS == tuple(_core.Measure.__members__)

@@ -74,7 +74,7 @@ def somewhere():
 
 def slopes_at(design, x, offsets):
     own = design.numbers(x)
-    return Slopes(own, design.jacobian(x), offsets + own[HOME], True, True)
+    return Slopes(own, design.jacobian(x), offsets + own[HOME], True, _core.Joint.universal)
 
 
 def differences(function, design, x):
@@ -180,12 +180,12 @@ def test_slopes_where_frequencies_are_equal(measured):
     own = numbers(hexapod)
     jacobian = np.zeros((217, 1))
     jacobian[:211] = direction.T
-    at = Slopes(own, jacobian, own[None, HOME], True, True)
+    at = Slopes(own, jacobian, own[None, HOME], True, _core.Joint.universal)
     block = at.omega[1][0, :3, :3, 0]
     by_formula = np.linalg.eigvalsh(block) / (2 * omega[0])
 
     def lowest_three(step):
-        packed = own[:211] + step * direction[0]
+        packed = own[: HOME.start] + step * direction[0]
         motion = fx.Motion(pose).packed[None]
         still = fx.Motion.fixed().packed[None]
         return _core.natural_modes(packed, _core.Joint.universal, motion, still)[0][0, :3]
@@ -196,7 +196,7 @@ def test_slopes_where_frequencies_are_equal(measured):
         measured("design/repeated", apart(moved, expected), 5e-3)  # second order: step times the others' frequency gap
 
     def soft(step):
-        moved = Slopes(own + step * jacobian[:, 0], jacobian, own[None, HOME], True, True)
+        moved = Slopes(own + step * jacobian[:, 0], jacobian, own[None, HOME], True, _core.Joint.universal)
         return index_slopes(moved, 50.0)[0][0]
 
     slope = index_slopes(at, 50.0)[1][0, 0]

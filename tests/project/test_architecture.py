@@ -37,7 +37,18 @@ ORDER = [
     "__main__",
 ]
 #: The same for the folders of the core.
-CORE_ORDER = ("numbers", "simd", "decomposition", "model", "sweep", "simulation", "bench", "bindings")
+CORE_ORDER = (
+    "numbers",
+    "simd",
+    "threads",
+    "decomposition",
+    "model",
+    "sweep",
+    "simulation",
+    "kernels",
+    "bench",
+    "bindings",
+)
 #: And for those of the page.
 PAGE_ORDER = ("state", "widgets", "charts", "machine3d", "panels", "app")
 

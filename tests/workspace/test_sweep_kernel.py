@@ -33,7 +33,8 @@ while True:
         arguments = pickle.load(sys.stdin.buffer)
     except EOFError:
         break
-    pickle.dump(_core.sweep(*arguments), sys.stdout.buffer)
+    *given, limits, threads = arguments
+    pickle.dump(_core.sweep(*given, _core.SweepLimits(**limits), threads), sys.stdout.buffer)
     sys.stdout.buffer.flush()
 """
 
@@ -48,7 +49,7 @@ class Kernel:
 
     def __call__(self, hexapod, poses, quantities=ALL, joint="universal", threads=1, limits=None) -> dict:
         poses = np.ascontiguousarray(poses)
-        limits = limits_array(hexapod) if limits is None else limits
+        limits = limits_of(hexapod) if limits is None else limits
         arguments = (hexapod.packed, _core.Joint[joint], poses, quantities, limits, threads)
         pickle.dump(arguments, self.process.stdin)
         self.process.stdin.flush()
@@ -67,13 +68,13 @@ def kernel(request):
     kernel.close()
 
 
-def limits_array(hexapod) -> np.ndarray:
+def limits_of(hexapod) -> dict:
+    """What SweepLimits is made of, which another process is sent."""
     limits = hexapod.limits
     length = np.tile([-np.inf, np.inf], (6, 1)) if limits.leg_length is None else limits.leg_length
-    length = np.broadcast_to(length, (6, 2))
-    bounds = [limits.universal_angle, limits.spherical_angle, limits.leg_distance]
-    last = [absent if bound is None else bound for bound, absent in zip(bounds, (np.inf, np.inf, -np.inf), strict=True)]
-    return np.concatenate([neutral_directions(hexapod).ravel(), length.ravel(), last])
+    bounds = {"universal_angle": np.inf, "spherical_angle": np.inf, "leg_distance": -np.inf}
+    bounds |= {name: getattr(limits, name) for name in bounds if getattr(limits, name) is not None}
+    return {"neutral": neutral_directions(hexapod), "leg_length": np.broadcast_to(length, (6, 2)).copy(), **bounds}
 
 
 def center(hexapod) -> np.ndarray:
@@ -292,7 +293,7 @@ def test_leg_along_its_universal_axis(kernel):
     locked = hexapod.replace({"base.universal_axes[3]": s})
     home = center(hexapod)[None]
     mask = _core.SweepQuantity.omega_1 | _core.SweepQuantity.leg_length
-    found = kernel(locked, home, mask, limits=limits_array(hexapod))
+    found = kernel(locked, home, mask, limits=limits_of(hexapod))
     assert found["status"][0] == NO_LEG
     assert np.isnan(found["omega_1"][0])
 
@@ -419,11 +420,12 @@ def test_unknown_instruction_set_is_refused():
     [
         ({"threads": 0}, "threads is 0"),
         ({"poses": np.zeros((3, 5))}, "poses must have"),
-        ({"limits": np.zeros(3)}, "limits"),
+        ({"leg_length": np.zeros(3)}, "leg_length"),
     ],
 )
 def test_wrong_call_is_refused(change, words):
     hexapod = fx.load("mukherjee-i")
-    given = {"poses": np.zeros((3, 6)), "limits": limits_array(hexapod), "threads": 1} | change
+    given = {"poses": np.zeros((3, 6)), "threads": 1} | limits_of(hexapod) | change
+    poses, threads = given.pop("poses"), given.pop("threads")
     with pytest.raises(ValueError, match=words):
-        _core.sweep(hexapod.packed, _core.Joint.universal, given["poses"], ALL, given["limits"], given["threads"])
+        _core.sweep(hexapod.packed, _core.Joint.universal, poses, ALL, _core.SweepLimits(**given), threads)

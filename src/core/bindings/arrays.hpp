@@ -4,76 +4,63 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
-#include <initializer_list>
-#include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
-#include <vector>
+#include <tuple>
 
-#include "model/design.hpp"
-#include "model/motion.hpp"
+#include "model/batch.hpp"
+#include "numbers/array.hpp"
 
 namespace flexapod {
 
 namespace nb = nanobind;
+using namespace nb::literals;
 using Input = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 
-/// A new float64 array; hand it to Python with `array()`.
-class Output {
- public:
-  explicit Output(std::initializer_list<size_t> shape) : shape_(shape) {
-    size_t size = 1;
-    for (size_t n : shape_) size *= n;
-    data_.reset(new double[size == 0 ? 1 : size]());
-  }
-  double* data() { return data_.get(); }
-  nb::ndarray<nb::numpy, double> array() {
-    double* raw = data_.release();
-    nb::capsule owner(raw, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-    return {raw, shape_.size(), shape_.data(), owner};
-  }
-
- private:
-  std::vector<size_t> shape_;
-  std::unique_ptr<double[]> data_;
-};
-
-/// The input's rows of `width` numbers, one for each of n poses.
+/// The input's rows of `width` numbers, one for each of n states.
 inline const double* rows(const Input& input, size_t n, size_t width, const char* name) {
   if (input.size() != n * width)
     throw std::invalid_argument(std::string(name) + " has " + std::to_string(input.size()) + " numbers; " +
                                 std::to_string(n) + " rows of " + std::to_string(width) + " are needed");
   return input.data();
 }
+inline const Motion<double>* motions(const Input& input, size_t n, const char* name) {
+  return reinterpret_cast<const Motion<double>*>(rows(input, n, motion_size, name));
+}
+inline const Vec6<double>* sixes(const Input& input, size_t n, const char* name) {
+  return reinterpret_cast<const Vec6<double>*>(rows(input, n, 6, name));
+}
+inline std::span<const double> span(const Input& input) { return {input.data(), input.size()}; }
 
 /// The machine of a design; what is purely geometric is the same for every joint model.
 inline Machine<double> machine_of(const Input& design, Joint joint = Joint::universal) {
   const auto* d = reinterpret_cast<const Design<double>*>(rows(design, 1, design_size, "design"));
   return Machine<double>(*d, joint);
 }
-
-inline const Motion<double>* motions(const Input& input, size_t n, const char* name) {
-  return reinterpret_cast<const Motion<double>*>(rows(input, n, motion_size, name));
+inline States states_of(const Input& platform, const Input& base) {
+  const size_t n = platform.size() / motion_size;
+  return {n, motions(platform, n, "platform"), motions(base, n, "base")};
 }
 
-inline Vec6<double> vec6(const double* x) { return {{x[0], x[1], x[2], x[3], x[4], x[5]}}; }
+/// A NumPy array that takes over the core's.
+template <class T> nb::object numpy(Array<T>&& array) {
+  const std::vector<size_t> shape = array.shape();
+  T* data = array.release().release();
+  nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<T*>(p); });
+  return nb::cast(nb::ndarray<nb::numpy, T>(data, shape.size(), shape.data(), owner));
+}
+inline nb::object numpy(Rest end) { return nb::cast(end); }
+template <class... T> nb::tuple numpy(std::tuple<T...>&& results) {
+  return std::apply([](auto&... each) { return nb::make_tuple(numpy(std::move(each))...); }, results);
+}
 
-inline void write(double*& to, const Vec3<double>& v) {
-  for (const double x : {v.x, v.y, v.z}) *to++ = x;
-}
-inline void write(double*& to, const Vec6<double>& v) {
-  for (const double x : v.a) *to++ = x;
-}
-inline void write(double*& to, const Mat6<double>& m) {
-  for (const auto& row : m.a)
-    for (const double x : row) *to++ = x;
-}
-inline void write(double*& to, const double (&values)[6]) {
-  for (const double x : values) *to++ = x;
-}
-inline void write(double*& to, const Pose<double>& pose) {
-  write(to, pose.t);
-  for (const auto& row : pose.R.row) write(to, row);
+/// A read-only attribute that shows a member of a class, as an array that keeps the object alive.
+template <class C, class T> void show(nb::class_<C>& to, const char* name, Array<T> C::* member) {
+  to.def_prop_ro(name, [member](nb::handle self) {
+    const Array<T>& array = nb::cast<const C&>(self).*member;
+    return nb::ndarray<nb::numpy, T>(array.data(), array.shape().size(), array.shape().data(), self);
+  });
 }
 
 }  // namespace flexapod

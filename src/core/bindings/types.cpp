@@ -1,11 +1,9 @@
 // The names and layouts that Python takes from the core.
-#include "bindings/types.hpp"
-
 #include "bindings/arrays.hpp"
+#include "bindings/bind.hpp"
+#include "kernels/isa.hpp"
 #include "model/statics.hpp"
 #include "simulation/excitation.hpp"
-#include "simulation/task.hpp"
-#include "sweep/task.hpp"
 
 namespace flexapod {
 namespace {
@@ -97,11 +95,22 @@ void bind_enums(nb::module_& m) {
       .value("no_inertia", Status::no_inertia);
 }
 
+nb::tuple simd_available() {
+  nb::list names;
+  for (const Kernels& k : all_kernels)
+    if (k.runs_here()) names.append(k.name());
+  return nb::tuple(names);
+}
+
 }  // namespace
 
 void bind_types(nb::module_& m) {
+  kernels();  // an instruction set that is not there is an error of the import
   bind_layouts(m);
   bind_enums(m);
+  m.attr("compiler") = FLEXAPOD_COMPILER;
+  m.def("simd", [] { return kernels().name(); });
+  m.def("simd_available", &simd_available);
 }
 
 }  // namespace flexapod

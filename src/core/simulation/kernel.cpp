@@ -8,33 +8,31 @@ namespace {
 
 using namespace simulation_task;
 
-/// One simulation's numbers in a row of `setup`.
-struct Setup {
-  Pose<double> platform, base;
-  Vec6<double> leg_force, wrench, displacement, velocity;
-  double roll_pitch_yaw, carried;
-};
-static_assert(sizeof(Setup) == setup_size * sizeof(double) && sizeof(Motion<double>) == sizeof(End::last));
+static_assert(sizeof(Pose<double>) == sizeof(simulation_task::Machine::base) &&
+              sizeof(Motion<double>) == sizeof(End::last));
 
-MachineOnBaseInput input_of(const simulation_task::Machine& m) {
-  const auto& s = *reinterpret_cast<const Setup*>(m.setup);
+const Pose<double>& pose(const double (&numbers)[pose_size]) { return *reinterpret_cast<const Pose<double>*>(numbers); }
+const Vec6<double>& vec6(const double (&numbers)[6]) { return *reinterpret_cast<const Vec6<double>*>(numbers); }
+
+MachineOnBaseInput input_of(const simulation_task::Machine& m, bool works) {
   return {*reinterpret_cast<const Design<double>*>(m.design),
           m.joint,
-          s.platform,
-          s.base,
-          s.leg_force,
-          s.wrench,
-          s.roll_pitch_yaw != 0.0,
-          m.works,
-          s.carried != 0.0,
-          s.displacement,
-          s.velocity};
+          pose(m.platform),
+          pose(m.base),
+          vec6(m.leg_force),
+          vec6(m.wrench),
+          m.roll_pitch_yaw,
+          works,
+          m.carried,
+          vec6(m.displacement),
+          vec6(m.velocity)};
 }
 Excitation excitation(const Series& s) { return {s.numbers, s.size}; }
 
 End simulate(const Run& run) {
   const auto& m = run.machine;
-  Simulation simulation(input_of(m), excitation(m.base), excitation(m.wrench), excitation(m.command), run.tolerances);
+  Simulation simulation(input_of(m, run.options.works), excitation(m.base_motion), excitation(m.load),
+                        excitation(m.command), run.options);
   End end{simulation.run(run.samples, *run.stop, *run.progress), simulation.time(), {}, 0, 0, 0};
   const Motion<double> last = simulation.last();
   std::memcpy(end.last, &last, sizeof(end.last));
@@ -44,8 +42,8 @@ End simulate(const Run& run) {
 }
 
 Outcome control_loop(const Loop& given) {
-  ControlLoop loop(input_of(given.machine), excitation(given.machine.base), SampledController{given.controller},
-                   given.timing);
+  ControlLoop loop(input_of(given.machine, false), excitation(given.machine.base_motion),
+                   SampledController{given.controller}, given.timing);
   return loop.run(given.noise, given.record, *given.stop, *given.progress);
 }
 
@@ -62,7 +60,7 @@ void forward_dynamics_of(const States& s) {
 }
 
 void* new_equations(const simulation_task::Machine& m) {
-  return new MachineOnBase(input_of(m), excitation(m.base), excitation(m.wrench), excitation(m.command));
+  return new MachineOnBase(input_of(m, false), excitation(m.base_motion), excitation(m.load), excitation(m.command));
 }
 void delete_equations(void* machine) { delete static_cast<MachineOnBase*>(machine); }
 void start(void* machine, double* y) {

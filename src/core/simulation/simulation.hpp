@@ -9,9 +9,9 @@
 
 namespace flexapod {
 
+using simulation_task::Options;
 using simulation_task::Outcome;
 using simulation_task::Samples;
-using simulation_task::Tolerances;
 
 struct Counts {
   double accepted = 0, rejected = 0, evaluations = 0;
@@ -42,15 +42,15 @@ class Simulation {
   using State = MachineOnBase::State;
 
   Simulation(const MachineOnBaseInput& input, const Excitation& base, const Excitation& wrench,
-             const Excitation& command, const Tolerances& tolerances)
-      : machine_(input, base, wrench, command), tol_(tolerances), size_(largest_radius(input.design)) {
+             const Excitation& command, const Options& options)
+      : machine_(input, base, wrench, command), options_(options), size_(largest_radius(input.design)) {
     const Modes modes = natural_modes(machine_.machine(), machine_.geometry(State{}), machine_.rest().R);
     slowest_ = modes.omega[0], fastest_ = modes.omega[5];
     double spacing = std::numeric_limits<double>::infinity();
     for (const Excitation* e : {&base, &wrench, &command}) e->notes(corners_, spacing);
     // A step of 6 / omega is where the method stops being stable, and twelve stages see every piece of eight.
-    max_step_ = std::min({tol_.max_step, 6.0 / fastest_, 8.0 * spacing});
-    if (!(tol_.atol > 0)) tol_.atol = 1e-16 * size_;
+    max_step_ = std::min({options_.max_step, 6.0 / fastest_, 8.0 * spacing});
+    if (!(options_.atol > 0)) options_.atol = 1e-16 * size_;
   }
 
   Outcome run(const Samples& samples, const std::atomic<bool>& stop, std::atomic<double>& progress) {
@@ -112,7 +112,7 @@ class Simulation {
     const double end = corners_.back();
     while (rk_.t < corner) {
       if (stop.load(std::memory_order_relaxed)) return Outcome::stopped;
-      if (counts_.accepted + counts_.rejected >= tol_.max_steps) return ended(Outcome::max_steps);
+      if (counts_.accepted + counts_.rejected >= options_.max_steps) return ended(Outcome::max_steps);
       const double left = corner - rk_.t;
       const bool last = next_step_ >= left * (1.0 - 1e-12);
       const double h = last ? left : next_step_ > 0.5 * left ? 0.5 * left : next_step_;
@@ -162,8 +162,8 @@ class Simulation {
             std::max({kept * peaks_.speed, length(6), size_ * length(9)})};
   }
   State scales(const Peaks& peaks) const {
-    const double d = tol_.atol + tol_.rtol * peaks.displacement;
-    const double v = tol_.atol * std::max(fastest_, 1.0) + tol_.rtol * peaks.speed;
+    const double d = options_.atol + options_.rtol * peaks.displacement;
+    const double v = options_.atol * std::max(fastest_, 1.0) + options_.rtol * peaks.speed;
     State scale{};
     for (int i = 0; i < 3; ++i) scale[i] = d, scale[3 + i] = d / size_, scale[6 + i] = v, scale[9 + i] = v / size_;
     return scale;
@@ -183,7 +183,7 @@ class Simulation {
       const double nearest = where_least(length, rk_.t, end);
       if (length(nearest) < collapsed * size_) outcome = Outcome::leg_collapsed, until = std::min(until, nearest);
     }
-    if (outcome == Outcome::complete && tol_.stop_at_singular && side * side_ <= 0) {
+    if (outcome == Outcome::complete && options_.stop_at_singular && side * side_ <= 0) {
       outcome = Outcome::singular;
       until = last_of_side(inside);
     }
@@ -262,7 +262,7 @@ class Simulation {
   }
 
   MachineOnBase machine_;
-  Tolerances tol_;
+  Options options_;
   Method rk_;
   Samples samples_{};
   Counts counts_;

@@ -9,7 +9,7 @@
 
 namespace simulation_task {
 
-inline constexpr std::size_t setup_size = 50, motion_size = 24;
+inline constexpr std::size_t pose_size = 12, motion_size = 24;
 
 /// How a simulation ended.
 enum class Outcome { complete, singular, leg_collapsed, joint_locked, step_collapse, not_finite, max_steps, stopped };
@@ -25,19 +25,26 @@ struct Series {
   std::size_t size;
 };
 
-/// A machine at rest and what drives it.
+/// A machine at rest and what drives it. Inertial axes, save `wrench`.
 struct Machine {
-  const double* design;  // 211 numbers
+  const double* design;  // its numbers, as in model/design.hpp
   core_enums::Joint joint;
-  const double* setup;  // 50 numbers: see Setup in simulation_kernel.cpp
-  bool works;           // integrate works beside the motion
-  Series base, wrench, command;
+  double platform[pose_size], base[pose_size];  // poses at rest
+  double leg_force[6];                          // at that pose with no command, N
+  double wrench[6];                             // constant part of the external wrench, platform axes
+  double displacement[6], velocity[6];          // of the platform from rest at t = 0 (translation, rotation)
+  bool roll_pitch_yaw;                          // the base's rotation channels: else a rotation vector
+  bool carried;                                 // starts moving rigidly with the base; else from the two above
+  Series base_motion, load, command;
 };
 
-struct Tolerances {
-  double rtol, atol;  // of the displacement at the platform's joints: relative, and m
-  double max_step, max_steps;
-  bool stop_at_singular;
+struct Options {
+  double rtol, atol;           // of the displacement at the platform's joints: relative, and m (0: rounding)
+  double max_step, max_steps;  // s; of one simulation
+  bool stop_at_singular;       // end where det H changes sign
+  bool motions;                // keep motions of platform and base, and leg forces
+  bool works;                  // integrate works beside the motion
+  int threads;
 };
 
 /// Where the samples of one simulation go: rows for the instants given. The last three may be null.
@@ -48,8 +55,8 @@ struct Samples {
 };
 
 struct Run {
-  Machine machine;
-  Tolerances tolerances;
+  const Machine& machine;
+  Options options;
   Samples samples;
   const std::atomic<bool>* stop;
   std::atomic<double>* progress;
@@ -81,7 +88,7 @@ struct Record {
 };
 
 struct Loop {
-  Machine machine;
+  const Machine& machine;
   Controller controller;
   Timing timing;
   const double* noise;  // rows of 36 for every sample

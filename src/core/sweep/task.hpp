@@ -36,11 +36,9 @@ struct Limits {
   double universal_angle, spherical_angle;  // rad
   double leg_distance;                      // m
 };
-inline constexpr int limits_size = 51;
-static_assert(sizeof(Limits) == limits_size * sizeof(double));
 
 struct Task {
-  const double* design;  // 211 numbers
+  const double* design;  // its numbers, as in model/design.hpp
   core_enums::Joint joint;
   const double* poses;  // rows of 6 (position; roll, pitch, yaw) or 12 (position; rotation matrix by rows)
   int width;
@@ -55,7 +53,7 @@ struct Task {
 
 /// Natural frequencies of many designs: at all poses, or (paired) each design at the pose of its row.
 struct DesignTask {
-  const double* designs;  // rows of 211 numbers
+  const double* designs;  // rows of such numbers
   core_enums::Joint joint;
   const double* poses;  // rows of 12: position; rotation matrix by rows
   std::size_t poses_count;
@@ -70,7 +68,6 @@ struct Kernel {
   bool (*runs_here)();
   void (*sweep)(const Task& task, std::size_t first, std::size_t last);
   void (*sweep_designs)(const DesignTask& task, std::size_t first, std::size_t last);
-  double (*peak)(std::size_t rounds);  // multiplies and adds as fast as it can; returns the flops done
 };
 
 }  // namespace sweep_task

@@ -20,10 +20,10 @@ from flexapod.conventions import AXES, LEGS, Array, JointModel, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, SimulationError, UnstableError, shown
 from flexapod.excitation.excitation import Excitation
-from flexapod.mechanics.inputs import ZERO, as_joint, single_pose
+from flexapod.mechanics.inputs import ZERO, single_pose
 from flexapod.mechanics.linearisation import linearise
 from flexapod.pose import Pose, PoseLike, as_pose
-from flexapod.simulation.integrator import OUTCOMES, prepare
+from flexapod.simulation.integrator import prepare
 from flexapod.simulation.run import SimulationRun
 
 CASES = ("controlled", "passive")
@@ -174,19 +174,10 @@ def simulate_sampled(
 ) -> Recording:
     """The simulation in the core."""
     ready = prepare(run, clock.samples * clock.dt, joint)
-    *rows, outcome = _core.control_loop(
-        run.hexapod.packed,
-        as_joint(joint),
-        ready.setup,
-        ready.excitations[0],
-        [*_wide(controller), limits],
-        noise,
-        np.array([clock.dt, float(clock.steps)]),
-        progress,
-    )
-    found = Recording(*rows)
-    how = OUTCOMES[int(outcome[0])]
-    if how != "complete":
+    record = _core.control_loop(ready.setup, _wide(controller, limits), noise, clock.dt, clock.steps, progress)
+    found = Recording(record.measured, record.displacement, record.force, record.cut)
+    how = record.outcome.name
+    if record.outcome != _core.Outcome.complete:
         end = float(clock.times[int(np.isfinite(found.displacement[:, 0]).sum()) - 1])
         raise SimulationError(
             f"the simulation of {controller.name} ended at t = {end:.6g} s: {how.replace('_', ' ')}. Shake the base "
@@ -196,12 +187,13 @@ def simulate_sampled(
     return found
 
 
-def _wide(controller: Controller) -> list[Array]:
-    """A, B, C, D of a controller that is shown all 36 measurements."""
+def _wide(controller: Controller, limit: Array) -> _core.ControllerMatrices:
+    """The controller as it is shown all measurements."""
     rows = signals(*controller.measures)
     B, D = np.zeros((controller.order, _SIGNALS)), np.zeros((6, _SIGNALS))
     B[:, rows], D[:, rows] = controller.B, controller.D
-    return [np.ascontiguousarray(m) for m in (controller.A, B, controller.C, D)]
+    A, C = np.ascontiguousarray(controller.A), np.ascontiguousarray(controller.C)
+    return _core.ControllerMatrices(A=A, B=B, C=C, D=D, limit=limit)
 
 
 def _dataset(

@@ -18,7 +18,7 @@ from flexapod.mechanics.springs import spring_matrix
 from flexapod.mechanics.state_space import StateSpace, state_space_of
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.optional import needed
-from flexapod.pose import PoseLike, skew
+from flexapod.pose import PoseLike, skew, unpack
 
 if TYPE_CHECKING:
     import control
@@ -229,7 +229,7 @@ def linearise(
     M, C, K, M_b, C_b, K_b, H = _core.tangent(
         hexapod.packed, as_joint(joint), s.platform, s.base, wrench(force, moment, ()), rest.unstretched_length
     )
-    r = s.platform[0, :3] - s.base[0, :3]
+    r = unpack(s.platform[0])["position"] - unpack(s.base[0])["position"]
     F = spring_matrix(hexapod, pose, base=base)
     carry = np.eye(6)
     carry[:3, 3:] = skew(r).T

@@ -12,7 +12,6 @@ from flexapod.design.layout import HOME
 from flexapod.pose import Motion, Pose
 from flexapod.workspace.worst import twist_of_coordinates
 
-_FREQUENCIES, _FORCES, _LEGS, _STIFFNESS = 1, 2, 4, 8
 _NO_HOME = np.zeros((0, _core.motion_size)), np.zeros((0, 6))
 
 
@@ -34,37 +33,37 @@ class Slopes:
     @cached_property
     def omega(self) -> tuple[Array, Array]:
         """Six frequencies (k, 6), rad/s, and v_a^T (dK - lambda dJ) v_b (k, 6, 6, n)."""
-        found = self._core(_FREQUENCIES)
-        return found["omega"], found["rayleigh"]
+        return self._directions.frequencies()
 
     @cached_property
     def H(self) -> tuple[Array, Array]:
-        return _matrices(*self._core(_FORCES)["H"])
+        return _matrices(*self._directions.force_transformation())
 
     @cached_property
     def stiffness(self) -> tuple[Array, Array]:
         """Of the unloaded machine at the platform, (k, 6, 6) and (k, 6, 6, n)."""
-        return _matrices(*self._core(_STIFFNESS)["stiffness"])
+        return _matrices(*self._directions.stiffness())
 
     @property
     def leg_length(self) -> tuple[Array, Array]:
-        return self._legs["leg_length"]
+        return self._legs[0]
 
     @property
     def leg_distance(self) -> tuple[Array, Array]:
         """Of every pair of legs, (k, 15): each is smooth, where the least of them is not."""
-        return self._legs["leg_distance"]
+        return self._legs[1]
 
     @property
     def joint_cosine(self) -> tuple[Array, Array]:
         """(k, 12): universal joints, spherical joints."""
-        return self._legs["joint_cosine"]
+        return self._legs[2]
 
     @cached_property
-    def _legs(self) -> dict[str, tuple[Array, Array]]:
-        return self._core(_LEGS)
+    def _legs(self) -> tuple[tuple[Array, Array], ...]:
+        return self._directions.legs()
 
-    def _core(self, what: int) -> dict:
+    @cached_property
+    def _directions(self) -> _core.DesignDirections:
         home, by_home = self.numbers[HOME], self.jacobian[HOME]
         k, n = len(self.rows), self.jacobian.shape[1]
         displacement = np.zeros((k, n, 6))
@@ -75,15 +74,14 @@ class Slopes:
         if np.isfinite(home).all():
             motion = Motion(Pose.from_rpy(*home)).packed[None]
             home_displacement = (twist_of_coordinates(home) @ by_home).T
-        return _core.design_gradients(
-            self.numbers[: HOME.start],
-            self.joint,
-            np.ascontiguousarray(Motion(Pose.from_rpy(*self.rows.T)).packed),
-            np.ascontiguousarray(self.jacobian[: HOME.start].T),
-            displacement,
-            np.ascontiguousarray(motion),
-            np.ascontiguousarray(home_displacement),
-            what,
+        return _core.DesignDirections(
+            design=self.numbers[: HOME.start],
+            joint=self.joint,
+            platform=Motion(Pose.from_rpy(*self.rows.T)).packed,
+            directions=np.ascontiguousarray(self.jacobian[: HOME.start].T),
+            displacements=displacement,
+            home=motion,
+            home_displacements=np.ascontiguousarray(home_displacement),
         )
 
 

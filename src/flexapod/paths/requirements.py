@@ -13,7 +13,7 @@ from flexapod.errors import ArgumentError, PathError
 from flexapod.mechanics.joint_limits import check_limits, limit_excess
 from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
 from flexapod.pose import Pose
-from flexapod.workspace.quantities import evaluate, packed_limits
+from flexapod.workspace.quantities import evaluate, kernel_limits
 
 _SHARPNESS = 80.0  # of smooth minima: they lie below the true one by at most log(12)/80, 3 %
 
@@ -85,7 +85,7 @@ class Margins:
         self.limited = hexapod.replace({"limits": None}) if not requirements.limits else hexapod
         if requirements.clearance is not None:
             self.limited = self.limited.replace({"limits.leg_distance": requirements.clearance})
-        self._packed = packed_limits(self.limited)
+        self._packed = kernel_limits(self.limited)
 
     def frequencies(self, poses: Pose) -> Array:
         """(n, 6) rad/s; zero where no leg can take the pose."""

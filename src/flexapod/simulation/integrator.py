@@ -89,30 +89,33 @@ def integrate(
         raise ArgumentError("there is nothing to simulate: `runs` is empty.")
     t = _times(times, len(runs))
     prepared = [prepare(run, until, joint) for run, until in zip(runs, t[:, -1], strict=True)]
-    setting = [
-        options.rtol,
-        options.atol or 0.0,
-        options.max_step,
-        options.max_steps,
-        options.stop_at_singular,
-        motions,
-        works,
-        thread_count(options.threads),
-    ]
     found = _core.simulate(
-        np.stack([run.hexapod.packed for run in runs]),
-        as_joint(joint),
-        np.stack([p.setup for p in prepared]),
-        [packed for p in prepared for packed in p.excitations],
+        [p.setup for p in prepared],
         t,
-        np.array(setting, dtype=float),
+        _core.SimulationOptions(
+            rtol=options.rtol,
+            atol=options.atol or 0.0,
+            max_step=options.max_step,
+            max_steps=options.max_steps,
+            stop_at_singular=options.stop_at_singular,
+            motions=motions,
+            works=works,
+            threads=thread_count(options.threads),
+        ),
         progress,
     )
-    displacement, relative, work, platform, base, leg_force, outcome, end_time, last, counts = found
-    status = np.array(OUTCOMES)[outcome.astype(int)]
-    lengths = np.stack([p.unstretched_length for p in prepared])
     return Trajectories(
-        displacement, relative, work, platform, base, leg_force, status, end_time, last, counts.astype(int), lengths
+        found.displacement,
+        found.relative,
+        found.work,
+        found.platform,
+        found.base,
+        found.leg_force,
+        status=np.array([outcome.name for outcome in found.outcome]),
+        end_time=found.time,
+        last=found.last,
+        steps=found.steps,
+        unstretched_length=np.stack([p.unstretched_length for p in prepared]),
     )
 
 
@@ -122,15 +125,13 @@ def equations(run: SimulationRun, *, joint: JointModel = "universal") -> _core.E
     y: (12,) the platform as seen from the base, in its axes: translation from rest (m), rotation vector from rest (rad,
     below a full turn), velocity, angular velocity.
     """
-    p = prepare(run, 0.0, joint)
-    return _core.Equations(run.hexapod.packed, as_joint(joint), p.setup, p.excitations)
+    return _core.Equations(prepare(run, 0.0, joint).setup)
 
 
 class Prepared(NamedTuple):
     """One run as the core takes it."""
 
-    setup: Array
-    excitations: list[Array]
+    setup: _core.SimulationSetup
     unstretched_length: Array
 
 
@@ -151,11 +152,23 @@ def prepare(run: SimulationRun, until: float, joint: JointModel) -> Prepared:
         _check_recordings(use, history, until)
     check_channels(base_motion, "base_motion", AXES)
     check_channels(command, "leg_command", LEGS)
-    flags = [base_motion.rotation == "rpy", isinstance(run.start, str) and run.start == "carried"]
-    pose_rows = (pose.packed, Motion.fixed(base).pose.packed)
-    setup = np.concatenate([*pose_rows, leg_force, force, moment, *_start(run.start, pose), flags])
-    packed = [base_motion.packed, np.concatenate([force_history, moment_history]), command.packed]
-    return Prepared(setup, packed, lengths)
+    displacement, velocity = _start(run.start, pose)
+    setup = _core.SimulationSetup(
+        design=run.hexapod.packed,
+        joint=as_joint(joint),
+        platform=pose.packed,
+        base=Motion.fixed(base).pose.packed,
+        leg_force=leg_force,
+        wrench=np.concatenate([force, moment]),
+        displacement=displacement,
+        velocity=velocity,
+        roll_pitch_yaw=base_motion.rotation == "rpy",
+        carried=isinstance(run.start, str) and run.start == "carried",
+        base_motion=base_motion.packed,
+        load=np.concatenate([force_history, moment_history]),
+        command=command.packed,
+    )
+    return Prepared(setup, lengths)
 
 
 def _check_recordings(use: str, history: Excitation, until: float) -> None:

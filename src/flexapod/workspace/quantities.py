@@ -91,13 +91,13 @@ def evaluate(
     quantities: tuple[str, ...],
     joint: JointModel,
     threads: int,
-    limits: Array | None = None,
+    limits: _core.SweepLimits | None = None,
 ) -> dict[str, Any]:
     """The quantities and `status` at poses, rows (n, 6) or (n, 12), from the compiled kernel.
 
-    limits: `packed_limits(hexapod)`, for those who call often.
+    limits: `kernel_limits(hexapod)`, for those who call often.
     """
-    limits = packed_limits(hexapod) if limits is None else limits
+    limits = kernel_limits(hexapod) if limits is None else limits
     found = _core.sweep(hexapod.packed, as_joint(joint), rows, _asked(quantities), limits, threads)
     return {name: found[name] for name in (*quantities, "status")}
 
@@ -114,7 +114,7 @@ def index_and_gradient(hexapod: Hexapod, joint: JointModel) -> Callable[[Array],
     Both are zero where omega_1 cannot be computed.
     """
     wanted = _asked(("omega_1", "omega_1_gradient"))
-    model, packed, limits = as_joint(joint), hexapod.packed, packed_limits(hexapod)
+    model, packed, limits = as_joint(joint), hexapod.packed, kernel_limits(hexapod)
 
     def found(rows: Array) -> tuple[Array, Array]:
         at = _core.sweep(packed, model, rows, wanted, limits, 1)
@@ -123,14 +123,16 @@ def index_and_gradient(hexapod: Hexapod, joint: JointModel) -> Callable[[Array],
     return found
 
 
-def packed_limits(hexapod: Hexapod) -> Array:
-    """Limits as the kernel takes them: neutral directions, leg length bounds, joint angles, leg distance."""
+def kernel_limits(hexapod: Hexapod) -> _core.SweepLimits:
+    """The design's limits as the kernel takes them."""
     limits = hexapod.limits
     lengths = (-np.inf, np.inf) if limits.leg_length is None else limits.leg_length
-    angles = [np.inf if a is None else a for a in (limits.universal_angle, limits.spherical_angle)]
-    distance = -np.inf if limits.leg_distance is None else limits.leg_distance
-    return np.concatenate(
-        [neutral_directions(hexapod).ravel(), np.broadcast_to(lengths, (6, 2)).ravel(), angles, [distance]]
+    return _core.SweepLimits(
+        neutral=neutral_directions(hexapod),
+        leg_length=np.ascontiguousarray(np.broadcast_to(lengths, (6, 2))),
+        universal_angle=np.inf if limits.universal_angle is None else limits.universal_angle,
+        spherical_angle=np.inf if limits.spherical_angle is None else limits.spherical_angle,
+        leg_distance=-np.inf if limits.leg_distance is None else limits.leg_distance,
     )
 
 

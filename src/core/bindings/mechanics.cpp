@@ -1,0 +1,98 @@
+// The mechanics as Python sees it: functions of a design and of motions (n rows) that return arrays with n rows. Shapes
+// and values are checked in Python; here only sizes are.
+#include "bindings/arrays.hpp"
+#include "bindings/bind.hpp"
+#include "kernels/isa.hpp"
+
+namespace flexapod {
+namespace {
+
+/// A function of a machine and of states, for what is purely geometric and for what asks for the joint model.
+template <auto function> auto of_geometry(const Input& design, const Input& platform, const Input& base) {
+  return numpy(function(machine_of(design), states_of(platform, base)));
+}
+template <auto function> auto of_states(const Input& design, Joint joint, const Input& platform, const Input& base) {
+  return numpy(function(machine_of(design, joint), states_of(platform, base)));
+}
+
+auto joint_angles_(const Input& design, const Input& platform, const Input& base, const Input& neutral) {
+  const auto* directions = reinterpret_cast<const Vec3<double>(*)[6]>(rows(neutral, 2, 18, "neutral"));
+  return numpy(batch::joint_angles(machine_of(design), states_of(platform, base), directions[0], directions[1]));
+}
+
+auto forward_kinematics_(const Input& design, const Input& lengths, const Input& start) {
+  const size_t n = lengths.size() / 6;
+  const auto* wanted = reinterpret_cast<batch::LegRows>(rows(lengths, n, 6, "lengths"));
+  return numpy(batch::forward_kinematics(machine_of(design), n, wanted, motions(start, n, "start")));
+}
+
+auto forward_dynamics_(const Input& design, Joint joint, const Input& platform, const Input& base,
+                       const Input& leg_force, const Input& wrench) {
+  const States s = states_of(platform, base);
+  Array<double> acceleration({s.n, 6});
+  kernels().simulation.forward_dynamics({rows(design, 1, design_size, "design"), joint, s.n, platform.data(),
+                                         base.data(), rows(leg_force, s.n, 6, "leg_force"),
+                                         rows(wrench, s.n, 6, "wrench"), acceleration.data()});
+  return numpy(std::move(acceleration));
+}
+
+auto inverse_dynamics_(const Input& design, Joint joint, const Input& platform, const Input& base,
+                       const Input& wrench) {
+  const States s = states_of(platform, base);
+  return numpy(batch::inverse_dynamics(machine_of(design, joint), s, sixes(wrench, s.n, "wrench")));
+}
+
+auto joint_reactions_(const Input& design, Joint joint, const Input& platform, const Input& base,
+                      const Input& leg_force, double section) {
+  const States s = states_of(platform, base);
+  return numpy(batch::joint_reactions(machine_of(design, joint), s, sixes(leg_force, s.n, "leg_force"), section));
+}
+
+auto energy_(const Input& design, Joint joint, const Input& platform, const Input& base, const Input& unstretched) {
+  const States s = states_of(platform, base);
+  const auto* lengths = reinterpret_cast<batch::LegRows>(rows(unstretched, s.n, 6, "unstretched"));
+  return numpy(batch::energy(machine_of(design, joint), s, lengths));
+}
+
+RestLoad rest_load(const Input& wrench, const Input& unstretched) {
+  RestLoad load{*sixes(wrench, 1, "wrench"), {}};
+  std::copy_n(rows(unstretched, 1, 6, "unstretched"), 6, load.L_0);
+  return load;
+}
+
+auto tangent_(const Input& design, Joint joint, const Input& platform, const Input& base, const Input& wrench,
+              const Input& unstretched) {
+  return numpy(batch::tangent(machine_of(design, joint), states_of(platform, base), rest_load(wrench, unstretched)));
+}
+
+auto settle_(const Input& design, Joint joint, const Input& start, const Input& base, const Input& wrench,
+             const Input& unstretched) {
+  return numpy(batch::settle(machine_of(design, joint), states_of(start, base), rest_load(wrench, unstretched)));
+}
+
+}  // namespace
+
+void bind_mechanics(nb::module_& m) {
+  m.def("leg_rates", &of_geometry<batch::leg_rates>);
+  m.def("leg_fit", &of_geometry<batch::leg_fit>);
+  m.def("joint_angles", &joint_angles_);
+  m.def("leg_distance", &of_geometry<batch::leg_distance>);
+  m.def("forward_kinematics", &forward_kinematics_);
+  m.def("force_transformation", &of_geometry<batch::force_transformation>);
+  m.def("spring_matrix", &of_geometry<batch::spring_matrix>);
+  nb::list legs;
+  for (int j = 0; j < spring_count; ++j) legs.append(spring_leg(j));
+  m.attr("SPRING_LEGS") = nb::tuple(legs);  // the leg of each spring
+  m.def("equations_of_motion", &of_states<batch::equations_of_motion>);
+  m.def("forward_dynamics", &forward_dynamics_);
+  m.def("inverse_dynamics", &inverse_dynamics_);
+  m.def("joint_reactions", &joint_reactions_);
+  m.def("energy", &energy_);
+  m.def("natural_modes", &of_states<batch::natural_modes>);
+  m.def("inertia_parts", &of_states<batch::inertia_parts>);
+  m.def("frequency_derivatives", &of_states<batch::frequency_derivatives>);
+  m.def("tangent", &tangent_);
+  m.def("settle", &settle_);
+}
+
+}  // namespace flexapod

@@ -1,0 +1,135 @@
+// Values at many poses and their derivatives along directions of a design, as arrays.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "model/design_gradient.hpp"
+#include "numbers/array.hpp"
+
+namespace flexapod {
+
+/// Values (n, width) and their derivatives (n, width, m).
+struct ValueGradient {
+  Array<double> value, derivative;
+
+  ValueGradient(size_t n, size_t width, size_t m) : value({n, width}), derivative({n, width, m}) {}
+  void put(size_t row, size_t column, const Seed& x, size_t first, int count) {
+    const size_t width = value.shape()[1], m = derivative.shape()[2];
+    value.data()[row * width + column] = x.v;
+    std::copy_n(x.d, count, derivative.data() + (row * width + column) * m + first);
+  }
+};
+
+struct FrequencyGradient {
+  Array<double> omega;     // (n, 6)
+  Array<double> rayleigh;  // (n, 6, 6, m), see rayleigh_matrix
+};
+
+struct LegGradient {
+  ValueGradient length;        // (n, 6)
+  ValueGradient distance;      // (n, 15 pairs of legs)
+  ValueGradient joint_cosine;  // (n, 12: universal, spherical)
+};
+
+/// A machine at n poses, and m directions in which its design and the poses change.
+class DesignDirections {
+ public:
+  /// directions: (m, design_size). displacements: (n, m, 6) of the poses. home: one motion, or none, and its
+  /// displacements (m, 6).
+  DesignDirections(const Machine<double>& machine, std::span<const Motion<double>> platforms,
+                   std::span<const double> directions, std::span<const double> displacements,
+                   std::span<const Motion<double>> home, std::span<const double> home_displacements)
+      : machine_(machine),
+        platforms_(platforms.begin(), platforms.end()),
+        home_(home.begin(), home.end()),
+        directions_(directions.begin(), directions.end()),
+        displacements_(displacements.begin(), displacements.end()),
+        home_displacements_(home_displacements.begin(), home_displacements.end()),
+        n_(platforms.size()),
+        m_(directions.size() / design_size) {}
+
+  FrequencyGradient frequencies() const {
+    FrequencyGradient found{Array<double>({n_, 6}), Array<double>({n_, 6, 6, m_})};
+    std::vector<Modes> modes(n_);
+    for (size_t i = 0; i < n_; ++i) {
+      const Pose<double>& pose = platforms_[i].pose;
+      modes[i] = natural_modes(machine_, Geometry<double>(machine_.design, pose, Pose<double>()), pose.R);
+      std::copy_n(modes[i].omega, 6, found.omega.data() + 6 * i);
+    }
+    for_each([&](const Block& block, const Machine<Seed>& machine, const Geometry<Seed>& g, const Pose<Seed>& pose,
+                 size_t i) {
+      Seed products[6][6];
+      rayleigh_matrix(machine, g, pose.R, modes[i], products);
+      for (size_t a = 0; a < 36; ++a)
+        std::copy_n(products[a / 6][a % 6].d, block.count, found.rayleigh.data() + (i * 36 + a) * m_ + block.first);
+    });
+    return found;
+  }
+
+  /// H by rows, (n, 36).
+  ValueGradient force_transformation() const {
+    ValueGradient found(n_, 36, m_);
+    for_each([&](const Block& block, const Machine<Seed>&, const Geometry<Seed>& g, const Pose<Seed>&, size_t i) {
+      const Mat6<Seed> H = flexapod::force_transformation(g);
+      for (size_t a = 0; a < 36; ++a) found.put(i, a, H[a / 6][a % 6], block.first, block.count);
+    });
+    return found;
+  }
+
+  /// K = F F^T by rows, (n, 36).
+  ValueGradient stiffness() const {
+    ValueGradient found(n_, 36, m_);
+    for_each([&](const Block& block, const Machine<Seed>& machine, const Geometry<Seed>& g, const Pose<Seed>&,
+                 size_t i) {
+      const Mat6<Seed> K = stiffness_matrix(machine.design, spring_directions(g));
+      for (size_t a = 0; a < 36; ++a) found.put(i, a, K[a / 6][a % 6], block.first, block.count);
+    });
+    return found;
+  }
+
+  LegGradient legs() const {
+    LegGradient found{{n_, 6, m_}, {n_, 15, m_}, {n_, 12, m_}};
+    for_each([&](const Block& block, const Machine<Seed>&, const Geometry<Seed>& g, const Pose<Seed>& pose, size_t i) {
+      for (size_t a = 0; a < 6; ++a) found.length.put(i, a, norm(g.S[a]), block.first, block.count);
+      size_t pair = 0;
+      for (size_t a = 0; a < 5; ++a)
+        for (size_t b = a + 1; b < 6; ++b)
+          found.distance.put(i, pair++, segment_distance(g.q_b[a], g.S[a], g.q_b[b], g.S[b]), block.first, block.count);
+      Seed angles[2][6];
+      joint_cosines(block.seeded, pose, home_.empty() ? nullptr : &block.home, angles);
+      for (size_t a = 0; a < 12; ++a) found.joint_cosine.put(i, a, angles[a / 6][a % 6], block.first, block.count);
+    });
+    return found;
+  }
+
+ private:
+  /// As many directions as derivatives are taken at once.
+  struct Block {
+    size_t first;
+    int count;
+    SeededDesign seeded;
+    Pose<Seed> home;
+  };
+
+  /// Calls work(block, machine, geometry, pose, i) for every block of directions at every pose i.
+  template <class Work> void for_each(Work&& work) const {
+    for (size_t first = 0; first < m_; first += gradient_lanes) {
+      const int count = static_cast<int>(std::min<size_t>(gradient_lanes, m_ - first));
+      Block block{first, count, {machine_.design, directions_.data() + first * design_size, count}, {}};
+      const Machine<Seed> machine(block.seeded.design, machine_.joint);
+      if (!home_.empty()) block.home = block.seeded.pose(home_[0].pose, home_displacements_.data() + first * 6);
+      for (size_t i = 0; i < n_; ++i) {
+        const Pose<Seed> pose = block.seeded.pose(platforms_[i].pose, displacements_.data() + (i * m_ + first) * 6);
+        work(block, machine, Geometry<Seed>(block.seeded.design, pose, Pose<Seed>()), pose, i);
+      }
+    }
+  }
+
+  Machine<double> machine_;
+  std::vector<Motion<double>> platforms_, home_;
+  std::vector<double> directions_, displacements_, home_displacements_;
+  size_t n_, m_;
+};
+
+}  // namespace flexapod

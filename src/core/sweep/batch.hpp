@@ -1,0 +1,80 @@
+// Sweeps over poses and over designs on several threads: what is asked for, and the arrays that come back.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "model/design.hpp"
+#include "numbers/array.hpp"
+#include "sweep/task.hpp"
+#include "threads/parallel_for.hpp"
+
+namespace flexapod {
+
+/// An array of results: its name, what to ask for to get it, its place in a task, its columns.
+struct SweepArray {
+  const char* name;
+  sweep_task::Quantity quantity;
+  double* sweep_task::Task::* place;
+  std::size_t columns;
+};
+inline constexpr SweepArray sweep_arrays[] = {
+    {"omega_1", sweep_task::omega_1, &sweep_task::Task::omega_1_, 1},
+    {"omega", sweep_task::omega, &sweep_task::Task::omega_, 6},
+    {"cond_H", sweep_task::cond_H, &sweep_task::Task::cond_H_, 1},
+    {"leg_length", sweep_task::leg_length, &sweep_task::Task::leg_length_, 6},
+    {"leg_distance", sweep_task::leg_distance, &sweep_task::Task::leg_distance_, 1},
+    {"leg_force", sweep_task::leg_force, &sweep_task::Task::leg_force_, 1},
+    {"lowest_stiffness", sweep_task::lowest_stiffness, &sweep_task::Task::lowest_stiffness_, 1},
+    {"universal_angle", sweep_task::joint_angle, &sweep_task::Task::universal_angle_, 6},
+    {"spherical_angle", sweep_task::joint_angle, &sweep_task::Task::spherical_angle_, 6},
+    {"omega_1_gradient", sweep_task::omega_1_gradient, &sweep_task::Task::omega_1_gradient_, 6},
+};
+/// The array of truth values: its name, and what to ask for.
+inline constexpr std::pair<const char*, sweep_task::Quantity> within_limits{"within_limits", sweep_task::within_limits};
+
+/// Limits that every pose keeps.
+inline sweep_task::Limits no_limits() {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  sweep_task::Limits limits{};
+  for (auto& length : limits.length) length[0] = -infinity, length[1] = infinity;
+  limits.universal_angle = limits.spherical_angle = infinity, limits.leg_distance = -infinity;
+  return limits;
+}
+
+/// Results of a sweep: a row for each pose.
+struct SweepRows {
+  std::vector<std::pair<const char*, Array<double>>> numbers;
+  std::unique_ptr<Array<bool>> within;  // null where not asked for
+  Array<std::uint8_t> status;           // values of sweep_task::Status
+};
+
+/// Poses of `task`, n of them, on threads; the task's results are set here. A pose's result does not depend on its block.
+inline SweepRows sweep(const sweep_task::Kernel& kernel, sweep_task::Task task, std::size_t n, int threads) {
+  SweepRows found{{}, nullptr, Array<std::uint8_t>({n})};
+  for (const SweepArray& array : sweep_arrays) {
+    if (!(task.quantities & array.quantity)) continue;
+    const std::vector<std::size_t> shape = array.columns == 1 ? std::vector{n} : std::vector{n, array.columns};
+    found.numbers.emplace_back(array.name, Array<double>(shape));
+    task.*array.place = found.numbers.back().second.data();
+  }
+  if (task.quantities & within_limits.second) found.within = std::make_unique<Array<bool>>(std::vector{n});
+  task.within_limits_ = found.within ? found.within->data() : nullptr;
+  task.status_ = found.status.data();
+  in_blocks(n, 2048, threads, [&](std::size_t first, std::size_t last) { kernel.sweep(task, first, last); });
+  return found;
+}
+
+/// Frequencies of n designs: (designs, poses, modes), or (designs, 1, modes) where each has a pose of its own.
+inline Array<double> sweep_designs(const sweep_task::Kernel& kernel, sweep_task::DesignTask task, std::size_t n,
+                                   int threads) {
+  Array<double> omega({n, task.paired ? 1 : task.poses_count, static_cast<std::size_t>(task.modes)});
+  task.omega = omega.data();
+  in_blocks(n, 256, threads, [&](std::size_t first, std::size_t last) { kernel.sweep_designs(task, first, last); });
+  return omega;
+}
+
+}  // namespace flexapod
