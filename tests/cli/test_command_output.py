@@ -204,12 +204,12 @@ def test_response_of_a_machine_that_does_not_vibrate(result):
 
 
 def test_stepped_sine_without_a_motion_is_said():
-    from flexapod.cli.commands.response import _stepped_words
+    from flexapod.report.studies.response import stepped_words
 
     nothing = xr.Dataset(
         {"status": ("omega", np.array(["diverged", "singular"]))}, attrs={"amplitude": 0.1, "amplitude_unit": "m"}
     )
-    assert _stepped_words(nothing).endswith("amplitude 0.1 m: no periodic motion found at any frequency.")
+    assert stepped_words(nothing).endswith("amplitude 0.1 m: no periodic motion found at any frequency.")
 
 
 def test_path_shows_the_plan(run):

@@ -2,29 +2,13 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from flexapod.cli.options import common
-from flexapod.cli.options.sweep import (
-    DEFAULT_POINTS,
-    Options,
-    machine_options,
-    output_options,
-    poses_options,
-    reading_options,
-)
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from flexapod.design.hexapod import Hexapod
-    from flexapod.workspace.box import Box
-    from flexapod.workspace.pose_sets import PoseSet
-    from flexapod.workspace.store.store import SweepStore
+from flexapod.cli.options.sweep import Options, machine_options, output_options, poses_options, reading_options
+from flexapod.cli.output.results import emit
 
 
 @click.command()
@@ -44,133 +28,7 @@ def command(**given: Any) -> None:
     flexapod sweep mukherjee-i --grid x=-0.1:0.3:81,y=0:0.4:81 --figure map.png
     flexapod sweep mukherjee-i --around 0.1 20 --points 100000000 --out map.zarr
     """
+    from flexapod.cli.studies.sweep import compute
+
     options = Options(**given)
-    hexapod = common.load_design(options.design, options.changes)
-    points, box = _points(hexapod, options)
-    quantities = _quantities(options.quantities)
-    if options.worst and box is None:
-        raise click.UsageError("--worst looks for the worst pose of a box. Give --box or --around.")
-    if not options.streamed and (options.resume or options.scheduler):
-        raise click.UsageError("--resume and --scheduler need a store to write to. Give --out NAME.zarr.")
-    compute = _streamed if options.streamed else _in_memory
-    found = compute(hexapod, points, quantities, options)
-    result = _report(hexapod, found, box, options)
-    if options.as_json:
-        common.print_json(result)
-
-
-def _points(hexapod: Hexapod, options: Options) -> tuple[PoseSet, Box | None]:
-    from flexapod.cli.options.poses import box_of, grid_of, read_poses
-    from flexapod.workspace.pose_sets import given_poses, low_discrepancy, random_poses
-
-    ways = [bool(options.box or options.around), bool(options.grid), options.poses is not None]
-    if sum(ways) != 1:
-        raise click.UsageError(
-            "give one set of poses: --around M DEG, --box NAME=LEAST:LARGEST,..., --grid NAME=FIRST:LAST:COUNT,... "
-            "or --poses FILE."
-        )
-    if not ways[0]:
-        if options.points is not None or options.even:
-            raise click.UsageError(
-                "--points and --low-discrepancy go with --box or --around; a grid or file has its own poses."
-            )
-        found = grid_of(hexapod, options.grid) if ways[1] else given_poses(read_poses(options.poses))  # type: ignore[arg-type]
-        return found, None
-    box = box_of(hexapod, options.box, options.around)
-    make = low_discrepancy if options.even else random_poses
-    return make(box, options.points or DEFAULT_POINTS, seed=options.seed), box
-
-
-def _quantities(text: str) -> tuple[str, ...]:
-    from flexapod.workspace.quantities import QUANTITIES, chosen
-
-    names = [name.strip() for name in text.split(",") if name.strip()]
-    return tuple(QUANTITIES) if names == ["all"] else chosen(names)
-
-
-def _in_memory(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options) -> xr.Dataset:
-    from flexapod.workspace.store.file_formats import check_file, save
-    from flexapod.workspace.sweeping import sweep
-
-    check_file(options.out or Path("sweep.nc"), points.count, quantities)
-    found = sweep(hexapod, points, quantities=quantities, joint=options.joint, threads=options.threads)
-    if options.out is not None:
-        save(found, options.out)
-        click.echo(f"wrote {options.out}", err=True)
-    return found
-
-
-def _streamed(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options) -> xr.Dataset:
-    from flexapod.workspace.store.dask_cluster import cluster
-    from flexapod.workspace.store.store import open_sweep
-
-    assert options.out is not None
-    if options.scheduler is None:
-        store = _store(hexapod, points, quantities, options)
-        _run(store, options.threads)
-    else:
-        import logging
-
-        with cluster(options.scheduler) as workers:
-            logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what matters is raised, and told by us
-            store = _store(hexapod, points, quantities, options)
-            _run(store, workers)
-    return open_sweep(options.out)
-
-
-def _store(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options) -> SweepStore:
-    from flexapod.workspace.store.store import SweepStore
-
-    assert options.out is not None
-    given: dict[str, Any] = {"quantities": quantities, "joint": options.joint, "chunk": options.chunk}
-    if options.resume:
-        return SweepStore.resume(options.out, hexapod, points, **given)
-    return SweepStore.create(options.out, hexapod, points, keep_poses=options.keep_poses, **given)
-
-
-def _run(store: SweepStore, workers: Any) -> None:
-    """Compute what is missing, with progress on standard error; exits when a signal stopped it."""
-    from flexapod.cli.output.interrupt import Stopping
-    from flexapod.cli.output.progress import PoseProgress
-
-    with Stopping() as stop, PoseProgress() as bar:
-        state = store.run(workers, bar, stop)
-    if not store.complete:
-        click.echo(
-            f"stopped with {state.done} of {state.total} poses in {store.job.path}. "
-            "Go on with the same command and --resume.",
-            err=True,
-        )
-        sys.exit(128 + (stop.signal or 0))
-    click.echo(f"{state.total} poses in {store.job.path}", err=True)
-
-
-def _report(hexapod: Hexapod, found: xr.Dataset, box: Box | None, options: Options) -> dict[str, Any]:
-    from flexapod.cli.output.sweep_summary import print_summary, print_worst, summary_json, worst_json
-
-    result: dict[str, Any] = {"attributes": dict(found.attrs), "out": None if options.out is None else str(options.out)}
-    if options.summary and "omega_1" in found:
-        from flexapod.workspace.summary import summarise
-
-        summary = summarise(found, options.at_least)
-        result["summary"] = summary_json(summary)
-        if not options.as_json:
-            print_summary(summary)
-    if options.worst and box is not None:
-        from flexapod.workspace.worst import worst_pose
-
-        worst = worst_pose(hexapod, box, joint=options.joint, seed=options.seed, threads=options.threads)
-        result["worst_pose"] = worst_json(worst)
-        if not options.as_json:
-            print_worst(worst)
-    if options.figure is not None:
-        _draw(found, options)
-    return result
-
-
-def _draw(found: xr.Dataset, options: Options) -> None:
-    from flexapod.plots import sweep as plots_sweep
-
-    assert options.figure is not None
-    plots_sweep.save(plots_sweep.auto(found, options.level), options.figure)
-    click.echo(f"wrote {options.figure}", err=True)
+    emit(compute(options), None, options.as_json, listed="")

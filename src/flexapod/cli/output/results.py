@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,15 +14,17 @@ if TYPE_CHECKING:
     from flexapod.report.study import Study
 
 
-def emit(study: Study, out: Path | None, as_json: bool, listed: str = "files") -> None:
+def emit(study: Study, out: Path | None, as_json: bool, *, listed: str = "files", more: Sequence[Path] = ()) -> None:
     """Write the study's files to a directory, none where it is None; print the study, or its results as JSON.
 
-    listed: the name of the files in JSON; a name other than "files" is that of the only one.
+    listed: how JSON names the files: "files", "html" where a page is the only one, or "" for not at all. more: files
+    that are written already.
     """
-    files = [] if out is None else write(study, common.output_directory(out))
+    files = [*([] if out is None else write(study, common.output_directory(out))), *more]
     if as_json:
         names = [str(file) for file in files]
-        common.print_json({**study.to_dict(), listed: names if listed == "files" else next(iter(names), None)})
+        told: dict[str, object] = {"files": names, "html": next(iter(names), None)}
+        common.print_json({**study.to_dict(), **({listed: told[listed]} if listed else {})})
         return
     from flexapod.report.terminal import show
 

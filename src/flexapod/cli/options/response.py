@@ -1,0 +1,68 @@
+"""The options of `flexapod response`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from flexapod.cli.options import common
+from flexapod.conventions import AXES, LEGS
+
+POSITIVE = click.FloatRange(min=0, min_open=True)
+
+response_options = common.stack(
+    click.option(
+        "--from",
+        "source",
+        type=click.Choice(("base", "wrench", "command")),
+        default="base",
+        show_default=True,
+        help="What shakes: the base, a wrench at the output point, or a leg's length command.",
+    ),
+    click.option(
+        "--axis", type=click.Choice(AXES + LEGS), default=None, help="Axis, or leg for commands. Default: z, 1."
+    ),
+    click.option("--relative", is_flag=True, help="Motion relative to the base instead of absolute motion."),
+    click.option(
+        "--omega-min", type=POSITIVE, default=None, metavar="RAD/S", help="Default: a fifth of the lowest mode."
+    ),
+    click.option(
+        "--omega-max", type=POSITIVE, default=None, metavar="RAD/S", help="Default: 1.5 times the highest mode."
+    ),
+    click.option(
+        "--points",
+        type=click.IntRange(2, 1_000_000),
+        default=500,
+        show_default=True,
+        help="Frequencies, equally spaced by logarithm; 13 more are put around each resonance.",
+    ),
+    click.option(
+        "--point",
+        type=float,
+        nargs=3,
+        default=(0.0, 0.0, 0.0),
+        metavar="X Y Z",
+        help="Output point, m, platform frame.",
+    ),
+    click.option(
+        "--loss-factor", type=click.FloatRange(min=0), default=0.0, show_default=True, help="Of the legs' springs."
+    ),
+    click.option(
+        "--amplitude",
+        type=POSITIVE,
+        default=None,
+        metavar="M",
+        help="Shake the base of the non-linear machine too, by this amplitude (m or rad), at --steps frequencies.",
+    ),
+    click.option("--steps", type=click.IntRange(2, 100_000), default=100, show_default=True, help="See --amplitude."),
+    click.option(
+        "--psd",
+        type=click.Path(path_type=Path, exists=True, dir_okay=False),
+        default=None,
+        metavar="CSV",
+        help="Base acceleration spectra for RMS values: column frequency_hz and one or more of x, y, z (m/s2)^2/Hz, "
+        "roll, pitch, yaw (rad/s2)^2/Hz, one-sided.",
+    ),
+    common.out_option("Write figures, .csv and .nc here."),
+)

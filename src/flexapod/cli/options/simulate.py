@@ -1,0 +1,37 @@
+"""The options of `flexapod simulate`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from flexapod.cli.options import common
+from flexapod.cli.options.drives import QUANTITY, drive_options
+
+simulate_options = common.stack(
+    drive_options,
+    click.option("--duration", type=QUANTITY, required=True, metavar="SECONDS", help="As 0.5, 500ms or 2min."),
+    click.option("--force", type=QUANTITY, nargs=3, default=(0, 0, 0), metavar="X Y Z", help="Constant, N."),
+    click.option("--moment", type=QUANTITY, nargs=3, default=(0, 0, 0), metavar="X Y Z", help="Constant, N m."),
+    click.option(
+        "--start",
+        type=click.Choice(("rest", "carried")),
+        default="rest",
+        show_default=True,
+        help="The platform is at rest in the room, or moves with the base, when it begins.",
+    ),
+    click.option("--unloaded", is_flag=True, help="Let gravity ring: the legs are unstretched at the pose."),
+    click.option("--samples", type=click.IntRange(2), default=None, help="Default: 20 a period of the highest mode."),
+    click.option("--rtol", type=float, default=1e-9, show_default=True, help="Relative error of a step."),
+    click.option("--reactions", is_flag=True, help="Forces and moments in all joints too."),
+    common.out_option("Write figures, .csv and .nc here."),
+    click.option(
+        "--animate",
+        type=click.Path(path_type=Path, dir_okay=False),
+        default=None,
+        metavar="FILE",
+        help="Write a moving picture of the last periods: a .gif, or an .mp4 with the extra 'video'.",
+    ),
+    common.exaggeration_option,
+)

@@ -1,0 +1,118 @@
+"""The study of `flexapod sweep`."""
+
+from __future__ import annotations
+
+import logging
+import sys
+from pathlib import Path
+from typing import Any
+
+import click
+import xarray as xr
+
+from flexapod.cli.options import common
+from flexapod.cli.options.poses import box_of, grid_of, read_poses
+from flexapod.cli.options.sweep import DEFAULT_POINTS, Options
+from flexapod.cli.output.interrupt import Stopping
+from flexapod.cli.output.progress import PoseProgress
+from flexapod.design.hexapod import Hexapod
+from flexapod.plots import sweep as plots
+from flexapod.report.studies.sweep import study
+from flexapod.report.study import Study
+from flexapod.workspace.box import Box
+from flexapod.workspace.pose_sets import PoseSet, given_poses, low_discrepancy, random_poses
+from flexapod.workspace.quantities import QUANTITIES, chosen
+from flexapod.workspace.store.dask_cluster import cluster
+from flexapod.workspace.store.file_formats import check_file, save
+from flexapod.workspace.store.store import SweepStore, open_sweep
+from flexapod.workspace.summary import summarise
+from flexapod.workspace.sweeping import sweep
+from flexapod.workspace.worst import worst_pose
+
+
+def compute(options: Options) -> Study:
+    """The sweep that the options ask for, its summary, its worst pose and its figure."""
+    hexapod = common.load_design(options.design, options.changes)
+    points, box = _points(hexapod, options)
+    quantities = _quantities(options.quantities)
+    if options.worst and box is None:
+        raise click.UsageError("--worst looks for the worst pose of a box. Give --box or --around.")
+    if not options.streamed and (options.resume or options.scheduler):
+        raise click.UsageError("--resume and --scheduler need a store to write to. Give --out NAME.zarr.")
+    found = (_streamed if options.streamed else _in_memory)(hexapod, points, quantities, options)
+    summary = summarise(found, options.at_least) if options.summary and "omega_1" in found else None
+    worst = None
+    if options.worst and box is not None:
+        worst = worst_pose(hexapod, box, joint=options.joint, seed=options.seed, threads=options.threads)
+    if options.figure is not None:
+        plots.save(plots.auto(found, options.level), options.figure)
+        click.echo(f"wrote {options.figure}", err=True)
+    return study(hexapod, found, options.out, summary, worst)
+
+
+def _points(hexapod: Hexapod, options: Options) -> tuple[PoseSet, Box | None]:
+    ways = [bool(options.box or options.around), bool(options.grid), options.poses is not None]
+    if sum(ways) != 1:
+        raise click.UsageError(
+            "give one set of poses: --around M DEG, --box NAME=LEAST:LARGEST,..., --grid NAME=FIRST:LAST:COUNT,... "
+            "or --poses FILE."
+        )
+    if not ways[0]:
+        if options.points is not None or options.even:
+            raise click.UsageError(
+                "--points and --low-discrepancy go with --box or --around; a grid or file has its own poses."
+            )
+        found = grid_of(hexapod, options.grid) if ways[1] else given_poses(read_poses(options.poses))  # type: ignore[arg-type]
+        return found, None
+    box = box_of(hexapod, options.box, options.around)
+    make = low_discrepancy if options.even else random_poses
+    return make(box, options.points or DEFAULT_POINTS, seed=options.seed), box
+
+
+def _quantities(text: str) -> tuple[str, ...]:
+    names = [name.strip() for name in text.split(",") if name.strip()]
+    return tuple(QUANTITIES) if names == ["all"] else chosen(names)
+
+
+def _in_memory(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options) -> xr.Dataset:
+    check_file(options.out or Path("sweep.nc"), points.count, quantities)
+    found = sweep(hexapod, points, quantities=quantities, joint=options.joint, threads=options.threads)
+    if options.out is not None:
+        save(found, options.out)
+        click.echo(f"wrote {options.out}", err=True)
+    return found
+
+
+def _streamed(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options) -> xr.Dataset:
+    assert options.out is not None
+    if options.scheduler is None:
+        store = _store(hexapod, points, quantities, options)
+        _run(store, options.threads)
+    else:
+        with cluster(options.scheduler) as workers:
+            logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what matters is raised, and told by us
+            store = _store(hexapod, points, quantities, options)
+            _run(store, workers)
+    return open_sweep(options.out)
+
+
+def _store(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options) -> SweepStore:
+    assert options.out is not None
+    given: dict[str, Any] = {"quantities": quantities, "joint": options.joint, "chunk": options.chunk}
+    if options.resume:
+        return SweepStore.resume(options.out, hexapod, points, **given)
+    return SweepStore.create(options.out, hexapod, points, keep_poses=options.keep_poses, **given)
+
+
+def _run(store: SweepStore, workers: Any) -> None:
+    """Compute what is missing, with progress on standard error; exits when a signal stopped it."""
+    with Stopping() as stop, PoseProgress() as bar:
+        state = store.run(workers, bar, stop)
+    if not store.complete:
+        click.echo(
+            f"stopped with {state.done} of {state.total} poses in {store.job.path}. "
+            "Go on with the same command and --resume.",
+            err=True,
+        )
+        sys.exit(128 + (stop.signal or 0))
+    click.echo(f"{state.total} poses in {store.job.path}", err=True)

@@ -1,0 +1,123 @@
+"""A simulation in time, as a study."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from flexapod import plots
+from flexapod.conventions import AXES, unit_of
+from flexapod.design.hexapod import Hexapod
+from flexapod.mechanics.cautions import Caution
+from flexapod.pose import Pose
+from flexapod.report.numbers import pose_numbers, pose_words
+from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
+
+MOST_PLOTTED = 20_000  # instants
+
+
+def study(
+    hexapod: Hexapod, pose: Pose, dataset: xr.Dataset, took: float = np.nan, cautions: Sequence[Caution] = ()
+) -> Study:
+    """The study of a simulation. took: s."""
+    force = dataset.leg_force.values
+    steps = f"{dataset.attrs['steps']} steps in {took:.2f} s; energy balance error"
+    few = dataset.isel(time=slice(None, None, max(1, dataset.sizes["time"] // MOST_PLOTTED)))
+    drawings = [
+        Drawing("displacement", "Displacement from rest", partial(_displacement, few, "displacement")),
+        Drawing("relative_displacement", "Displacement seen from the base",
+                partial(_displacement, few, "relative_displacement")),
+        Drawing("leg_forces", "Leg forces", partial(plots.simulation.leg_forces, few)),
+    ]  # fmt: skip
+    return Study(
+        hexapod=hexapod,
+        subject="simulation",
+        about=f"From rest at {pose_words(pose)}, joint model {dataset.attrs['joint']}.",
+        data=_data(hexapod, pose, dataset, took),
+        rows=[
+            Row("Leg forces from", f"{force.min():.5g} to {force.max():.5g}", "N", note="(positive: compression)"),
+            Row(steps, f"{dataset.attrs['energy_error']:.1e}", note="of the largest of kinetic energy and works"),
+        ],
+        sections=[Section("Motion", [*drawings, _table(dataset)])],
+        cautions=cautions,
+        files={
+            "simulation.nc": partial(_stored, dataset),
+            "simulation.csv": partial(_csv, dataset),
+            **{f"{drawing.name}.png": drawing.draw for drawing in drawings},
+        },
+        dataset=dataset,
+    )
+
+
+def _displacement(dataset: xr.Dataset, name: str) -> Figure:
+    return plots.response.displacements(dataset.time.values, dataset[name].values)
+
+
+def _stored(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset as NetCDF can hold it."""
+    stored = dataset.copy()
+    stored.attrs = {key: "; ".join(value) if isinstance(value, list) else value for key, value in dataset.attrs.items()}
+    return stored
+
+
+def _table(dataset: xr.Dataset) -> Table:
+    summary = _summary(dataset)
+    columns = [Column("", AXES)]
+    titles = {"displacement": "displacement", "relative_displacement": "seen from the base"}
+    for name, words in titles.items():
+        for kind, title in (("largest", f"largest {words}"), ("rms", "RMS")):
+            cells = [f"{x:.4g} {unit_of(axis)}" for x, axis in zip(summary[name][kind], AXES, strict=True)]
+            columns.append(Column(title, cells))
+    return Table(columns, title="Motion of the platform")
+
+
+def _csv(dataset: xr.Dataset) -> str:
+    """Displacements, leg lengths and forces as CSV, one line a sample."""
+    names = ["time_s"]
+    columns = [dataset.time.values[:, None]]
+    for variable, unit in (("displacement", "m"), ("relative_displacement", "m")):
+        columns.append(dataset[variable].values)
+        names += [f"{variable}_{axis}_{unit if axis in AXES[:3] else 'rad'}" for axis in AXES]
+    for variable, unit in (("leg_length", "m"), ("leg_force", "N")):
+        columns.append(dataset[variable].values)
+        names += [f"{variable}_{leg}_{unit}" for leg in dataset.leg.values]
+    text = io.StringIO()
+    np.savetxt(text, np.hstack(columns), fmt="%.12g", delimiter=",", header=",".join(names), comments="")
+    return text.getvalue()
+
+
+def _summary(dataset: xr.Dataset) -> dict[str, dict[str, list[float]]]:
+    """Largest and RMS values of the two displacements, by axis."""
+    return {
+        name: {
+            "largest": np.abs(dataset[name].values).max(axis=0).tolist(),
+            "rms": np.sqrt((dataset[name].values ** 2).mean(axis=0)).tolist(),
+        }
+        for name in ("displacement", "relative_displacement")
+    }
+
+
+def _data(hexapod: Hexapod, pose: Pose, dataset: xr.Dataset, took: float) -> dict[str, Any]:
+    force = dataset.leg_force.values
+    return {
+        "design": hexapod.name,
+        "digest": hexapod.digest,
+        "pose_m_deg": pose_numbers(pose),
+        "joint": dataset.attrs["joint"],
+        "duration_s": float(dataset.time[-1]),
+        "samples": dataset.sizes["time"],
+        "axes": list(AXES),
+        **_summary(dataset),
+        "leg_force_N": {"least": force.min(axis=0), "largest": force.max(axis=0)},
+        "energy_error": dataset.attrs["energy_error"],
+        "steps": dataset.attrs["steps"],
+        "evaluations": dataset.attrs["evaluations"],
+        "seconds": took,
+        "warnings": dataset.attrs["warnings"],
+    }

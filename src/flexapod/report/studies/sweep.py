@@ -1,0 +1,132 @@
+"""A sweep over poses, its summary and its worst pose, as a study."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from flexapod import plots
+from flexapod.conventions import AXES, Array
+from flexapod.design.hexapod import Hexapod
+from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
+from flexapod.workspace.summary import At, SweepSummary
+from flexapod.workspace.worst import WorstPose
+
+POSE_HEAD = ("x m", "y m", "z m", "roll°", "pitch°", "yaw°")
+
+
+def study(
+    hexapod: Hexapod, sweep: xr.Dataset, out: Path | None, summary: SweepSummary | None, worst: WorstPose | None
+) -> Study:
+    """The study of a sweep. out: where it was written; summary, worst: where asked for."""
+    data: dict[str, Any] = {"attributes": dict(sweep.attrs), "out": None if out is None else str(out)}
+    rows, tables = [], []
+    if summary is not None:
+        data["summary"] = _summary_data(summary)
+        rows += _summary_rows(summary)
+        tables += [_extremes(summary), _quantiles(summary)]
+    if worst is not None:
+        data["worst_pose"] = _worst_data(worst)
+        rows += _worst_rows(worst)
+    drawing = Drawing("sweep", "The index over the poses", partial(_figure, sweep))
+    return Study(
+        hexapod=hexapod,
+        subject="sweep",
+        about=f"A sweep over {next(iter(sweep.data_vars.values())).size} poses.",
+        data=data,
+        rows=rows,
+        sections=[Section(drawing.title, [drawing, *tables])],
+        dataset=sweep,
+    )
+
+
+def _figure(sweep: xr.Dataset) -> Figure:
+    figure = plots.sweep.auto(sweep).figure
+    assert isinstance(figure, Figure)
+    return figure
+
+
+def pose_text(pose: Array) -> str:
+    """x, y, z in m and roll, pitch, yaw in degrees."""
+    x, y, z, *angles = pose
+    return f"({x:.5g}, {y:.5g}, {z:.5g}) m, ({', '.join(f'{math.degrees(a):.4g}' for a in angles)})°"
+
+
+def _summary_rows(summary: SweepSummary) -> list[Row]:
+    statuses = ", ".join(f"{count} {word}" for word, count in summary.statuses.items())
+    rows = [Row(f"{summary.poses} poses:", statuses)]
+    if not math.isnan(summary.correlation):
+        spread = f"at equal cond(H) the 95 % quantile of ω1 is {summary.spread:.3g} times the 5 % quantile"
+        rows.append(Row("rank correlation of ω1 with cond(H):", f"{summary.correlation:.3f};", note=spread))
+    if summary.above is not None:
+        above = summary.above
+        volume = "" if math.isnan(above.volume) else f", {above.volume:.5g} {above.volume_unit}"
+        share = f"{above.fraction:.3%} of the workspace (± {above.standard_error:.3%}){volume}"
+        rows.append(Row(f"ω1 ≥ {above.omega_1:g} rad/s:", share))
+    return rows
+
+
+def _worst_rows(worst: WorstPose) -> list[Row]:
+    where = f"at {pose_text(worst.pose)}"
+    if worst.singular:
+        first = Row("worst of the box:", f"singular, ω1 = 0, {where}")
+    else:
+        edge = f", at the bounds of {', '.join(worst.at_bounds)}" if worst.at_bounds else ""
+        first = Row("worst of the box:", f"ω1 = {worst.omega_1:.8g}", "rad/s", note=where + edge)
+    told = (
+        f"descents ended there; {len(worst.minima)} local minima; least of the sweep before: {worst.sampled:.6g} rad/s"
+    )
+    return [first, Row(f"{worst.agreed} of {worst.starts}", told)]
+
+
+def _extremes(summary: SweepSummary) -> Table:
+    all_of_them = {
+        "worst ω1": summary.worst,
+        "best ω1": summary.best,
+        "least cond": summary.best_conditioned,
+        "most cond": summary.worst_conditioned,
+    }
+    found = {words: at for words, at in all_of_them.items() if at is not None}
+    poses = [[f"{v:.3g}" for v in (*at.pose[:3], *np.degrees(at.pose[3:]))] for at in found.values()]
+    columns = [
+        Column("", list(found)),
+        Column("ω1 rad/s", [f"{at.omega_1:.5g}" for at in found.values()]),
+        Column("cond(H)", [f"{at.cond_H:.4g}" for at in found.values()]),
+        *(Column(title, [pose[i] for pose in poses]) for i, title in enumerate(POSE_HEAD)),
+    ]
+    return Table(columns, title="Extremes")
+
+
+def _quantiles(summary: SweepSummary) -> Table:
+    columns = [Column(f"{q:.0%}", [f"{value:.5g}"]) for q, value in summary.quantiles.items()]
+    return Table(columns, title="Quantiles of ω1, rad/s")
+
+
+def _summary_data(summary: SweepSummary) -> dict[str, Any]:
+    """A summary in plain numbers, SI."""
+    found: dict[str, Any] = summary._asdict()
+    for name in ("worst", "best", "best_conditioned", "worst_conditioned"):
+        found[name] = _at_data(found[name])
+    found["quantiles"] = {f"{q:g}": value for q, value in summary.quantiles.items()}
+    found["above"] = None if summary.above is None else summary.above._asdict()
+    return found
+
+
+def _at_data(at: At | None) -> dict[str, Any] | None:
+    if at is None:
+        return None
+    return {**at._asdict(), "pose": dict(zip(AXES, at.pose.tolist(), strict=True))}
+
+
+def _worst_data(worst: WorstPose) -> dict[str, Any]:
+    """A refined worst pose in plain numbers, SI."""
+    found: dict[str, Any] = worst._asdict()
+    found["pose"] = dict(zip(AXES, worst.pose.tolist(), strict=True))
+    found["minima"] = [{"omega_1": omega, "pose": pose.tolist()} for omega, pose in worst.minima]
+    return found
