@@ -135,7 +135,7 @@ def test_spectra_by_their_names(text):
     ("arguments", "told"),
     [
         (("--random", "z", "VC-C:2"), "spectrum 'VC-C:2' is unknown"),
-        (("--random", "z", "ground:loud"), "noise model is 'loud'"),
+        (("--random", "z", "ground:loud"), "model is 'loud'; it must be one of 'low', 'high'"),
         (("--random", "z", "ground:low:2"), "'low' is not a number with a unit of m,"),
         (("--random", "z", "flat:1:2"), "flat:RMS:FROM:TO"),
         (("--animate", "run.avi"), "run.avi is neither .gif nor .mp4"),

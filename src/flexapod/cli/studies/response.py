@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import Progress
 
-from flexapod.conventions import AXES, LEGS, Array
+from flexapod.conventions import AXES, LEGS, Array, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import linearise
