@@ -18,7 +18,7 @@ ZERO = (0.0, 0.0, 0.0)
 NO_LEGS = (0.0,) * 6
 
 
-_AT_ORIGIN = Motion.fixed()
+_AT_ORIGIN = Motion.fixed().packed
 _JOINTS = {joint.name: joint for joint in _core.Joint}
 
 
@@ -62,17 +62,16 @@ def single_pose(hexapod: Hexapod, pose: PoseLike | None, name: str = "pose") -> 
 def states(hexapod: Hexapod, platform: MotionLike | None, base: MotionLike | None = None) -> States:
     """Rows for the core. A single pose that no leg can take raises PoseError; in a batch its row is NaN."""
     as_hexapod(hexapod)
-    motions = [
-        platform if isinstance(platform, Motion) else Motion(pose_or_home(hexapod, platform)),
-        _AT_ORIGIN if base is None else base if isinstance(base, Motion) else Motion(as_pose(base, "base")),
+    numbers = [
+        _numbers(platform if isinstance(platform, Motion) else pose_or_home(hexapod, platform)),
+        _AT_ORIGIN if base is None else _numbers(base if isinstance(base, Motion) else as_pose(base, "base")),
     ]
     try:
-        shape = np.broadcast_shapes(*(motion.shape for motion in motions))
+        shape = np.broadcast_shapes(*(rows.shape[:-1] for rows in numbers))
     except ValueError:
-        raise PoseError(
-            f"pose has batch axes {motions[0].shape}, base {motions[1].shape}; they must be equal or 1."
-        ) from None
-    rows = [np.ascontiguousarray(_spread(m.packed, shape).reshape(-1, _core.motion_size)) for m in motions]
+        axes = [rows.shape[:-1] for rows in numbers]
+        raise PoseError(f"pose has batch axes {axes[0]}, base {axes[1]}; they must be equal or 1.") from None
+    rows = [np.ascontiguousarray(_spread(rows, shape).reshape(-1, _core.motion_size)) for rows in numbers]
     length, sine = _core.leg_fit(hexapod.packed, *rows)
     good = np.all((length >= _shortest(hexapod)) & (sine >= LEAST_SINE), axis=1, keepdims=True)
     if not good.all():
@@ -80,6 +79,14 @@ def states(hexapod: Hexapod, platform: MotionLike | None, base: MotionLike | Non
             _refuse(hexapod, length[0], sine[0])
         rows[0] = np.where(good, rows[0], np.nan)
     return States(rows[0], rows[1], shape)
+
+
+def _numbers(state: Pose | Motion) -> Array:
+    """The core's numbers of a motion (..., n); a pose is at rest."""
+    if isinstance(state, Motion):
+        return state.packed
+    packed = state.packed
+    return np.concatenate([packed, np.zeros((*state.shape, _core.motion_size - packed.shape[-1]))], axis=-1)
 
 
 def _shortest(hexapod: Hexapod) -> float:
