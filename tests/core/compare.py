@@ -72,7 +72,8 @@ class Problem:
 
     def __init__(self, name: str) -> None:
         hexapod, rng = fx.load(name), np.random.default_rng(5)
-        middle = np.array([*CENTER[name], 0, 0, 0]) if hexapod.home is None else np.concatenate([*hexapod.home])
+        home = hexapod.home
+        middle = np.array([*CENTER[name], 0, 0, 0]) if home is None else np.array([*home.position, *home.rpy])
         poses = middle + rng.uniform(-0.1, 0.1, (POSES, 6)) * np.repeat([middle[2], 1.0], 3)
         motions = np.concatenate(
             [fx.Motion(fx.Pose.from_rpy(*poses.T)).packed[:, :12], rng.normal(size=(POSES, 12))], 1

@@ -36,13 +36,13 @@ template <int N, class T = double> struct Dual {
   friend auto operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
 
   /// f(a) with f' = da.
-  static Dual chain(T value, T da, const Dual& a) {
+  static FLEXAPOD_INLINE Dual chain(T value, T da, const Dual& a) {
     Dual r(value);
     for (int i = 0; i < N; ++i) r.d[i] = da * a.d[i];
     return r;
   }
   /// f(a, b) with the partial derivatives da and db.
-  static Dual chain(T value, T da, const Dual& a, T db, const Dual& b) {
+  static FLEXAPOD_INLINE Dual chain(T value, T da, const Dual& a, T db, const Dual& b) {
     Dual r(value);
     for (int i = 0; i < N; ++i) r.d[i] = da * a.d[i] + db * b.d[i];
     return r;

@@ -11,20 +11,6 @@
 #include <immintrin.h>
 #endif
 
-#if defined(FLEXAPOD_SANITIZE)  // calls stay calls: the checks of all that is inlined would take minutes to compile
-#define FLEXAPOD_INLINE inline
-#define FLEXAPOD_FLAT
-#define FLEXAPOD_COLD
-#elif defined(__GNUC__) || defined(__clang__)  // clang-cl is the second only
-#define FLEXAPOD_INLINE inline __attribute__((always_inline))
-#define FLEXAPOD_FLAT __attribute__((flatten, noinline))  // with all that it calls inlined
-#define FLEXAPOD_COLD __attribute__((noinline, cold))
-#else
-#define FLEXAPOD_INLINE __forceinline
-#define FLEXAPOD_FLAT
-#define FLEXAPOD_COLD
-#endif
-
 namespace flexapod {
 
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(FLEXAPOD_PLAIN)

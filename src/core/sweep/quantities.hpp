@@ -56,14 +56,15 @@ template <class T> struct SweepQuantities {
   }
 
   /// The largest leg force at rest: weight is the same as no gravity and an acceleration of everything against it.
-  T static_force() const {
+  FLEXAPOD_FLAT T static_force() const {
     Motion<T> platform, base;
     platform.a = base.a = -transposed(at.pose.R, machine.machine.design.gravity);
     base.pose = at.base();
     const Geometry<T> g(machine.weightless.design, platform.pose, base.pose);
     Vec6<T> load[1] = {inverse_wrench(machine.weightless, g, platform, base)};
     for (int i = 3; i < 6; ++i) load[0][i] *= 1.0 / machine.size;
-    const T weak = solve(legs().H(), load);
+    Mat6<T> H = legs().H();
+    const T weak = solve(H, load);
     T most = abs(load[0][0]);
     for (int i = 1; i < 6; ++i) most = max(most, abs(load[0][i]));
     return finish(task.leg_force_, most, weak);
@@ -71,11 +72,12 @@ template <class T> struct SweepQuantities {
 
   /// The least translational stiffness: 1 / largest eigenvalue of the block of translations of K^-1, which is Y^T Y with
   /// Y = F^-1 [E; 0] for a square F.
-  T stiffness() const {
+  FLEXAPOD_FLAT T stiffness() const {
     Vec6<T> side[3];
     for (int i = 0; i < 3; ++i) side[i][i] = T(1.0);
     SpringMatrix<T> F = machine.root_stiffness.scaled(legs().directions);
-    const T weak = solve(square_factor(F), side);
+    auto&& square = square_factor(F);
+    const T weak = solve(square, side);
     T Y[3][6];
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 6; ++j) Y[i][j] = side[i][j];
@@ -122,7 +124,7 @@ template <class T> struct SweepQuantities {
     return legs;
   }
   /// Solves A x = b with rows of moments divided by the platform's size; how near A is to singular.
-  template <int m> T solve(Mat6<T> A, Vec6<T> (&b)[m]) const {
+  template <int m> T solve(Mat6<T>& A, Vec6<T> (&b)[m]) const {
     for (int i = 3; i < 6; ++i)
       for (T& a : A.a[i]) a *= 1.0 / machine.size;
     T weak;
