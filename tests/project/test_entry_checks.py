@@ -10,7 +10,7 @@ import flexapod as fx
 
 MACHINE = fx.load("mukherjee-ii")
 #: Functions that do not check at their entry yet.
-PENDING = {"animate_simulation", "optimise", "pareto_front", "plan_slice", "robustness", "plan_path"}
+PENDING = {"optimise", "pareto_front", "robustness", "animate_simulation"}
 OF_A_MACHINE = [
     name for name in FUNCTIONS if "hexapod" in inspect.signature(PUBLIC[name]).parameters and name not in PENDING
 ]
@@ -29,6 +29,7 @@ GIVEN = {
     "law": fx.control.VelocityFeedback(1.0),
     "against": fx.optimisation.TotalMass(),
     "psd": fx.vc_curve("VC-C"),
+    "requirements": fx.PathRequirements(10.0),
     "base_motion": fx.harmonic("z", 1e-6, 10.0),
     "controller": fx.control.VelocityFeedback(1.0),
     "duration": 0.01,

@@ -29,7 +29,19 @@ SINGLE = {
         "name",
         "name_or_path",
     ),  # mechanics, design
-    *("omega_min", "omega_max", "omega_start", "omega_end", "phase", "peak", "acceleration", "recovery", "change"),
+    *(
+        "omega_min",
+        "omega_max",
+        "omega_start",
+        "omega_end",
+        "law",
+        "hold",
+        "phase",
+        "peak",
+        "acceleration",
+        "recovery",
+        "change",
+    ),
     *("coefficients", "values", "recorded", "rms", "quantity", "spectrum", "response", "height", "period", "gamma"),
     *("waypoints", "at_least", "sweep", "starts", "address", "timeout", "timestep", "hardware", "after", "runs"),
     *("rtol", "atol", "max_step", "max_steps", "stop_at_singular", "energies", "reactions", "tolerance", "of"),
@@ -39,8 +51,7 @@ SINGLE = {
 }
 
 #: Functions and classes whose arguments have still to be renamed.
-PENDING = {"half_sine_pulse", "half_sine_shock", "harmonic", "plan_slice", "polynomial", "random_motion", "robustness"}
-PENDING |= {"sea_motion", "sine_sweep", "smooth_step", "time_series"}
+PENDING = {"robustness"}
 
 
 def arguments(name):

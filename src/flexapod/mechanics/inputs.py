@@ -41,9 +41,9 @@ def as_hexapod(value: object) -> Hexapod:
 
 def pose_or_home(hexapod: Hexapod, pose: PoseLike | None, name: str = "pose") -> Pose:
     """A pose as `as_pose` takes it, or the design's home where it is None."""
+    home = as_hexapod(hexapod).home
     if pose is not None:
         return as_pose(pose, name)
-    home = as_hexapod(hexapod).home
     if home is None:
         raise PoseError(
             f"{name} is not given, and {hexapod.name!r} names no home pose. Give a pose, or add [home] to the design."
@@ -112,7 +112,7 @@ def as_joint(joint: str) -> _core.Joint:
     found = _JOINTS.get(joint)
     if found is None:
         raise ArgumentError(
-            f"joint is {joint!r}; it must be 'universal' (exact) or 'spin_free' (legs that do not spin)"
+            f"joint is {joint!r}; it must be 'universal' (exact) or 'spin_free' (legs that do not spin)."
         )
     return found
 
