@@ -14,7 +14,7 @@ from . import vibration as vibration
 from . import workspace as workspace
 from .design.design_file import packaged_designs as packaged_designs
 from .design.hexapod import Hexapod as Hexapod
-from .design.hexapod import load as load
+from .design.loading import load as load
 from .errors import ArgumentError as ArgumentError
 from .errors import DesignError as DesignError
 from .errors import FlexapodError as FlexapodError

@@ -1,4 +1,4 @@
-"""What can go wrong, by name. Every message says the thing, its value, what is required and the remedy."""
+"""Errors that Flexapod raises. Every message names the thing, its value, what is required and the remedy."""
 
 import reprlib
 from typing import Any
@@ -19,19 +19,19 @@ shown = _Short().repr
 
 
 class FlexapodError(Exception):
-    """Base of all errors that Flexapod raises on purpose."""
+    """Base of all errors of Flexapod: catching it catches them all."""
 
 
 class ArgumentError(FlexapodError, ValueError):
-    """A number, table or name given to a study that it cannot work with."""
+    """A wrong argument: an unknown name, a number out of range, an array of a wrong shape."""
 
 
 class DesignError(FlexapodError, ValueError):
-    """A design that cannot be a hexapod: a wrong key, unit, size or value."""
+    """Not a hexapod: a design with a wrong key, unit, size or value, or something else where a design is needed."""
 
 
 class PoseError(FlexapodError, ValueError):
-    """A pose or motion of the wrong shape or with values that are not finite."""
+    """A wrong pose or motion, one that no leg can take, or a batch where one pose is needed."""
 
 
 class KinematicsError(FlexapodError, ValueError):
@@ -43,15 +43,15 @@ class SingularPoseError(FlexapodError, ValueError):
 
 
 class InfeasibleError(FlexapodError, ValueError):
-    """No design that keeps every constraint: the start breaks one, or a search found none."""
+    """No design keeps every constraint: the start breaks one, or a search found none."""
 
 
 class PathError(FlexapodError, ValueError):
-    """Waypoints or times that make no path, or a path that cannot be found."""
+    """Waypoints or times that make no trajectory, or a path that cannot be found."""
 
 
 class UnstableError(FlexapodError, ValueError):
-    """A closed loop that the exact tangent shows to be unstable, or a controller that cannot be made."""
+    """A closed loop that is unstable in the linear dynamics, or a controller that cannot be made."""
 
 
 class OutputError(FlexapodError, OSError):
@@ -67,7 +67,17 @@ class ClusterError(FlexapodError, RuntimeError):
 
 
 class SimulationError(FlexapodError, RuntimeError):
-    """A simulation that could not go on. `time` (s) and `pose`: where it ended; `result`: the Dataset so far."""
+    """A simulation that could not go on.
+
+    Attributes
+    ----------
+    time : float
+        When it ended, s.
+    pose : Pose
+        Where the platform was then.
+    result : xarray.Dataset
+        What was simulated until then.
+    """
 
     def __init__(self, message: str, time: float = float("nan"), pose: Any = None, result: Any = None) -> None:
         super().__init__(message)

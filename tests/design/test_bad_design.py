@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from flexapod.design.changes import parse_assignments
-from flexapod.design.hexapod import Hexapod, load
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.loading import load
 from flexapod.design.parts import Damping, Home, LegPart, Legs, Limits
 from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS
 from flexapod.errors import DesignError

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from flexapod.design import design_file
 from flexapod.design.design_file import packaged_designs
-from flexapod.design.hexapod import Hexapod, load
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.loading import load
 from flexapod.design.schema import KEYS, TABLES
 from flexapod.design.shorthands import expand
 from flexapod.design.units import ALL_UNITS

@@ -14,7 +14,8 @@ from hypothesis.extra import numpy as hnp
 
 from flexapod.design.changes import parse_assignments
 from flexapod.design.design_file import packaged_designs, template
-from flexapod.design.hexapod import Hexapod, load
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.loading import load
 from flexapod.design.parts import Damping, Home, LegPart, Legs, Limits
 from flexapod.errors import DesignError
 from flexapod.pose import Pose

@@ -1,8 +1,8 @@
 from .design_file import packaged_designs as packaged_designs
 from .design_file import template as template
 from .hexapod import Hexapod as Hexapod
-from .hexapod import load as load
 from .joint_table import read_joints as read_joints
+from .loading import load as load
 from .parts import Damping as Damping
 from .parts import LegPart as LegPart
 from .parts import Legs as Legs

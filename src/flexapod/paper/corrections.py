@@ -16,7 +16,7 @@ from scipy.linalg import eig
 from scipy.spatial.transform import Rotation
 
 from flexapod.conventions import Array, JointModel
-from flexapod.design.hexapod import load
+from flexapod.design.loading import load
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees

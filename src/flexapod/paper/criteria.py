@@ -13,7 +13,8 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from flexapod.conventions import Array, JointModel
-from flexapod.design.hexapod import Hexapod, load
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.loading import load
 from flexapod.mechanics.kinematics import condition_number
 from flexapod.mechanics.modes import natural_modes
 from flexapod.optimisation.constraints import Footprint

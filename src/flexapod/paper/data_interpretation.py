@@ -9,7 +9,8 @@ import numpy as np
 import pandas as pd
 
 from flexapod.conventions import Array, JointModel
-from flexapod.design.hexapod import Hexapod, load
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.loading import load
 from flexapod.interchange.rigid_bodies import nearest_physical
 from flexapod.mechanics.dynamics import equations_of_motion
 from flexapod.mechanics.kinematics import inverse_kinematics

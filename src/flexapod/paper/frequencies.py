@@ -9,7 +9,8 @@ import numpy as np
 import pandas as pd
 
 from flexapod.conventions import Array, JointModel
-from flexapod.design.hexapod import Hexapod, load
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.loading import load
 from flexapod.mechanics.kinematics import condition_number, home_pose
 from flexapod.mechanics.modes import advised_sampling_time, natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees

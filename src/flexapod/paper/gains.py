@@ -22,7 +22,7 @@ from flexapod.control.linear_controller import Controller, static
 from flexapod.control.plant import Plant, held, joined
 from flexapod.control.sampled_simulation import simulate_control
 from flexapod.conventions import Array, JointModel
-from flexapod.design.hexapod import load
+from flexapod.design.loading import load
 from flexapod.excitation.piecewise import half_sine_shock
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import advised_sampling_time

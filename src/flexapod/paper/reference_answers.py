@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from flexapod.conventions import Array
-from flexapod.design.hexapod import load
+from flexapod.design.loading import load
 from flexapod.paper.printed_errors import State
 from flexapod.pose import Motion, Pose
 

@@ -19,7 +19,7 @@ from flexapod.control.linear_controller import Controller
 from flexapod.control.plant import Plant
 from flexapod.control.sampled_simulation import simulate_control
 from flexapod.conventions import Array, JointModel
-from flexapod.design.hexapod import load
+from flexapod.design.loading import load
 from flexapod.errors import UnstableError
 from flexapod.excitation.excitation import Excitation
 from flexapod.excitation.random_phases import random_motion

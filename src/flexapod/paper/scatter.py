@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from flexapod.design.hexapod import Hexapod, load
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.loading import load
 from flexapod.mechanics.kinematics import home_pose
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.plots import sweep as plots_sweep

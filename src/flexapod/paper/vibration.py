@@ -14,7 +14,7 @@ import pandas as pd
 import xarray as xr
 
 from flexapod.conventions import AXES, Array, JointModel
-from flexapod.design.hexapod import load
+from flexapod.design.loading import load
 from flexapod.excitation.sines import harmonic
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.modes import natural_modes

@@ -10,7 +10,7 @@ from html import escape
 import pandas as pd
 
 from flexapod import __version__
-from flexapod.design.hexapod import load
+from flexapod.design.loading import load
 from flexapod.paper import Claim, Part
 from flexapod.report import figures, html
 

@@ -130,7 +130,7 @@ def machine(design: str, changes: Iterable[str], pose: tuple[float, ...] | None)
 def load_design(design: str, changes: Iterable[str] = ()) -> Hexapod:
     """The design of a name or path, with the changes of `--set`. Raises DesignError."""
     from flexapod.design.changes import parse_assignments
-    from flexapod.design.hexapod import load
+    from flexapod.design.loading import load
 
     hexapod = load(design)
     assignments = parse_assignments(changes)
