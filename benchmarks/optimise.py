@@ -79,7 +79,7 @@ def main() -> None:
     print(f"the lowest frequencies alone in NumPy: {theirs * SHARE:.2f} s, {theirs * SHARE / ours:.0f} times as long")
 
     began = time.perf_counter()
-    study = Study(p, points=POSES)
+    study = Study(p, samples=POSES)
 
     def evaluate(x: np.ndarray):
         found = p.assess_at(x, POSES)

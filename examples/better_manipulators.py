@@ -26,10 +26,10 @@ def main(trials: int = 0, points: int = 2**12, verify: int = 2**17) -> dict[str,
         limits = [
             fx.optimisation.Footprint(),
             fx.optimisation.Footprint(plate="platform"),
-            fx.optimisation.Stroke(over=workspace),
-            fx.optimisation.LegClearance(clearance, over=workspace),
+            fx.optimisation.Stroke(region=workspace),
+            fx.optimisation.LegClearance(clearance, region=workspace),
         ]
-        options = {"trials": trials, "points": points, "verify": verify}
+        options = {"trials": trials, "samples": points, "verify": verify}
         best = fx.optimise(machine, variables, fx.LeastIndex(workspace), limits, **options)
         dexterous = fx.optimise(machine, variables, fx.optimisation.Dexterity(workspace), limits, **options)
         box = workspace.box(np.concatenate([machine.home.position, machine.home.rpy]))

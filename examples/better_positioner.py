@@ -23,7 +23,7 @@ def main(trials: int = 200, points: int = 2**12, verify: int = 2**17, samples: i
     ]
     workspace = fx.Workspace.about_home(0.002, np.radians(0.5))
     limits = [fx.optimisation.DesignLimits(), fx.optimisation.Footprint(plate="platform")]
-    options = {"points": points, "trials": trials}
+    options = {"samples": points, "trials": trials}
 
     better = fx.optimise(
         machine,

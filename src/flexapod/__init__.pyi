@@ -51,7 +51,7 @@ from .mechanics.statics import static_equilibrium as static_equilibrium
 from .optimisation.design_search import optimise as optimise
 from .optimisation.objectives import LeastIndex as LeastIndex
 from .optimisation.pareto import pareto_front as pareto_front
-from .optimisation.uncertainty import Uncertain as Uncertain
+from .optimisation.uncertain_parameters import Uncertain as Uncertain
 from .optimisation.uncertainty import robustness as robustness
 from .optimisation.variables import Variable as Variable
 from .paths.analysis import path_index as path_index

@@ -45,10 +45,31 @@ def test_values_that_make_no_hexapod_keep_nothing(positioner):
     assert not found.feasible
     assert np.isnan(found.values).all()
     with pytest.raises(InfeasibleError, match="the start breaks"):
-        fx.optimise(positioner, axis, start={axis.targets: 0.0}, trials=0, points=16, verify=32)
+        fx.optimise(positioner, axis, start={axis.targets: 0.0}, trials=0, samples=16, verify=32)
     held = []
     finishing._hold(asked, np.zeros(1), held, 16, 0)
     assert held == []
+
+
+@pytest.mark.parametrize(
+    ("wrong", "error", "words"),
+    [
+        ({"joint": "spin-free"}, fx.ArgumentError, "joint is 'spin-free'"),
+        ({"threads": 0}, fx.ArgumentError, "threads is 0"),
+        ({"objective": "index"}, fx.ArgumentError, "objective is 'index'; give a LeastIndex"),
+        ({"objective": fx.LeastIndex}, fx.ArgumentError, "give a LeastIndex"),
+        ({"seed": -1}, fx.ArgumentError, "seed is -1"),
+        ({"samples": 0}, fx.ArgumentError, "samples is 0"),
+        ({"verify": 16}, fx.ArgumentError, "verify is 16; it must be at least 32"),
+        ({"hexapod": "precision-positioner"}, fx.DesignError, "must be a flexapod Hexapod"),
+        ({"constraints": [fx.optimisation.Stroke(region="here")]}, fx.PoseError, "region is 'here'"),
+        ({"sed": 1}, TypeError, r"optimise\(\) got an unexpected keyword argument 'sed'"),
+    ],
+)
+def test_a_wrong_argument_is_not_taken_for_a_bad_design(positioner, wrong, error, words):
+    given = {"hexapod": positioner, "variables": heavier(), "trials": 3, "samples": 16, "verify": 32, **wrong}
+    with pytest.raises(error, match=words):
+        fx.optimise(**given)
 
 
 def test_a_start_that_only_breaks_one_constraint_names_that_one(positioner):
@@ -74,7 +95,7 @@ def test_a_start_that_keeps_everything_is_taken(positioner):
 
 def test_a_design_without_home_is_improved_in_a_box(positioner):
     free = positioner.replace({"home": None})
-    found = fx.optimise(free, heavier(), fx.LeastIndex(BOX), trials=0, points=64, verify=128)
+    found = fx.optimise(free, heavier(), fx.LeastIndex(BOX), trials=0, samples=64, verify=128)
     assert found.index > found.start_index
     assert found.hexapod.home is None
 

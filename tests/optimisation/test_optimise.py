@@ -8,10 +8,10 @@ import flexapod as fx
 from flexapod import _core
 from flexapod.design.layout import HOME, PLACES, numbers
 from flexapod.optimisation import constraint_quantities
-from flexapod.optimisation.derivatives import Slopes, index_slopes
+from flexapod.optimisation.derivatives import DesignDerivatives, index_derivatives
+from flexapod.optimisation.design_map import DesignMap
 from flexapod.optimisation.local_search import finish
 from flexapod.optimisation.problem import Problem
-from flexapod.optimisation.variables import DesignMap
 from flexapod.workspace.quantities import evaluate
 
 RADIANS = np.radians
@@ -74,7 +74,7 @@ def somewhere():
 
 def slopes_at(design, x, offsets):
     own = design.numbers(x)
-    return Slopes(own, design.jacobian(x), offsets + own[HOME], True, _core.Joint.universal)
+    return DesignDerivatives(own, design.jacobian(x), offsets + own[HOME], True, _core.Joint.universal)
 
 
 def differences(function, design, x):
@@ -131,8 +131,8 @@ def test_frequency_slopes_against_differences(somewhere, measured):
         constraint_quantities.JointAngles("spherical"),
         constraint_quantities.LegDistance(),
         constraint_quantities.Conditioning(),
-        constraint_quantities.Sag(),
-        constraint_quantities.Sag(100.0),
+        constraint_quantities.StaticDeflection(),
+        constraint_quantities.StaticDeflection(100.0),
         constraint_quantities.Mass(),
         constraint_quantities.Radius("base", 0.01, -0.02),
     ],
@@ -144,9 +144,9 @@ def test_constraint_slopes_against_differences_and_values_against_the_sweep(kind
         offsets = np.tile(offsets[:2], (6, 1))  # for each leg a shortest and a longest pose
 
     def values(x):
-        return kind.slopes(slopes_at(design, x, offsets)).value
+        return kind.derivatives(slopes_at(design, x, offsets)).value
 
-    found = kind.slopes(slopes_at(design, x, offsets))
+    found = kind.derivatives(slopes_at(design, x, offsets))
     # Angles of some degrees, from their cosines, have a rounding of eps / angle: a hundred times that of the others.
     rtol = 1e-5 if isinstance(kind, constraint_quantities.JointAngles) else 2e-7
     assert_slopes(found.slope, differences(values, design, x), design, rtol)
@@ -180,7 +180,7 @@ def test_slopes_where_frequencies_are_equal(measured):
     own = numbers(hexapod)
     jacobian = np.zeros((217, 1))
     jacobian[:211] = direction.T
-    at = Slopes(own, jacobian, own[None, HOME], True, _core.Joint.universal)
+    at = DesignDerivatives(own, jacobian, own[None, HOME], True, _core.Joint.universal)
     block = at.omega[1][0, :3, :3, 0]
     by_formula = np.linalg.eigvalsh(block) / (2 * omega[0])
 
@@ -196,10 +196,10 @@ def test_slopes_where_frequencies_are_equal(measured):
         measured("design/repeated", apart(moved, expected), 5e-3)  # second order: step times the others' frequency gap
 
     def soft(step):
-        moved = Slopes(own + step * jacobian[:, 0], jacobian, own[None, HOME], True, _core.Joint.universal)
-        return index_slopes(moved, 50.0)[0][0]
+        moved = DesignDerivatives(own + step * jacobian[:, 0], jacobian, own[None, HOME], True, _core.Joint.universal)
+        return index_derivatives(moved, 50.0)[0][0]
 
-    slope = index_slopes(at, 50.0)[1][0, 0]
+    slope = index_derivatives(at, 50.0)[1][0, 0]
     assert abs(slope - (soft(1e-5) - soft(-1e-5)) / 2e-5) < 1e-6 * abs(by_formula).max() / omega[0] + 1e-7
 
 
@@ -283,7 +283,7 @@ def test_a_better_design_is_better_on_a_sweep_of_our_own():
         fx.LeastIndex(workspace()),
         [fx.optimisation.Footprint(), fx.optimisation.Stroke(), fx.optimisation.ConditionNumber(150.0)],
         trials=15,
-        points=512,
+        samples=512,
         verify=2**14,
     )
 
@@ -320,7 +320,7 @@ def test_mean_over_a_path_and_single_joints():
         start,
         variables,
         objective,
-        [fx.optimisation.Stroke(over=path), fx.optimisation.TotalMass()],
+        [fx.optimisation.Stroke(region=path), fx.optimisation.TotalMass()],
         trials=0,
         verify=8192,
     )
@@ -337,7 +337,7 @@ def test_the_finish_holds_up_the_pose_that_the_search_missed():
     """One pose a trial is a poor sweep: the exchange still ends at the design that the dense sweep vouches for."""
     start = fx.load("mukherjee-ii")
     problem = Problem(start, circles(), fx.LeastIndex(workspace()), [fx.optimisation.Stroke()], "universal", 1)
-    coarse = finish(problem, problem.map.from_values({}), points=16)
+    coarse = finish(problem, problem.map.from_values({}), samples=16)
     dense = problem.assess_at(coarse.x, 2**15, seed=9)
     assert coarse.assessment.feasible
     assert dense.index >= 0.999 * coarse.assessment.index
@@ -361,7 +361,7 @@ def test_clearance_angles_and_deflection_are_kept():
             fx.optimisation.Deflection(most=1.2e-5),
         ],
         trials=0,
-        points=512,
+        samples=512,
         verify=4096,
     )
     assert found.verification.holds
@@ -379,10 +379,10 @@ def test_pareto_front_is_one_and_its_designs_are_what_it_says():
         start,
         circles(),
         fx.optimisation.Footprint(),
-        constraints=[fx.optimisation.Stroke(over=workspace())],
+        constraints=[fx.optimisation.Stroke(region=workspace())],
         trials=40,
         refine=3,
-        points=256,
+        samples=256,
     )
     assert len(front.designs) >= 2
     assert (np.diff(front.index) > 0).all()

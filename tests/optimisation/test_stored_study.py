@@ -28,7 +28,7 @@ def slow(*given):
     return whole(*given)
 o._one = slow
 o.optimise(fx.load("mukherjee-ii"), [fx.Variable("home.position[2]", 0.07, 0.1), fx.Variable("platform.mass", 3, 5)],
-    trials=trials, study=file, points=64, verify=128)
+    trials=trials, study=file, samples=64, verify=128)
 """
 
 
@@ -84,7 +84,7 @@ def test_a_killed_search_resumes_and_loses_no_finished_trial(tmp_path):
         [fx.Variable("home.position[2]", 0.07, 0.1), fx.Variable("platform.mass", 3, 5)],
         trials=len(before) + 6,
         study=file,
-        points=64,
+        samples=64,
         verify=128,
     )
     after = finished(file)
@@ -117,7 +117,7 @@ def test_what_a_trial_tries_depends_on_its_number_alone(tmp_path):
     def run(file, stops):
         p = problem()
         for trials in stops:
-            study = Study(p, file, points=16)
+            study = Study(p, file, samples=16)
             study.run(trials, lambda x: ((a := p.assess_at(x, 16)), (a.index,)))
         return [(t.number, *t.x, *t.values) for t in study.finished()]
 
@@ -164,15 +164,17 @@ def test_files_that_are_no_studies_are_refused(tmp_path):
 
 def test_a_search_is_stopped_between_trials():
     p = problem()
-    study = Study(p, points=16)
-    seen = []
+    study = Study(p, samples=16)
+    seen, shares = [], []
     study.run(
         50,
         lambda x: ((a := p.assess_at(x, 16)), (a.index,)),
-        progress=lambda done, wanted, best: seen.append((done, wanted, best)),
+        progress=shares.append,
+        on_trial=lambda done, wanted, best: seen.append((done, wanted, best)),
         stop=lambda: len(seen) >= 5,
     )
     assert [done for done, _, _ in seen] == [0, 1, 2, 3, 4]
+    assert shares == [0.0, 0.02, 0.04, 0.06, 0.08]
     assert np.isnan(seen[0][2])
     assert all(b2 >= b1 for (_, _, b1), (_, _, b2) in pairwise(seen[1:]))
     assert len(study.finished()) == 5

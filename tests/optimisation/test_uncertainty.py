@@ -7,7 +7,7 @@ from tests.helpers.support import apart
 import flexapod as fx
 from flexapod import _core
 from flexapod.design.packing import PLACES
-from flexapod.optimisation.uncertainty import Ensemble
+from flexapod.optimisation.ensemble import Ensemble
 
 
 def rows_of(poses):
@@ -104,7 +104,7 @@ def test_worst_case_is_below_every_sample_and_at_a_corner():
     machine = fx.load("precision-positioner")
     uncertain = [fx.Uncertain("legs.stiffness", 0.1), fx.Uncertain("platform.mass_center_mm[2]", 20, relative=False)]
     box = fx.Workspace.about_home(0.005, np.radians(1))
-    found = fx.robustness(machine, uncertain, box, samples=512, poses=32)
+    found = fx.robustness(machine, uncertain, box, samples=512, pose_samples=32)
     assert found.worst <= found.samples["index"].min()
     assert found.worst_at["legs.stiffness[3]"] == pytest.approx(0.9 * 5e7)
     assert found.worst_at["platform.mass_center_mm[2]"] == pytest.approx(0.11807, rel=1e-6)  # higher is worse
@@ -145,14 +145,14 @@ def test_the_numbers_do_not_depend_on_threads():
 
 
 BAD = {
-    "may stray down to": [fx.Uncertain("legs.stiffness", 1.5)],
+    "may go down to": [fx.Uncertain("legs.stiffness", 1.5)],
     "the spread is -1": [fx.Uncertain("legs.stiffness", -1)],
     "'gauss'": [fx.Uncertain("legs.stiffness", 0.1, "gauss")],
     "is given twice": [fx.Uncertain("platform.mass", 0.1), fx.Uncertain("platform.mass", 0.2)],
     "the least first": [fx.optimisation.Payload((5, 1))],
     "is empty": [],
     "is zero, so a share of it is nothing": [fx.Uncertain("platform.mass_center[0]", 0.1)],
-    "not a number that strays": [fx.Uncertain("home.position[2]", 0.1)],
+    "not an uncertain number": [fx.Uncertain("home.position[2]", 0.1)],
     "every range is one number": [fx.optimisation.Payload((5, 5))],
     "Did you mean": [fx.Uncertain("legs.stifness", 0.1)],
 }

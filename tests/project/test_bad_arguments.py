@@ -44,9 +44,9 @@ def planned(**options):
     return fx.plan_path(machine(), NEAR, FAR, 90.0, **options)
 
 
-def robust(*uncertain, name="motion-base", over=None, **options):
+def robust(*uncertain, name="motion-base", region=None, **options):
     given = [fx.Uncertain("legs.stiffness", 0.1), *uncertain]
-    return fx.robustness(fx.load(name), given, over, **{"samples": 16, **options})
+    return fx.robustness(fx.load(name), given, region, **{"samples": 16, **options})
 
 
 def controlled(**hardware):
@@ -134,24 +134,24 @@ CASES = [
     ),
     (lambda: fx.control.gain_schedule(machine(), PAIR, gains=[1.0, 3.0, 2.0]), A, "give at least 3 ascending gains > 0"),
     # robustness
-    (lambda: robust(samples=1), A, "samples is 1; at least 2 designs must be drawn"),
+    (lambda: robust(samples=1), A, "samples is 1; it must be a whole number, at least 2"),
     (lambda: robust(optimisation.Payload((0, 1), ((0.1, -0.1), 0, 0))), A, r"the payload's x is \(0.1, -0.1\) m"),
     (lambda: robust(fx.Uncertain("platform.mass", 3.0, "lognormal")), A, "of the logarithm; it must be at most 2"),
-    (lambda: fx.robustness(machine(home=None), fx.Uncertain("legs.stiffness", 0.1)), A, "names no home pose. Give"),
+    (lambda: fx.robustness(machine(home=None), fx.Uncertain("legs.stiffness", 0.1)), fx.PoseError, "names no home pose. Give"),
     (
         lambda: fx.robustness(coincident()[0], fx.Uncertain("legs.stiffness", 0.1), coincident()[1]),
         A,
         "the index of 'mukherjee-i' itself is zero at these poses",
     ),
     # optimal design
-    (lambda: optimised(MASS, trials=-1), A, "trials is -1; it must be a whole number, 0 or more"),
-    (lambda: optimised(MASS, trials=2, sampler="grid"), A, "sampler is 'grid'; it must be one of tpe, sobol"),
+    (lambda: optimised(MASS, trials=-1), A, "trials is -1; it must be a whole number, at least 0"),
+    (lambda: optimised(MASS, trials=2, sampler="grid"), A, "sampler is 'grid'; it must be one of 'tpe', 'sobol'"),
     (lambda: optimised(MASS, constraints=["mass"]), A, "constraints holds 'mass', which is no constraint"),
     (lambda: optimised(MASS, start={"mass": 25}), A, "start names 'mass', which is no variable. There are: platform.m"),
     (lambda: optimised(), A, "variables is empty; give at least one Variable or JointCircle"),
     (lambda: optimised("platform.mass"), A, "variables holds 'platform.mass'"),
     (lambda: optimised(fx.Variable("home.orientation_deg[2]", -10, 4e4)), A, "may go up to .* Lower its upper bound"),
-    (lambda: optimised(fx.Variable("platform.mass", 1, 2, "replace")), A, "kind is 'replace'; it must be 'set', 'add'"),
+    (lambda: optimised(fx.Variable("platform.mass", 1, 2, "replace")), A, "kind is 'replace'; it must be one of 'set', 'add'"),
     (lambda: optimised(fx.Variable({}, 1, 2)), A, "ties nothing; give one key or more, with factors that are not 0"),
     (lambda: optimised(fx.Variable({"platform.mass": 0.0}, 1, 2)), A, "with factors that are not 0"),
     (lambda: optimised(fx.Variable("platform.mass", 1, np.inf)), A, "has the bounds 1.0 and inf; both must be finite"),
@@ -163,13 +163,13 @@ CASES = [
         A,
         "two variables are named 'platform.mass'",
     ),
-    (lambda: optimised(optimisation.JointCircle("top", radius=(0.1, 0.2))), A, "on 'top'; it must be on 'base' or 'platform'"),
+    (lambda: optimised(optimisation.JointCircle("top", radius=(0.1, 0.2))), A, "plate of a joint circle is 'top'; it must be one of 'base', 'platform'"),
     (lambda: optimised(optimisation.JointCircle("base", radius=(0.0, 0.2))), A, "base.radius may go down to 0 m; it must be > 0"),
     (lambda: optimised(optimisation.JointCircle("base", radius=(0.1, 0.2, 0.3))), A, "give a number, or a pair .least, most."),
     (lambda: optimised(optimisation.JointCircle("base", radius=(0.1, 0.2), axes="free")), A, "axes of a joint circle is 'free'"),
     (lambda: optimised(MASS, constraints=[optimisation.TotalMass(-1.0)]), A, "total mass: the bound is -1.0 kg"),
-    (lambda: optimised(MASS, constraints=[optimisation.Footprint(plate="bas")]), A, "the plate is 'bas'; it must be 'base'"),
-    (lambda: optimised(MASS, constraints=[optimisation.Deflection(force=0.0)]), A, "the force is 0.0 N; it must be > 0"),
+    (lambda: optimised(MASS, constraints=[optimisation.Footprint(plate="bas")]), A, "the plate is 'bas'; it must be one of 'base'"),
+    (lambda: optimised(MASS, constraints=[optimisation.Deflection(force=0.0)]), A, "the force is 0.0 N; it must be finite and > 0"),
     (
         lambda: fx.optimise(machine("precision-positioner", gravity=[0, 0, 0]), [MASS], constraints=[optimisation.Deflection()]),
         A,

@@ -15,7 +15,6 @@ import flexapod as fx
 #: Packages whose docstrings have still to be rewritten.
 PENDING = {
     "workspace",
-    "optimisation",
 }
 PENDING |= {"plots"}
 

@@ -130,6 +130,7 @@ PROVOKED = {
     ("open_zeros", "ArgumentError"): lambda: fx.control.open_zeros(fx.linearise(MACHINE, HOME), "speed"),
     ("open_sweep", "OutputError"): lambda: fx.open_sweep("no-such-store.zarr"),
     ("optimise", "ArgumentError"): lambda: fx.optimise(MACHINE, [fx.Variable("legs.stiffness", 2.0, 1.0)]),
+    ("optimise", "DesignError"): lambda: fx.optimise("motion-base", [fx.Variable("platform.mass", 20, 40)]),
     ("optimise", "OutputError"): lambda: fx.optimise(MACHINE, [fx.Variable("platform.mass", 20, 40)], study=__file__),
     ("optimise", "InfeasibleError"): lambda: fx.optimise(
         MACHINE,
@@ -140,11 +141,14 @@ PROVOKED = {
         trials=0,
     ),
     ("pareto_front", "ArgumentError"): lambda: fx.pareto_front(MACHINE, [fx.Variable("platform.mass", 20, 40)], None),
+    ("pareto_front", "DesignError"): lambda: fx.pareto_front(
+        "motion-base", [fx.Variable("platform.mass", 20, 40)], fx.optimisation.TotalMass()
+    ),
     ("pareto_front", "OutputError"): lambda: fx.pareto_front(
         MACHINE, [fx.Variable("platform.mass", 20, 40)], fx.optimisation.TotalMass(), study=__file__
     ),
     ("pareto_front", "InfeasibleError"): lambda: fx.pareto_front(
-        MACHINE, [fx.Variable("platform.mass", 20, 40)], fx.optimisation.TotalMass(1.0), trials=2, points=8
+        MACHINE, [fx.Variable("platform.mass", 20, 40)], fx.optimisation.TotalMass(1.0), trials=2, samples=8
     ),
     ("path_index", "ArgumentError"): lambda: fx.path_index(MACHINE, LINE, bound=-1.0),
     ("path_index", "PoseError"): lambda: fx.path_index(
@@ -174,6 +178,7 @@ PROVOKED = {
     ("read_joints", "DesignError"): lambda: fx.design.read_joints("no-such-file.csv"),
     ("read_time_series", "ArgumentError"): lambda: fx.read_time_series("no-such-file.csv"),
     ("robustness", "ArgumentError"): lambda: fx.robustness(MACHINE, [fx.Uncertain("legs.stiffness", 2.0)]),
+    ("robustness", "DesignError"): lambda: fx.robustness("motion-base", fx.Uncertain("legs.stiffness", 0.1)),
     ("robustness", "PoseError"): lambda: fx.robustness(MACHINE, [fx.Uncertain("legs.stiffness", 0.1)], "everywhere"),
     ("root_locus", "ArgumentError"): lambda: fx.control.root_locus(MACHINE, HOME, gains=[-1.0, 1.0]),
     ("sampling_time", "DesignError"): lambda: fx.control.sampling_time("precision-positioner", HOME),

@@ -1,4 +1,4 @@
-"""What constraints can bound: each kind of quantity from a sweep, where it is extreme, and its exact derivatives."""
+"""Quantities that constraints bound: their values in a sweep, the poses where they are extreme, their derivatives."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from flexapod.conventions import Array
 from flexapod.design.layout import PLACES
-from flexapod.optimisation.derivatives import Slopes, soft_least, soft_most
+from flexapod.optimisation.derivatives import DesignDerivatives, soft_least, soft_most
 
 Found = Mapping[str, Any]
 Side = Literal["least", "most"]
@@ -20,38 +20,65 @@ _HELD = 3  # poses held for each leg and side
 
 
 class Values(NamedTuple):
-    """Values (k,), their derivatives (k, n), and which column of the kind (leg, joint) each belongs to."""
+    """Values of a quantity at some poses, with derivatives by the n variables of a search.
+
+    Attributes
+    ----------
+    value : ndarray, shape (k,)
+        The values.
+    slope : ndarray, shape (k, n)
+        Their derivatives.
+    column : ndarray of int, shape (k,)
+        Which column of the quantity (leg or joint) each belongs to.
+    """
 
     value: Array
     slope: Array
     column: Array
 
 
-class Kind:
-    """A quantity with one column or one for each leg. log: compared by ratio, for what spans decades."""
+class ConstraintQuantity:
+    """A quantity that a constraint can bound, with one column or one for each leg: an extension point.
+
+    A subclass writes `columns`, from the quantities of a sweep, and `derivatives`. `measure` and `worst_poses` suit
+    quantities of which the constraint bounds the extreme value over the poses.
+
+    Attributes
+    ----------
+    quantities : tuple of str
+        Names of the quantities of `flexapod.sweep` that `columns` needs.
+    unit : str
+        SI unit.
+    log : bool
+        Whether values are compared by ratio, for quantities that span decades.
+    """
 
     quantities: tuple[str, ...] = ()
     unit = ""
     log = False
 
+    def columns(self, found: Found, numbers: Array) -> Array:
+        """Return the values (poses, w), from a sweep and the numbers of the design."""
+        raise NotImplementedError
+
+    def derivatives(self, at: DesignDerivatives) -> Values:
+        """Return the values at the poses of `at`, with derivatives."""
+        raise NotImplementedError
+
     def measure(self, found: Found, numbers: Array, side: Side) -> Array:
-        """(w,) the extreme value of each column over the poses swept."""
+        """Return the extreme value (w,) of each column over the poses of a sweep."""
         columns = self.columns(found, numbers)
         return columns.max(axis=0) if side == "most" else columns.min(axis=0)
 
-    def held(self, found: Found, numbers: Array, side: Side) -> Array:
-        """Numbers of the poses where the columns are extreme."""
+    def worst_poses(self, found: Found, numbers: Array, side: Side) -> Array:
+        """Return the numbers of the poses where the columns are extreme."""
         columns = self.columns(found, numbers)
         order = np.argsort(-columns if side == "most" else columns, axis=0)
         return np.unique(order[:_HELD])
 
-    def columns(self, found: Found, numbers: Array) -> Array:
-        """(poses, w)"""
-        raise NotImplementedError
-
-    def slopes(self, at: Slopes) -> Values:
-        """At the poses held."""
-        raise NotImplementedError
+    def describe(self) -> str:
+        """Return the quantity as text: equal for equal quantities."""
+        return repr(self) if self.__dict__ else type(self).__name__
 
 
 def _flat(value: Array, slope: Array) -> Values:
@@ -59,19 +86,21 @@ def _flat(value: Array, slope: Array) -> Values:
     return Values(value.ravel(), slope.reshape(k * w, -1), np.tile(np.arange(w), k))
 
 
-class LegLengths(Kind):
+class LegLengths(ConstraintQuantity):
+    """Lengths of the six legs."""
+
     quantities = ("leg_length",)
     unit = "m"
 
     def columns(self, found: Found, numbers: Array) -> Array:
         return found["leg_length"]
 
-    def slopes(self, at: Slopes) -> Values:
+    def derivatives(self, at: DesignDerivatives) -> Values:
         return _flat(*at.leg_length)
 
 
-class LegStroke(Kind):
-    """Longest less shortest length of each leg."""
+class LegStroke(ConstraintQuantity):
+    """Difference of the longest and the shortest length of each leg."""
 
     quantities = ("leg_length",)
     unit = "m"
@@ -79,13 +108,13 @@ class LegStroke(Kind):
     def measure(self, found: Found, numbers: Array, side: Side) -> Array:
         return np.ptp(found["leg_length"], axis=0)
 
-    def held(self, found: Found, numbers: Array, side: Side) -> Array:
+    def worst_poses(self, found: Found, numbers: Array, side: Side) -> Array:
         """For each leg in turn its shortest and its longest poses."""
         order = np.argsort(found["leg_length"], axis=0)
         few = min(_HELD, len(order))
         return np.concatenate([order[:few], order[-few:]]).T.ravel()
 
-    def slopes(self, at: Slopes) -> Values:
+    def derivatives(self, at: DesignDerivatives) -> Values:
         length, slope = at.leg_length
         poses = len(length) // 6
         few = poses // 2
@@ -99,7 +128,9 @@ class LegStroke(Kind):
 
 
 @dataclass(frozen=True)
-class JointAngles(Kind):
+class JointAngles(ConstraintQuantity):
+    """Angles by which the joints of one kind turn from where they are at home."""
+
     joint: Literal["universal", "spherical"]
     unit = "rad"
 
@@ -110,26 +141,28 @@ class JointAngles(Kind):
     def columns(self, found: Found, numbers: Array) -> Array:
         return found[f"{self.joint}_angle"]
 
-    def slopes(self, at: Slopes) -> Values:
+    def derivatives(self, at: DesignDerivatives) -> Values:
         mine = slice(0, 6) if self.joint == "universal" else slice(6, 12)
         cosine, slope = (part[:, mine] for part in at.joint_cosine)
         sine = np.sqrt(np.maximum(1 - cosine**2, 1e-12))  # a joint that is hardly bent bounds nothing
         return _flat(np.arccos(np.clip(cosine, -1, 1)), -slope / sine[..., None])
 
 
-class LegDistance(Kind):
+class LegDistance(ConstraintQuantity):
+    """Smallest distance of the axes of two legs."""
+
     quantities = ("leg_distance",)
     unit = "m"
 
     def columns(self, found: Found, numbers: Array) -> Array:
         return found["leg_distance"][:, None]
 
-    def slopes(self, at: Slopes) -> Values:
+    def derivatives(self, at: DesignDerivatives) -> Values:
         return _flat(*at.leg_distance)
 
 
-class Conditioning(Kind):
-    """cond(H), in metres."""
+class Conditioning(ConstraintQuantity):
+    """Condition number of the force transformation, with lengths in m."""
 
     quantities = ("cond_H",)
     log = True
@@ -137,7 +170,7 @@ class Conditioning(Kind):
     def columns(self, found: Found, numbers: Array) -> Array:
         return found["cond_H"][:, None]
 
-    def slopes(self, at: Slopes) -> Values:
+    def derivatives(self, at: DesignDerivatives) -> Values:
         H, dH = at.H
         U, sigma, Vt = np.linalg.svd(H)
         slope = np.einsum("krs,krcn,ksc->ksn", U, dH, Vt)
@@ -149,10 +182,10 @@ class Conditioning(Kind):
 
 
 @dataclass(frozen=True)
-class Sag(Kind):
-    """How far a force (N) at the reference point moves it in the direction where the legs give way most.
+class StaticDeflection(ConstraintQuantity):
+    """Displacement of the reference point under a force (N) in the direction in which the legs are softest.
 
-    force None: the platform's own weight.
+    A force of None is the platform's own weight.
     """
 
     force: float | None = None
@@ -168,7 +201,7 @@ class Sag(Kind):
             return self.force
         return float(numbers[PLACES["platform.mass"]] * np.linalg.norm(numbers[PLACES["gravity"]]))
 
-    def slopes(self, at: Slopes) -> Values:
+    def derivatives(self, at: DesignDerivatives) -> Values:
         K, dK = at.stiffness
         block = np.linalg.inv(K)[:, :3]
         dC = -np.einsum("kar,krsn,ksb->kabn", block, dK, block.swapaxes(1, 2))
@@ -186,28 +219,30 @@ class Sag(Kind):
         return _flat(value[:, None], (value[:, None] * (by + by_force))[:, None])
 
 
-class Whole(Kind):
-    """A property of the design that does not depend on where it stands."""
+class DesignProperty(ConstraintQuantity):
+    """A property of the design that does not depend on the pose."""
 
     def measure(self, found: Found, numbers: Array, side: Side) -> Array:
         return self.columns(found, numbers).max(axis=0)
 
 
-class Mass(Whole):
+class Mass(DesignProperty):
+    """Mass of the platform and all legs."""
+
     unit = "kg"
     _parts = np.concatenate([PLACES[k].ravel() for k in ("platform.mass", "legs.lower.mass", "legs.upper.mass")])
 
     def columns(self, found: Found, numbers: Array) -> Array:
         return numbers[self._parts].sum().reshape(1, 1)
 
-    def slopes(self, at: Slopes) -> Values:
+    def derivatives(self, at: DesignDerivatives) -> Values:
         value = self.columns({}, at.numbers)[0]
         return Values(value, at.jacobian[self._parts].sum(axis=0)[None], np.zeros(1, dtype=np.int64))
 
 
 @dataclass(frozen=True)
-class Radius(Whole):
-    """Distance of the farthest joint of a plate from a line along z through (x, y) of its frame."""
+class Radius(DesignProperty):
+    """Distance of the joints of a plate from a line along z through (x, y) of its frame."""
 
     plate: Literal["base", "platform"]
     x: float
@@ -221,7 +256,7 @@ class Radius(Whole):
     def measure(self, found: Found, numbers: Array, side: Side) -> Array:
         return self.columns(found, numbers).max(axis=1)
 
-    def slopes(self, at: Slopes) -> Values:
+    def derivatives(self, at: DesignDerivatives) -> Values:
         place = PLACES[f"{self.plate}.joints"]
         dx, dy = at.numbers[place[:, 0]] - self.x, at.numbers[place[:, 1]] - self.y
         radius = np.maximum(np.hypot(dx, dy), 1e-300)

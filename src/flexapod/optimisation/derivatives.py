@@ -1,4 +1,4 @@
-"""What a design does at some poses, with derivatives by the variables of a search; smooth stand-ins for extremes."""
+"""Quantities of a design at some poses with their derivatives by the variables, and smooth extremes of them."""
 
 from __future__ import annotations
 
@@ -15,16 +15,29 @@ from flexapod.workspace.worst import twist_of_coordinates
 _NO_HOME = np.zeros((0, _core.motion_size)), np.zeros((0, 6))
 
 
-class Slopes:
-    """A design, its numbers (m,) and their derivatives (m, n), at poses (k, 6) that move with home or do not.
+class DesignDerivatives:
+    """Quantities of a design at k poses, each with its derivatives by the n variables of a search.
 
-    Everything is computed when it is first asked for: value (k, ...) and derivative (k, ..., n).
+    Every quantity is computed when it is first asked for, and is a pair of value (k, ...) and derivatives (k, ..., n).
+
+    Parameters
+    ----------
+    numbers : ndarray, shape (m,)
+        The numbers of the design, in the order of `flexapod.design.layout`.
+    derivatives : ndarray, shape (m, n)
+        Their derivatives by the variables.
+    rows : ndarray, shape (k, 6)
+        The poses: x, y, z in m, roll, pitch, yaw in rad.
+    from_home : bool
+        Whether the poses move with the home pose of the design.
+    joint : _core.Joint
+        Model of the joints between base and legs.
     """
 
-    def __init__(self, numbers: Array, jacobian: Array, rows: Array, from_home: bool, joint: _core.Joint) -> None:
+    def __init__(self, numbers: Array, derivatives: Array, rows: Array, from_home: bool, joint: _core.Joint) -> None:
         self.numbers, self.jacobian, self.rows, self.from_home, self.joint = (
             numbers,
-            jacobian,
+            derivatives,
             rows,
             from_home,
             joint,
@@ -37,6 +50,7 @@ class Slopes:
 
     @cached_property
     def H(self) -> tuple[Array, Array]:
+        """Force transformation (k, 6, 6) and its derivatives (k, 6, 6, n)."""
         return _matrices(*self._directions.force_transformation())
 
     @cached_property
@@ -46,16 +60,17 @@ class Slopes:
 
     @property
     def leg_length(self) -> tuple[Array, Array]:
+        """Of the legs, (k, 6) m and (k, 6, n)."""
         return self._legs[0]
 
     @property
     def leg_distance(self) -> tuple[Array, Array]:
-        """Of every pair of legs, (k, 15): each is smooth, where the least of them is not."""
+        """Of every pair of legs, (k, 15) m and (k, 15, n): each is smooth, where the least of them is not."""
         return self._legs[1]
 
     @property
     def joint_cosine(self) -> tuple[Array, Array]:
-        """(k, 12): universal joints, spherical joints."""
+        """Cosines of the angles of universal, then of spherical joints, (k, 12) and (k, 12, n)."""
         return self._legs[2]
 
     @cached_property
@@ -112,7 +127,7 @@ def soft_most(values: Array, slopes: Array, sharpness: float) -> tuple[Array, Ar
     return -logarithm, -slope
 
 
-def index_slopes(at: Slopes, sharpness: float) -> tuple[Array, Array]:
+def index_derivatives(at: DesignDerivatives, sharpness: float) -> tuple[Array, Array]:
     """Logarithm of the smooth least frequency at each pose, (k,) and (k, n)."""
     omega, rayleigh = at.omega
     safe = np.maximum(omega, 1e-9 * omega[:, -1:])

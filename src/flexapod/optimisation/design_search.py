@@ -1,4 +1,4 @@
-"""`optimise`: search for the design with the highest index, finish it by gradients, and verify it on a denser sweep."""
+"""Search for the design with the highest objective: trials, a local search by gradients, and a verification."""
 
 from __future__ import annotations
 
@@ -6,18 +6,20 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from flexapod.checks import one_of, whole
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, InfeasibleError
-from flexapod.optimisation.constraints import Constraint
-from flexapod.optimisation.global_search import Progress, Stop, Study, Trial
+from flexapod.optimisation.design_results import Check, OptimalDesign, Verification
+from flexapod.optimisation.global_search import OnTrial, Progress, Stop, Study, Trial
 from flexapod.optimisation.local_search import finish
 from flexapod.optimisation.objectives import LeastIndex, MeanIndex, Objective
 from flexapod.optimisation.problem import Assessment, Problem
+from flexapod.optimisation.requirements import Constraint
 from flexapod.optimisation.variables import JointCircle, Variable
 from flexapod.pose import Pose
 from flexapod.workspace.worst import worst_pose
@@ -31,67 +33,13 @@ _SEED = 77_003  # added for the verifying sweep: it uses none of the poses that 
 
 
 @dataclass(frozen=True)
-class Check:
-    """One constraint of a design: its extreme value and bound (SI), and the relative margin (>= 0 where kept)."""
+class Settings:
+    """How a search is made: see `optimise` and `pareto_front`."""
 
-    name: str
-    unit: str
-    side: str
-    value: float
-    bound: float
-    margin: float
-    kept: bool
-
-
-@dataclass(frozen=True)
-class Verification:
-    """A sweep of `points` poses of every workspace that the search has not seen, and descents from the worst.
-
-    index: rad/s, the least found; pose: where (six numbers; None for a mean). checks: every constraint there.
-    """
-
-    points: int
-    index: float
-    pose: Array | None
-    checks: tuple[Check, ...]
-
-    @property
-    def holds(self) -> bool:
-        return all(check.kept for check in self.checks)
-
-
-@dataclass(frozen=True, eq=False)
-class OptimalDesign:
-    """What `optimise` found.
-
-    hexapod: the design; variables: its values by name, in their keys' units; at_bounds: those on a bound. index: rad/s,
-    as verified (for Dexterity: 1/cond(H)); start: the design one began with; start_index: its index, verified alike.
-    searched_index: best of the trials, before the gradient (NaN without trials). coincident: frequencies within 0.1 %
-    of the lowest at the worst pose: where more than one, the optimum lies where modes meet. verification, start_checks:
-    every constraint with its value, bound and margin. history: Dataset of the finished trials. evaluations: of designs.
-    seconds: of the search, s.
-
-    Source: conclusion 1.
-    """
-
-    hexapod: Hexapod
-    variables: dict[str, float]
-    at_bounds: tuple[str, ...]
-    index: float
-    start: Hexapod
-    start_index: float
-    searched_index: float
-    coincident: int
-    verification: Verification
-    start_checks: tuple[Check, ...]
-    history: xr.Dataset
-    evaluations: int
-    seconds: float
-
-    @property
-    def gain(self) -> float:
-        """index / start_index - 1; infinite for a start of index zero."""
-        return self.index / self.start_index - 1 if self.start_index > 0 else float("inf")
+    samples: int
+    seed: int
+    stop: Stop | None
+    verify: int = 0
 
 
 def optimise(
@@ -103,32 +51,107 @@ def optimise(
     trials: int = 200,
     start: Mapping[str, float] | None = None,
     study: str | Path | None = None,
-    **options: Any,
+    sampler: Literal["tpe", "sobol"] = "tpe",
+    joint: JointModel = "universal",
+    samples: int = 2**12,
+    verify: int = 2**17,
+    seed: int = 0,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    on_trial: OnTrial | None = None,
+    stop: Stop | None = None,
 ) -> OptimalDesign:
-    """The design with the highest objective (rad/s), within bounds and constraints.
+    """Search for the design with the highest objective within bounds and constraints.
 
-    variables: `Variable` and `JointCircle`. objective: `LeastIndex` at a pose (default: home) or over a workspace,
-    `MeanIndex` over a path, or, for comparison, `Dexterity`. constraints: such as `Footprint` or `Stroke`. trials: of
-    the global search (0: gradients from the start only). start: values by name, in the keys' units; default: the
-    design's own. study: an SQLite file; the search goes on from what is in it, and other processes may work on it at
-    once. Options: joint, seed=0, sampler="tpe" or "sobol", points=4096 poses a trial, verify=131072 poses of the last
-    sweep, threads, progress, stop.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The design to start from.
+    variables : sequence of Variable and JointCircle
+        What may change.
+    objective : Objective, optional
+        What is raised: `LeastIndex` over a region, `MeanIndex` over poses, or, for comparison, `Dexterity`. The index
+        at the home pose by default.
+    constraints : sequence of Constraint, optional
+        What has to be kept, such as `Footprint` or `Stroke`.
+    trials : int, optional
+        Number of trials of the global search. With 0, only the local search from the start is made.
+    start : mapping of str to float, optional
+        Values of variables by name, in the units of their keys, to start from. The design's own by default.
+    study : str or path-like, optional
+        An SQLite file that keeps the trials. The search goes on from what is in it, and several processes may work on
+        it at once.
+    sampler : {"tpe", "sobol"}, optional
+        How trials are chosen: by tree-structured Parzen estimators, or as a Sobol sequence.
+    joint : {"universal", "spin_free"}, optional
+        Model of the joints between base and legs.
+    samples : int, optional
+        Number of poses of a region that a trial looks at.
+    verify : int, optional
+        Number of poses of the verification, at least twice `samples`.
+    seed : int, optional
+        Seed of the search.
+    threads : int, optional
+        Number of threads. All cores by default.
+    progress : callable, optional
+        Called with the share of the trials done, from 0 to 1.
+    on_trial : callable, optional
+        Called before each trial with the number of trials finished, the number wanted and the best objective so far
+        (NaN without one).
+    stop : callable, optional
+        Called between trials; the search ends early when it returns True.
 
-    Raises: ArgumentError for contradictory bounds; InfeasibleError for a given start that breaks a constraint and where
-    no design that keeps them all was found; OutputError for a study file of another design or problem.
-    Source: conclusion 1; J. Bergstra and others (2011) for the trials, D. Kraft (1988) for the gradients.
+    Returns
+    -------
+    OptimalDesign
+        The design, verified on poses that the search has not seen.
+
+    Raises
+    ------
+    ArgumentError
+        If bounds contradict each other, or another argument is invalid.
+    DesignError
+        If `hexapod` is not a Hexapod.
+    InfeasibleError
+        If a given start breaks a constraint, or no design that keeps them all was found.
+    OutputError
+        If the study file belongs to another design or problem, or cannot be used.
+
+    Notes
+    -----
+    The global search follows Bergstra and others [1]_. The best trials are then improved by sequential quadratic
+    programming [2]_ with exact derivatives; the smallest index over a region is a semi-infinite constraint, solved by
+    exchange of the poses that matter.
+
+    References
+    ----------
+    .. [1] J. Bergstra, R. Bardenet, Y. Bengio and B. Kegl, Algorithms for hyper-parameter optimization, NIPS (2011).
+    .. [2] D. Kraft, A software package for sequential quadratic programming, DFVLR-FB 88-28 (1988).
+
+    Examples
+    --------
+    >>> hexapod = fx.load("precision-positioner")
+    >>> found = fx.optimise(hexapod, fx.Variable("platform.mass", 20, 40), trials=0)
+    >>> found.at_bounds, found.index > found.start_index
+    (('platform.mass',), True)
     """
     began = perf_counter()
-    settings = Settings(**options)
+    whole(trials, "trials", 0)
+    one_of(sampler, "sampler", ("tpe", "sobol"))
+    whole(samples, "samples")
+    if whole(verify, "verify") < 2 * samples:
+        raise ArgumentError(
+            f"verify is {verify}; it must be at least {2 * samples}: twice the poses of a trial, so that it can tell "
+            "more."
+        )
     aim = LeastIndex() if objective is None else objective
-    problem = Problem(hexapod, variables, aim, constraints, settings.joint, settings.threads)
-    if isinstance(trials, bool) or not isinstance(trials, int) or trials < 0:
-        raise ArgumentError(f"trials is {trials!r}; it must be a whole number, 0 or more.")
+    problem = Problem(hexapod, variables, aim, constraints, joint, threads)
+    settings = Settings(samples, whole(seed, "seed", 0), stop, verify)
     begin = _start(problem, start, settings)
     found: list[Trial] = []
     if trials:
-        search = Study(problem, study, seed=settings.seed, sampler=settings.sampler, points=settings.points)
-        search.run(trials, lambda x: _one(problem, x, settings), settings.progress, settings.stop)
+        search = Study(problem, study, seed=seed, sampler=sampler, samples=samples)
+        search.run(trials, lambda x: _one(problem, x, settings), progress, on_trial, stop)
         found = search.finished()
     best_x, best, evaluations = _finish_best(problem, begin, found, settings)
     if not best.feasible:
@@ -162,32 +185,11 @@ def _told(
     )
 
 
-@dataclass(frozen=True)
-class Settings:
-    """How a search is made; see `optimise`."""
-
-    joint: JointModel = "universal"
-    seed: int = 0
-    sampler: str = "tpe"
-    points: int = 2**12
-    verify: int = 2**17
-    threads: int | None = None
-    progress: Progress | None = None
-    stop: Stop | None = None
-
-    def __post_init__(self) -> None:
-        for name, least in (("points", 1), ("verify", 2 * self.points)):
-            value = getattr(self, name)
-            if isinstance(value, bool) or not isinstance(value, int) or value < least:
-                reason = "" if name == "points" else ": twice the poses of a trial, so that it can tell more"
-                raise ArgumentError(f"{name} is {value!r}; it must be a whole number, at least {least}{reason}.")
-
-
 def _start(problem: Problem, start: Mapping[str, float] | None, settings: Settings) -> Array:
     """The variables to begin with. A start that was given must keep the constraints."""
     x = problem.map.from_values(start or {})
     if start is not None:
-        found = problem.assess_at(x, settings.points, settings.seed)
+        found = problem.assess_at(x, settings.samples, settings.seed)
         if not found.feasible:
             raise InfeasibleError(
                 f"the start breaks: {problem.violations(found)}. Give another start, or none, or loosen the bound."
@@ -196,7 +198,7 @@ def _start(problem: Problem, start: Mapping[str, float] | None, settings: Settin
 
 
 def _one(problem: Problem, x: Array, settings: Settings) -> tuple[Assessment, tuple[float, ...]]:
-    found = problem.assess_at(x, settings.points, settings.seed)
+    found = problem.assess_at(x, settings.samples, settings.seed)
     return found, (found.index,)
 
 
@@ -210,12 +212,12 @@ def _finish_best(
         starts.append(begin)
     best_x, best, evaluations = begin, None, 0
     for x in starts:
-        ended = finish(problem, x, settings.points, settings.seed, settings.stop)
+        ended = finish(problem, x, settings.samples, settings.seed, settings.stop)
         evaluations += ended.evaluations
         if ended.assessment.better_than(best):
             best_x, best = ended.x, ended.assessment
     assert best is not None
-    for dense in (4 * settings.points, settings.verify):
+    for dense in (4 * settings.samples, settings.verify):
         seen = problem.assess_at(best_x, dense, settings.seed + _SEED)
         if seen.feasible and seen.index >= (1 - _AGREE) * best.index:
             continue
@@ -237,18 +239,18 @@ def _apart(problem: Problem, order: Sequence[Trial]) -> list[Trial]:
     return kept
 
 
-def verify(problem: Problem, hexapod: Hexapod, points: int) -> Verification:
+def verify(problem: Problem, hexapod: Hexapod, samples: int) -> Verification:
     """Sweeps every workspace of a problem at poses that no search has seen, and descends from the worst."""
-    found = problem.assess(hexapod, points, _SEED + 1)
+    found = problem.assess(hexapod, samples, _SEED + 1)
     index, pose = found.index, None
     box = problem.box(hexapod)
     if box is not None and index > 0:
-        worst = worst_pose(hexapod, box, joint=problem.joint, samples=points, seed=_SEED + 2, threads=problem.threads)
+        worst = worst_pose(hexapod, box, joint=problem.joint, samples=samples, seed=_SEED + 2, threads=problem.threads)
         index, pose = min(index, worst.omega_1), worst.pose
     elif not isinstance(problem.objective, MeanIndex):
-        rows, swept = problem.sweep(hexapod, 0, points, 0)
-        pose = rows[problem.objective.held(np.nan_to_num(swept[problem.objective.quantity]))[0]]
-    return Verification(points, index, pose, _checks(problem, found))
+        rows, swept = problem.sweep(hexapod, 0, samples, 0)
+        pose = rows[problem.objective.worst_poses(np.nan_to_num(swept[problem.objective.quantity]))[0]]
+    return Verification(samples, index, pose, _checks(problem, found))
 
 
 def _checks(problem: Problem, found: Assessment) -> tuple[Check, ...]:
@@ -256,7 +258,7 @@ def _checks(problem: Problem, found: Assessment) -> tuple[Check, ...]:
     for r, value, margin in zip(problem.requirements, found.values, found.margins, strict=True):
         bound = float(r.bound.min() if r.side == "most" else r.bound.max())
         kept = bool(margin >= -10 * 1e-6)  # ten times what the search allows itself: it is another sweep
-        checks.append(Check(r.name, r.kind.unit, r.side, float(value), bound, float(margin), kept))
+        checks.append(Check(r.name, r.quantity.unit, r.side, float(value), bound, float(margin), kept))
     return tuple(checks)
 
 

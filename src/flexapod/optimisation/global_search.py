@@ -13,19 +13,19 @@ import sqlite3
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from flexapod.conventions import Array
-from flexapod.errors import ArgumentError, OutputError
+from flexapod.errors import OutputError
 from flexapod.optimisation.problem import Assessment, Problem
 from flexapod.optional import needed
 from flexapod.workspace.sobol import Sobol
 
-Progress = Callable[[int, int, float], None]  # trials finished, trials wanted, best index so far (NaN for none)
+Progress = Callable[[float], object]  # share of the trials done
+OnTrial = Callable[[int, int, float], object]  # trials finished, trials wanted, best objective so far (NaN for none)
 Stop = Callable[[], bool]
-SAMPLERS = ("tpe", "sobol", "nsga2")
 
 
 @dataclass(frozen=True)
@@ -50,15 +50,13 @@ class Study:
         aim: str = "index",
         directions: tuple[str, ...] = ("maximize",),
         seed: int = 0,
-        sampler: str = "tpe",
-        points: int = 2**12,
+        sampler: Literal["tpe", "sobol", "nsga2"] = "tpe",
+        samples: int = 2**12,
     ) -> None:
         optuna = _optuna()
-        if sampler not in SAMPLERS:
-            raise ArgumentError(f"sampler is {sampler!r}; it must be one of {', '.join(SAMPLERS)}.")
-        self.problem, self.seed, self.points = problem, seed, points
+        self.problem, self.seed, self.samples = problem, seed, samples
         self.file = None if file is None else Path(file)
-        self._told = {**problem.describe(), "searched for": aim, "poses per trial": points, "seed": seed}
+        self._told = {**problem.describe(), "searched for": aim, "poses per trial": samples, "seed": seed}
         storage = _storage(self.file)
         self._name = f"flexapod {problem.hexapod.name} {_digest(self._told)}"
         if self.file is not None:
@@ -92,9 +90,11 @@ class Study:
             )
 
     def _give_up_dead(self, optuna: Any) -> None:
-        """Trials of processes of this machine that are no more are closed; they will be made up for.
+        """Closes the trials of processes of this computer that have ended; they will be made up for.
 
-        A trial that was killed before it had its worker's name is closed where no other worker is left."""
+        A trial that was killed before it had its worker's name is closed if no other worker is left. Optuna's heartbeat
+        would not see such a trial, and finds the others only after a while.
+        """
         names = [name.partition(" ")[2] for name in self._study.user_attrs if name.startswith("worker ")]
         alone = not any(_at_work(name) for name in names if name != self._worker)
         for trial in self._study.get_trials(deepcopy=False, states=(optuna.trial.TrialState.RUNNING,)):
@@ -107,6 +107,7 @@ class Study:
         trials: int,
         evaluate: Callable[[Array], tuple[Assessment, tuple[float, ...]]],
         progress: Progress | None = None,
+        on_trial: OnTrial | None = None,
         stop: Stop | None = None,
     ) -> None:
         """Goes on until `trials` are finished, by all processes together."""
@@ -114,8 +115,9 @@ class Study:
         while not (stop is not None and stop()):
             done = self.finished()
             if progress is not None:
-                best = max((t.values[0] for t in done if t.feasible), default=float("nan"))
-                progress(len(done), trials, best)
+                progress(min(1.0, len(done) / trials))
+            if on_trial is not None:
+                on_trial(len(done), trials, max((t.values[0] for t in done if t.feasible), default=float("nan")))
             if len(done) >= trials or self._enough_under_way(optuna, len(done), trials):
                 return
             trial = self._study.ask()
@@ -191,27 +193,16 @@ def _storage(file: Path | None) -> Any:
     try:
         with sqlite3.connect(file, timeout=60) as connection:
             connection.execute("PRAGMA journal_mode=WAL")  # a reader does not hold a writer up
-        # The first process to open a file makes its tables; the others wait for it.
-        with _locked(file):
+        lock = optuna.storages.journal.JournalFileOpenLock(str(file))
+        lock.acquire()  # the first process to open a file makes its tables; the others wait for it
+        try:
             return optuna.storages.RDBStorage(
                 f"sqlite:///{file.resolve()}", engine_kwargs={"connect_args": {"timeout": 60}}
             )
+        finally:
+            lock.release()
     except sqlite3.Error as error:
         raise OutputError(f"{file} cannot be used as a study file: {error}. Choose another place.") from error
-
-
-class _locked:
-    """An exclusive transaction on a file beside the study, held while its tables are made."""
-
-    def __init__(self, file: Path) -> None:
-        self._connection = sqlite3.connect(f"{file}.lock", timeout=60, isolation_level=None)
-
-    def __enter__(self) -> None:
-        self._connection.execute("BEGIN EXCLUSIVE")
-
-    def __exit__(self, *error: object) -> None:
-        self._connection.execute("COMMIT")
-        self._connection.close()
 
 
 def _at_work(worker: str) -> bool:

@@ -18,9 +18,9 @@ from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, numbers
 from flexapod.errors import DesignError, PoseError
-from flexapod.optimisation.constraints import Requirement
-from flexapod.optimisation.derivatives import Slopes
+from flexapod.optimisation.derivatives import DesignDerivatives
 from flexapod.optimisation.problem import Assessment, Problem
+from flexapod.optimisation.requirements import Requirement
 from flexapod.workspace.worst import worst_pose
 
 _SHARPNESS = (40.0, 400.0, 4000.0, 4000.0, 4000.0)
@@ -49,13 +49,13 @@ class Finished:
 
 
 def finish(
-    problem: Problem, start: Array, points: int, seed: int = 0, stop: Callable[[], bool] | None = None
+    problem: Problem, start: Array, samples: int, seed: int = 0, stop: Callable[[], bool] | None = None
 ) -> Finished:
     """Improves variables x from a start, in rounds. The start itself is returned where nothing better was found."""
-    best_x, best = start, assess_anew(problem, start, points, seed)
+    best_x, best = start, assess_anew(problem, start, samples, seed)
     held: list[_Held] = []
     u, evaluations, rounds = problem.map.unit(start), 0, 0
-    _hold(problem, start, held, points, seed)
+    _hold(problem, start, held, samples, seed)
     for sharpness in _SHARPNESS:
         if stop is not None and stop():
             break
@@ -64,63 +64,63 @@ def finish(
         u = local.solve(u)
         evaluations += local.evaluations
         x = problem.map.from_unit(u)[0]
-        found = assess_anew(problem, x, points, seed + rounds)
+        found = assess_anew(problem, x, samples, seed + rounds)
         gain = found.index / best.index - 1 if best.feasible and best.index > 0 else 1.0
         if found.better_than(best):
             best_x, best = x, found
         if sharpness == _SHARPNESS[-1] and found.feasible and gain < _CLOSE:
             break
-        _hold(problem, x, held, points, seed + rounds)
+        _hold(problem, x, held, samples, seed + rounds)
     return Finished(best_x, best, evaluations, rounds)
 
 
-def assess_anew(problem: Problem, x: Array, points: int, seed: int) -> Assessment:
+def assess_anew(problem: Problem, x: Array, samples: int, seed: int) -> Assessment:
     """As `Problem.assess_at`, with the least index over a box found to the last digit: sweep, then L-BFGS-B."""
-    found = problem.assess_at(x, points, seed)
+    found = problem.assess_at(x, samples, seed)
     if found.index <= 0:
         return found
     hexapod = problem.map.hexapod_at(x)
-    return Assessment(least_index(problem, hexapod, found.index, points, seed), found.margins, found.values)
+    return Assessment(least_index(problem, hexapod, found.index, samples, seed), found.margins, found.values)
 
 
-def least_index(problem: Problem, hexapod: Hexapod, index: float, points: int, seed: int) -> float:
+def least_index(problem: Problem, hexapod: Hexapod, index: float, samples: int, seed: int) -> float:
     """The index, lowered to what a descent from the worst poses of a sweep finds."""
     box = problem.box(hexapod)
     if box is None:
         return index
-    worst = worst_pose(hexapod, box, joint=problem.joint, samples=points, starts=6, seed=seed, threads=problem.threads)
+    worst = worst_pose(hexapod, box, joint=problem.joint, samples=samples, starts=6, seed=seed, threads=problem.threads)
     return min(index, worst.omega_1)
 
 
-def _hold(problem: Problem, x: Array, held: list[_Held], points: int, seed: int) -> None:
+def _hold(problem: Problem, x: Array, held: list[_Held], samples: int, seed: int) -> None:
     """Adds the poses where this design is worst."""
     try:
         hexapod = problem.map.hexapod_at(x)
     except DesignError:
         return
     own = numbers(hexapod)
-    for group, (over, requirements) in enumerate(problem.groups()):
-        rows, found = problem.sweep(hexapod, group, points, seed)
-        origin = own[HOME] if over.from_home else np.zeros(6)
+    for group, (region, requirements) in enumerate(problem.groups()):
+        rows, found = problem.sweep(hexapod, group, samples, seed)
+        origin = own[HOME] if region.from_home else np.zeros(6)
         if group == 0:
-            chosen = rows[problem.objective.held(np.nan_to_num(found[problem.objective.quantity]))]
+            chosen = rows[problem.objective.worst_poses(np.nan_to_num(found[problem.objective.quantity]))]
             box = problem.box(hexapod)
             if box is not None:
                 try:
                     worst = worst_pose(
-                        hexapod, box, joint=problem.joint, samples=points, starts=6, seed=seed, threads=1
+                        hexapod, box, joint=problem.joint, samples=samples, starts=6, seed=seed, threads=1
                     )
                     chosen = np.concatenate([[pose for _, pose in worst.minima], chosen])
                 except PoseError:
                     pass  # the sweep's own worst poses are held
-            if over.box(own[HOME]) is not None or not held:
-                _add(held, None, over.from_home, chosen - origin)
+            if region.box(own[HOME]) is not None or not held:
+                _add(held, None, region.from_home, chosen - origin)
         for requirement in requirements:
-            worst_rows = requirement.kind.held(found, own, requirement.side)
-            _add(held, requirement, over.from_home, rows[worst_rows] - origin)
-    if not any(h.requirement is not None and h.requirement.over is None for h in held):
+            worst_rows = requirement.quantity.worst_poses(found, own, requirement.side)
+            _add(held, requirement, region.from_home, rows[worst_rows] - origin)
+    if not any(h.requirement is not None and h.requirement.region is None for h in held):
         for requirement in problem.requirements:
-            if requirement.over is None:
+            if requirement.region is None:
                 held.append(_Held(requirement, False, np.zeros((0, 6))))
 
 
@@ -184,11 +184,11 @@ class _Local:
         margin: list[tuple[Array, Array]] = [(np.zeros(0), np.zeros((0, len(u))))]
         for held in self.held:
             rows = held.rows + own[HOME] if held.from_home else held.rows
-            at = Slopes(own, jacobian, rows, held.from_home, self.problem.core_joint)
+            at = DesignDerivatives(own, jacobian, rows, held.from_home, self.problem.core_joint)
             if held.requirement is None:
-                index.append(self.problem.objective.slopes(at, self.sharpness))
+                index.append(self.problem.objective.derivatives(at, self.sharpness))
             else:
-                value, slope = held.requirement.smooth_margins(at)
+                value, slope = held.requirement.margin_derivatives(at)
                 near = np.nan_to_num(value, nan=-_FAR, posinf=_FAR, neginf=-_FAR)
                 slope = np.where((np.abs(near) < _FAR)[:, None], slope, 0.0)
                 margin.append((np.clip(near, -_FAR, _FAR) - _SLACK, slope))

@@ -1,41 +1,57 @@
-"""Index against another wish: the designs of which none is better in both (a Pareto front)."""
+"""Pareto fronts: the designs of which none is better in both the index and another quantity."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.conventions import Array
+from flexapod.checks import whole
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import ArgumentError, InfeasibleError
-from flexapod.optimisation.constraints import Constraint, Requirement
+from flexapod.errors import ArgumentError, InfeasibleError, shown
 from flexapod.optimisation.design_search import Settings, history, verify
-from flexapod.optimisation.global_search import Study, Trial
+from flexapod.optimisation.global_search import OnTrial, Progress, Stop, Study, Trial
 from flexapod.optimisation.local_search import finish
 from flexapod.optimisation.objectives import LeastIndex, Objective
 from flexapod.optimisation.problem import Assessment, Problem
+from flexapod.optimisation.requirements import Constraint, Requirement
 from flexapod.optimisation.variables import JointCircle, Variable
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
-_HOPELESS = 1e12  # of what is made small, where a design has none
+_INFEASIBLE = 1e12  # of what is made small, where a design has none
 
 
 @dataclass(frozen=True, eq=False)
 class ParetoFront:
-    """Designs from the least of `against` to the highest index.
+    """Designs of which none is better in both the index and another quantity, as `flexapod.pareto_front` found them.
 
-    designs: m hexapods. index: (m,) rad/s, verified. against: (m,), SI. variables: (m, n), in the unit of each one's
-    key, SI where it has none; names: of the variables. hexapod: the design one began with; start: its (index, against).
-    name, unit: of `against`. history: Dataset of all finished trials.
-
-    Source: conclusion 1.
+    Attributes
+    ----------
+    designs : tuple of Hexapod
+        m designs, from the smallest of `against` to the highest index.
+    index : ndarray, shape (m,)
+        Their indices as verified, rad/s.
+    against : ndarray, shape (m,)
+        Their values of the other quantity, SI.
+    variables : ndarray, shape (m, n)
+        Their variables, in the unit of each one's key, or SI where it has none.
+    names : tuple of str
+        Names of the variables.
+    hexapod : Hexapod
+        The design to start from.
+    start : tuple of float
+        Its index and its value of the other quantity.
+    name, unit : str
+        Name and unit of the other quantity.
+    history : xarray.Dataset
+        All finished trials.
     """
 
     designs: tuple[Hexapod, ...]
@@ -60,23 +76,96 @@ def pareto_front(
     trials: int = 300,
     refine: int = 12,
     study: str | Path | None = None,
-    **options: Any,
+    joint: JointModel = "universal",
+    samples: int = 2**12,
+    seed: int = 0,
+    threads: int | None = None,
+    progress: Progress | None = None,
+    on_trial: OnTrial | None = None,
+    stop: Stop | None = None,
 ) -> ParetoFront:
-    """The highest index (rad/s) for every value of `against`: `TotalMass()`, `Footprint()`, and the like.
+    """Search for the highest objective at every value of another quantity.
 
-    What `against` measures is made small (its bound, if it has one, is kept as well). trials: of a genetic search
-    (NSGA-II) that may be stopped, resumed and shared as that of `optimise`. refine: so many points along its front are
-    then improved by gradients, each with its own value of `against` as a bound. variables, objective, constraints,
-    study and options: as for `optimise`.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The design to start from.
+    variables : sequence of Variable and JointCircle
+        What may change.
+    against : Constraint
+        The other quantity, which is made small: a constraint with an upper bound, such as `TotalMass` or `Footprint`.
+        Its bound, if it is given, is kept as well.
+    objective : Objective, optional
+        What is raised: `LeastIndex` over a region, `MeanIndex` over poses, or, for comparison, `Dexterity`. The index
+        at the home pose by default.
+    constraints : sequence of Constraint, optional
+        What has to be kept, such as `Footprint` or `Stroke`.
+    trials : int, optional
+        Number of trials of the genetic search.
+    refine : int, optional
+        Number of points along the front that are then improved by gradients, each with its own value of `against` as a
+        bound.
+    study : str or path-like, optional
+        An SQLite file that keeps the trials. The search goes on from what is in it, and several processes may work on
+        it at once.
+    joint : {"universal", "spin_free"}, optional
+        Model of the joints between base and legs.
+    samples : int, optional
+        Number of poses of a region that a trial looks at.
+    seed : int, optional
+        Seed of the search.
+    threads : int, optional
+        Number of threads. All cores by default.
+    progress : callable, optional
+        Called with the share of the trials done, from 0 to 1.
+    on_trial : callable, optional
+        Called before each trial with the number of trials finished, the number wanted and the best objective so far
+        (NaN without one).
+    stop : callable, optional
+        Called between trials; the search ends early when it returns True.
 
-    Raises: ArgumentError, InfeasibleError and OutputError as `optimise`.
-    Source: conclusion 1; NSGA-II after K. Deb and others (2002).
+    Returns
+    -------
+    ParetoFront
+        The designs, verified on poses that the search has not seen.
+
+    Raises
+    ------
+    ArgumentError
+        If bounds contradict each other, or another argument is invalid.
+    DesignError
+        If `hexapod` is not a Hexapod.
+    InfeasibleError
+        If no design that keeps every constraint was found.
+    OutputError
+        If the study file belongs to another design or problem, or cannot be used.
+
+    Notes
+    -----
+    The genetic algorithm NSGA-II of Deb and others [1]_, then the local search of `flexapod.optimise`.
+
+    References
+    ----------
+    .. [1] K. Deb, A. Pratap, S. Agarwal and T. Meyarivan, A fast and elitist multiobjective genetic algorithm: NSGA-II,
+       IEEE Transactions on Evolutionary Computation 6 (2002).
+
+    Examples
+    --------
+    >>> hexapod = fx.load("precision-positioner")
+    >>> mass = fx.Variable("platform.mass", 20, 40)
+    >>> front = fx.pareto_front(hexapod, mass, fx.optimisation.TotalMass(50.0), trials=6, refine=0, samples=8)
+    >>> bool(front.against.max() <= 50.0)
+    True
     """
-    settings = Settings(**options)
+    whole(trials, "trials")
+    whole(refine, "refine", 0)
+    settings = Settings(whole(samples, "samples"), whole(seed, "seed", 0), stop)
     aim = LeastIndex() if objective is None else objective
     if not isinstance(against, Constraint) or not hasattr(against, "most"):
-        raise ArgumentError(f"against is {against!r}; it must be a constraint with an upper bound, as TotalMass().")
-    problem = Problem(hexapod, variables, aim, [*constraints, against], settings.joint, settings.threads)
+        raise ArgumentError(
+            f"against is {shown(against)}; it must be a constraint with an upper bound, as TotalMass()."
+        )
+    problem = Problem(hexapod, variables, aim, [*constraints, against], joint, threads)
     traded = problem.requirements[-1]
     if against.most is None:
         problem.requirements[-1] = replace(traded, bound=np.array(np.inf))
@@ -85,11 +174,11 @@ def pareto_front(
         study,
         aim=f"index against {traded.name}",
         directions=("maximize", "minimize"),
-        seed=settings.seed,
+        seed=seed,
         sampler="nsga2",
-        points=settings.points,
+        samples=samples,
     )
-    search.run(trials, lambda x: _both(problem, x, settings), settings.progress, settings.stop)
+    search.run(trials, lambda x: _both(problem, x, settings), progress, on_trial, stop)
     found = search.finished()
     feasible = [t for t in found if t.feasible]
     front = _nondominated([t.values for t in feasible])
@@ -102,8 +191,8 @@ def pareto_front(
 
 
 def _both(problem: Problem, x: Array, settings: Settings) -> tuple[Assessment, tuple[float, ...]]:
-    found = problem.assess_at(x, settings.points, settings.seed)
-    value = found.values[-1] if np.isfinite(found.values[-1]) else _HOPELESS
+    found = problem.assess_at(x, settings.samples, settings.seed)
+    value = found.values[-1] if np.isfinite(found.values[-1]) else _INFEASIBLE
     return found, (found.index, float(value))
 
 
@@ -128,7 +217,7 @@ def _refined(problem: Problem, front: Sequence[Trial], count: int, settings: Set
     for level in levels:
         begin = front[int(np.flatnonzero(values <= level)[-1])].x
         problem.requirements[-1] = replace(traded, bound=np.array(float(level)))
-        xs.append(finish(problem, begin, settings.points, settings.seed, settings.stop).x)
+        xs.append(finish(problem, begin, settings.samples, settings.seed, settings.stop).x)
     problem.requirements[-1] = traded
     return xs
 
@@ -138,16 +227,16 @@ def _front(problem: Problem, xs: Sequence[Array], trials: xr.Dataset, settings: 
     start, judged = problem.hexapod, []
     for x in xs:
         design = problem.map.hexapod_at(x)
-        seen = verify(problem, design, 4 * settings.points)
+        seen = verify(problem, design, 4 * settings.samples)
         if seen.holds:
             judged.append((x, design, seen.index, seen.checks[-1].value))
     if not judged:
         raise InfeasibleError(
             f"none of {len(xs)} designs on the front keeps every constraint on poses that the search has not seen. "
-            "Search with more poses (points)."
+            "Search with more poses (samples)."
         )
     kept = [judged[i] for i in _nondominated([(index, value) for _, _, index, value in judged])]
-    begun = verify(problem, start, 4 * settings.points)
+    begun = verify(problem, start, 4 * settings.samples)
     last = problem.requirements[-1]
     return ParetoFront(
         designs=tuple(d.replace({"name": f"{start.name}-{i + 1}"}) for i, (_, d, _, _) in enumerate(kept)),
@@ -158,6 +247,6 @@ def _front(problem: Problem, xs: Sequence[Array], trials: xr.Dataset, settings: 
         hexapod=start,
         start=(begun.index, begun.checks[-1].value),
         name=last.name,
-        unit=last.kind.unit,
+        unit=last.quantity.unit,
         history=trials,
     )

@@ -1,4 +1,4 @@
-"""A problem of optimal design as a whole: variables, objective, constraints, and what a given design makes of them."""
+"""A design problem: variables, objective and constraints, and what a given design makes of them."""
 
 from __future__ import annotations
 
@@ -13,19 +13,20 @@ from flexapod.checks import thread_count
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, numbers
-from flexapod.errors import ArgumentError, DesignError, PoseError
-from flexapod.mechanics.inputs import as_joint
-from flexapod.optimisation.constraint_quantities import Kind, Side
-from flexapod.optimisation.constraints import Constraint, Requirement
+from flexapod.errors import ArgumentError, DesignError, PoseError, shown
+from flexapod.mechanics.inputs import as_hexapod, as_joint
+from flexapod.optimisation.constraint_quantities import ConstraintQuantity, Side
+from flexapod.optimisation.design_map import DesignMap
 from flexapod.optimisation.objectives import Objective
-from flexapod.optimisation.variables import DesignMap, JointCircle, Variable
+from flexapod.optimisation.requirements import Constraint, Requirement
+from flexapod.optimisation.variables import JointCircle, Variable
 from flexapod.workspace.box import Box
 from flexapod.workspace.box_minimum import quick_minimum
 from flexapod.workspace.quantities import evaluate, index_and_gradient
 from flexapod.workspace.region import Region
 
 FEASIBLE = 1e-6  # relative amount by which a bound may be passed, for rounding of the search that ends on it
-_HOPELESS = -1e3  # margin where a quantity has no value
+_NO_MARGIN = -1e3  # where a quantity has no value
 _STARTS = 16  # of a descent
 _MEASURED = 2**14  # poses swept for bounds that are what the design has itself
 
@@ -66,22 +67,24 @@ class Problem:
         joint: JointModel,
         threads: int | None,
     ) -> None:
-        self.hexapod, self.objective, self.joint = hexapod, objective, joint
+        self.hexapod, self.objective, self.joint = as_hexapod(hexapod), objective, joint
         self.core_joint, self.threads = as_joint(joint), thread_count(threads)
         self.map = DesignMap(hexapod, variables)
         constraints = [constraints] if isinstance(constraints, Constraint) else list(constraints)
         wrong = [c for c in constraints if not isinstance(c, Constraint)]
         if wrong:
-            raise ArgumentError(f"constraints holds {wrong[0]!r}, which is no constraint of flexapod.")
-        self._check_home([objective.over])
+            raise ArgumentError(f"constraints holds {shown(wrong[0])}, which is no constraint of flexapod.")
+        if isinstance(objective, type) or not hasattr(objective, "region"):
+            raise ArgumentError(f"objective is {shown(objective)}; give a LeastIndex, a MeanIndex or a Dexterity.")
+        self._check_home([objective.region])
         self.requirements: list[Requirement] = []
         for constraint in constraints:
-            self.requirements += constraint.requirements(hexapod, objective.over, self._measure)
-        self._check_home([r.over for r in self.requirements if r.over is not None])
+            self.requirements += constraint.requirements(hexapod, objective.region, self._measure)
+        self._check_home([r.region for r in self.requirements if r.region is not None])
         self._check_bounds()
 
-    def _check_home(self, all_places: Sequence[Region]) -> None:
-        if self.hexapod.home is None and any(place.from_home for place in all_places):
+    def _check_home(self, regions: Sequence[Region]) -> None:
+        if self.hexapod.home is None and any(region.from_home for region in regions):
             raise ArgumentError(
                 f"the objective or a constraint is measured at home, but {self.hexapod.name!r} names no home pose. "
                 'Give a Box, a Pose, or a home: hexapod.replace({"home.position": [x, y, z]}).'
@@ -91,51 +94,52 @@ class Problem:
         """Two requirements that no design can keep together are refused with both named."""
         for low in self.requirements:
             for high in self.requirements:
-                same = repr(low.kind) == repr(high.kind) if low.kind.__dict__ else type(low.kind) is type(high.kind)
+                same = low.quantity.describe() == high.quantity.describe()
                 if low.side == "least" and high.side == "most" and same and np.any(low.bound > high.bound):
+                    unit = low.quantity.unit
                     raise ArgumentError(
-                        f"{low.name} must be at least {low.bound.max():.6g} {low.kind.unit} and {high.name} at most "
-                        f"{high.bound.min():.6g} {high.kind.unit}: no design can keep both."
+                        f"{low.name} must be at least {low.bound.max():.6g} {unit} and {high.name} at most "
+                        f"{high.bound.min():.6g} {unit}: no design can keep both."
                     )
 
-    def _measure(self, kind: Kind, side: Side, over: Region | None) -> Array:
+    def _measure(self, quantity: ConstraintQuantity, side: Side, region: Region | None) -> Array:
         own = numbers(self.hexapod)
         found: dict[str, Any] = {}
-        if over is not None:
-            self._check_home([over])
-            rows = over.rows(own[HOME], _MEASURED)
-            found = evaluate(self.hexapod, rows, kind.quantities, self.joint, self.threads)
-        return kind.measure(found, own, side)
+        if region is not None:
+            self._check_home([region])
+            rows = region.rows(own[HOME], _MEASURED)
+            found = evaluate(self.hexapod, rows, quantity.quantities, self.joint, self.threads)
+        return quantity.measure(found, own, side)
 
     def groups(self) -> list[tuple[Region, list[Requirement]]]:
-        """Region with the requirements that hold there; the objective's come first."""
+        """Regions with the requirements that hold there; that of the objective comes first."""
         found: dict[str, tuple[Region, list[Requirement]]] = {}
-        found[json.dumps(self.objective.over.describe())] = (self.objective.over, [])
+        found[json.dumps(self.objective.region.describe())] = (self.objective.region, [])
         for requirement in self.requirements:
-            if requirement.over is not None:
-                name = json.dumps(requirement.over.describe())
-                found.setdefault(name, (requirement.over, []))[1].append(requirement)
+            if requirement.region is not None:
+                name = json.dumps(requirement.region.describe())
+                found.setdefault(name, (requirement.region, []))[1].append(requirement)
         return list(found.values())
 
-    def sweep(self, hexapod: Hexapod, group: int, points: int, seed: int) -> tuple[Array, dict[str, Any]]:
+    def sweep(self, hexapod: Hexapod, group: int, samples: int, seed: int) -> tuple[Array, dict[str, Any]]:
         """Poses of one of the `groups`, and every quantity that objective and requirements need there."""
-        over, requirements = self.groups()[group]
-        wanted = {name for requirement in requirements for name in requirement.kind.quantities}
+        region, requirements = self.groups()[group]
+        wanted = {name for requirement in requirements for name in requirement.quantity.quantities}
         wanted |= {self.objective.quantity} if group == 0 else set()
-        rows = over.rows(numbers(hexapod)[HOME], points, seed)
+        rows = region.rows(numbers(hexapod)[HOME], samples, seed)
         return rows, evaluate(hexapod, rows, tuple(sorted(wanted)), self.joint, self.threads)
 
     def box(self, hexapod: Hexapod) -> Box | None:
         """The box over which the least frequency is to be found between the poses of a sweep; None where none is."""
-        return self.objective.over.box(numbers(hexapod)[HOME]) if self.objective.quantity == "omega_1" else None
+        return self.objective.region.box(numbers(hexapod)[HOME]) if self.objective.quantity == "omega_1" else None
 
-    def assess(self, hexapod: Hexapod, points: int, seed: int = 0) -> Assessment:
-        """Sweeps `points` poses of every workspace, and descends from the lowest ones."""
+    def assess(self, hexapod: Hexapod, samples: int, seed: int = 0) -> Assessment:
+        """Sweeps `samples` poses of every workspace, and descends from the lowest ones."""
         own = numbers(hexapod)
-        values = {id(r): r.kind.measure({}, own, r.side) for r in self.requirements if r.over is None}
+        values = {id(r): r.quantity.measure({}, own, r.side) for r in self.requirements if r.region is None}
         index = 0.0
         for group, (_, requirements) in enumerate(self.groups()):
-            rows, found = self.sweep(hexapod, group, points, seed)
+            rows, found = self.sweep(hexapod, group, samples, seed)
             if group == 0:
                 index = self.objective.index(found[self.objective.quantity])
                 box = self.box(hexapod)
@@ -143,23 +147,23 @@ class Problem:
                     starts = rows[np.argsort(found["omega_1"])[:_STARTS]]
                     least = quick_minimum(index_and_gradient(hexapod, self.joint), starts, box.low, box.high)
                     index = min(index, least)
-            values |= {id(r): r.kind.measure(found, own, r.side) for r in requirements}
+            values |= {id(r): r.quantity.measure(found, own, r.side) for r in requirements}
         margins, extremes = [], []
         for r in self.requirements:
             value = values[id(r)]
-            margin = np.nan_to_num(r.margins(value), nan=_HOPELESS, posinf=-_HOPELESS, neginf=_HOPELESS)
+            margin = np.nan_to_num(r.margins(value), nan=_NO_MARGIN, posinf=-_NO_MARGIN, neginf=_NO_MARGIN)
             worst = int(np.argmin(margin))
             margins.append(margin[worst])
             extremes.append(value[worst])
         return Assessment(index, np.array(margins), np.array(extremes))
 
-    def assess_at(self, x: Array, points: int, seed: int = 0) -> Assessment:
+    def assess_at(self, x: Array, samples: int, seed: int = 0) -> Assessment:
         """The same for values of the variables; those that make no hexapod have no index and keep nothing."""
         try:
-            return self.assess(self.map.hexapod_at(x), points, seed)
-        except (DesignError, PoseError):
+            return self.assess(self.map.hexapod_at(x), samples, seed)
+        except (DesignError, PoseError):  # of this design: the arguments were checked when the problem was made
             none = np.full(len(self.requirements), np.nan)
-            return Assessment(0.0, np.full(len(self.requirements), _HOPELESS), none)
+            return Assessment(0.0, np.full(len(self.requirements), _NO_MARGIN), none)
 
     def violations(self, assessment: Assessment) -> str:
         """In words: every requirement that is not kept, with its value and its bound."""
@@ -167,7 +171,7 @@ class Problem:
         for r, margin, value in zip(self.requirements, assessment.margins, assessment.values, strict=True):
             if margin < -FEASIBLE:
                 bound = r.bound.min() if r.side == "most" else r.bound.max()
-                words.append(f"{r.name} is {value:.6g}, must be at {r.side} {bound:.6g} {r.kind.unit}".rstrip())
+                words.append(f"{r.name} is {value:.6g}, must be at {r.side} {bound:.6g} {r.quantity.unit}".rstrip())
         if not words:
             words = ["the index is zero: a pose is singular, or out of the legs' reach"]
         return "; ".join(words)

@@ -1,43 +1,49 @@
-"""What a search may change: bounded variables, each tied to numbers of the design by a smooth map.
-
-    Variable("legs.stiffness_N_per_um", 10, 80)                            all six legs, always equal
-    Variable("platform.joints[:][2]", -0.02, 0.02, kind="add")             the plate's joints raised together
-    Variable({"base.joints[0][1]": 1, "base.joints[5][1]": -1}, 0.05, 0.2) two joints kept as mirror images
-    JointCircle("base", radius=(0.1, 0.2), half_angle=(0.05, 0.5))         three pairs, symmetric whatever the values
-
-The map takes complex numbers as well, so that its derivatives are exact to rounding (complex step).
-"""
+"""What a search may change: bounded variables, each tied to numbers of the design by a smooth map."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
-from flexapod.conventions import Array
+from flexapod.checks import one_of
+from flexapod.conventions import TWO_PI, Array
 from flexapod.design import layout
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.schema import Key
-from flexapod.errors import ArgumentError, DesignError
+from flexapod.errors import ArgumentError
+from flexapod.optimisation.parameters import AffineMap, CircleMap, Kind, Parameter, Part
 
-Kind = Literal["set", "add", "scale"]
 Range = tuple[float, float]
-_STEP = 1e-200  # of the complex step: no difference is taken, so nothing cancels
 
 
 @dataclass(frozen=True)
 class Variable:
-    """One bounded number that sets, adds to or scales numbers of the design.
+    """A bounded number that sets, adds to or scales numbers of the design.
 
-    targets: a key of the design file with indices, counted from 0 (`[:]` is all), in the key's unit; several keys that
-    are kept equal; or keys with the factor that each has of the variable (ties). low, high: bounds, in the first key's
-    unit; for kind="scale" a ratio. kind: the entries are the variable ("set"), or what they were plus it ("add") or
-    times it ("scale"). name: in results; default: the key. log: search its logarithm, for what spans decades.
+    Parameters
+    ----------
+    targets : str, sequence of str or mapping of str to float
+        A key of the design file with indices, counted from 0 (`[:]` is all), in the unit of the key; several keys that
+        are kept equal; or keys with the factor that each has of the variable.
+    low, high : float
+        Bounds, in the unit of the first key; ratios if `kind` is "scale".
+    kind : {"set", "add", "scale"}, optional
+        Whether the numbers are the variable, or what they were plus or times it.
+    name : str, optional
+        Name in results; the key by default.
+    log : bool, optional
+        Whether its logarithm is searched, for numbers that span decades.
 
-    Source: own.
+    Examples
+    --------
+    All legs equally stiff; the platform's joints raised together; two joints kept as mirror images:
+
+    >>> stiffness = fx.Variable("legs.stiffness_N_per_um", 10, 80)
+    >>> height = fx.Variable("platform.joints[:][2]", -0.02, 0.02, kind="add")
+    >>> mirrored = fx.Variable({"base.joints[0][1]": 1, "base.joints[5][1]": -1}, 0.05, 0.2)
     """
 
     targets: str | Sequence[str] | Mapping[str, float]
@@ -48,12 +54,24 @@ class Variable:
     log: bool = False
 
     def parts(self, hexapod: Hexapod) -> list[Part]:
-        """The map of this variable for a design.
+        """Make the map of this variable for a design.
 
-        Raises: ArgumentError for what cannot be a variable of the design.
+        Parameters
+        ----------
+        hexapod : Hexapod
+            The design.
+
+        Returns
+        -------
+        list of AffineMap
+            The map.
+
+        Raises
+        ------
+        ArgumentError
+            If this cannot be a variable of the design.
         """
-        if self.kind not in ("set", "add", "scale"):
-            raise ArgumentError(f"{self._name}: kind is {self.kind!r}; it must be 'set', 'add' or 'scale'.")
+        one_of(self.kind, f"{self._name}: kind", get_args(Kind))
         factors = self._factors()
         unit = layout.entries(next(iter(factors)))[2] if self.kind != "scale" else 1.0
         parameter = Parameter(self._name, self.low * unit, self.high * unit, unit, self.log)
@@ -67,7 +85,7 @@ class Variable:
         base = layout.numbers(hexapod)[index]
         if np.isnan(base).any():
             raise ArgumentError(f"{self._name} changes the home pose, but {hexapod.name!r} names none. Add [home].")
-        return [Tie(parameter, index, factor, base, self.kind)]
+        return [AffineMap(parameter, index, factor, base, self.kind)]
 
     @property
     def _name(self) -> str:
@@ -107,14 +125,31 @@ class Variable:
 
 @dataclass(frozen=True)
 class JointCircle:
-    """The six joints of a plate as three mirror-symmetric pairs, 120 degrees apart on a circle about its z axis.
+    """The joints of a plate as three mirror-symmetric pairs, 120 degrees apart on a circle about its z axis.
 
-    plate: "base" or "platform". radius m, half_angle rad (between a joint and the middle of its pair), turn rad (of the
-    first pair's middle from x), height m: a pair (least, most) makes a variable, a number holds it, None holds what the
-    design has (the mean over its joints, if they are not on such a circle). Which legs form a pair is read from the
-    design's joints. On the base, universal joint axes become tangents of the circle unless axes="keep".
+    Parameters
+    ----------
+    plate : {"base", "platform"}
+        The plate.
+    radius : float or tuple of float, optional
+        Radius of the circle, m: a pair (low, high) makes a variable, a number holds it, and left out it is what the
+        design has (the mean over its joints, if they are not on such a circle).
+    half_angle : float or tuple of float, optional
+        Angle between a joint and the middle of its pair, rad, in the same way.
+    turn : float or tuple of float, optional
+        Angle of the middle of the first pair from x, rad, in the same way.
+    height : float or tuple of float, optional
+        Height of the joints, m, in the same way.
+    axes : {"tangent", "keep"}, optional
+        Whether the axes of the base's universal joints become tangents of the circle, or stay as they are.
 
-    Source: own.
+    Notes
+    -----
+    Which legs form a pair is read from the joints of the design.
+
+    Examples
+    --------
+    >>> circle = fx.optimisation.JointCircle("base", radius=(0.1, 0.2), half_angle=(0.05, 0.5))
     """
 
     plate: Literal["base", "platform"]
@@ -125,14 +160,25 @@ class JointCircle:
     axes: Literal["tangent", "keep"] = "tangent"
 
     def parts(self, hexapod: Hexapod) -> list[Part]:
-        """The map of this circle for a design.
+        """Make the map of this circle for a design.
 
-        Raises: ArgumentError for what cannot be a circle of the design.
+        Parameters
+        ----------
+        hexapod : Hexapod
+            The design.
+
+        Returns
+        -------
+        list of CircleMap
+            The map.
+
+        Raises
+        ------
+        ArgumentError
+            If this cannot be a circle of the design.
         """
-        if self.plate not in ("base", "platform"):
-            raise ArgumentError(f"a joint circle is on {self.plate!r}; it must be on 'base' or 'platform'.")
-        if self.axes not in ("tangent", "keep"):
-            raise ArgumentError(f"axes of a joint circle is {self.axes!r}; it must be 'tangent' or 'keep'.")
+        one_of(self.plate, "plate of a joint circle", ("base", "platform"))
+        one_of(self.axes, "axes of a joint circle", ("tangent", "keep"))
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints
         third, side, own = _pairs(joints)
         parameters: list[Parameter | float] = []
@@ -150,256 +196,21 @@ class JointCircle:
                 parameters[-1].check()  # type: ignore[union-attr]
         if isinstance(parameters[0], Parameter) and parameters[0].low <= 0:
             raise ArgumentError(f"{self.plate}.radius may go down to {parameters[0].low:.6g} m; it must be > 0.")
-        return [Circle(self.plate, parameters, third, side, self.plate == "base" and self.axes == "tangent")]
+        return [CircleMap(self.plate, parameters, third, side, self.plate == "base" and self.axes == "tangent")]
 
 
 def _pairs(joints: Array) -> tuple[Array, Array, dict[str, float]]:
     """Which third (0, 1, 2) and which side (-1, 1) of a pair each joint is on, and the circle that fits best."""
     angle = np.arctan2(joints[:, 1], joints[:, 0])
     order = np.argsort(angle)
-    gaps = np.diff(angle[order], append=angle[order[0]] + 2 * np.pi)
+    gaps = np.diff(angle[order], append=angle[order[0]] + TWO_PI)
     first = 0 if gaps[0::2].sum() <= gaps[1::2].sum() else 1  # the joints that are nearer together are pairs
     third, side = np.empty(6), np.empty(6)
     for k in range(3):
         third[order[(first + 2 * k) % 6]] = third[order[(first + 2 * k + 1) % 6]] = k
         side[order[(first + 2 * k) % 6]], side[order[(first + 2 * k + 1) % 6]] = -1, 1
-    relative = angle - third * 2 * np.pi / 3
+    relative = angle - third * TWO_PI / 3
     turn = float(np.angle(np.exp(1j * relative).mean()))
     half = float((side * np.angle(np.exp(1j * (relative - turn)))).mean())
     radius = float(np.hypot(joints[:, 0], joints[:, 1]).mean())
     return third, side, {"radius": radius, "half_angle": half, "turn": turn, "height": float(joints[:, 2].mean())}
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A variable's name and bounds (SI), its unit in SI units, and where the design has it."""
-
-    name: str
-    low: float
-    high: float
-    unit: float = 1.0
-    log: bool = False
-    start: float = np.nan
-
-    def check(self) -> None:
-        if not (np.isfinite(self.low) and np.isfinite(self.high)):
-            raise ArgumentError(f"{self.name} has the bounds {self.low} and {self.high}; both must be finite numbers.")
-        if not self.low < self.high:
-            low, high = self.low / self.unit, self.high / self.unit
-            raise ArgumentError(
-                f"{self.name} has the bounds {low:.6g} and {high:.6g}, which contradict each other; the lower bound "
-                "must be < the upper one. To hold a number, leave it out of the variables."
-            )
-        if self.log and self.low <= 0:
-            raise ArgumentError(f"{self.name} is searched in its logarithm; its lower bound must be > 0.")
-
-
-@dataclass(frozen=True)
-class Tie:
-    """A `Variable`: entries that are affine in one parameter."""
-
-    parameter: Parameter
-    index: NDArray[np.int64]
-    factor: Array
-    base: Array
-    kind: Kind
-
-    @property
-    def parameters(self) -> list[Parameter]:
-        return [self.parameter]
-
-    @property
-    def touched(self) -> NDArray[np.int64]:
-        return self.index
-
-    def start(self) -> list[float]:
-        if self.kind == "set":
-            return [float((self.base / self.factor).mean())]
-        return [0.0 if self.kind == "add" else 1.0]
-
-    def put(self, x: Any, numbers: Any) -> None:
-        if self.kind == "set":
-            numbers[self.index] = self.factor * x[0]
-        elif self.kind == "add":
-            numbers[self.index] = self.base + self.factor * x[0]
-        else:
-            numbers[self.index] = self.base * (1 + self.factor * (x[0] - 1))
-
-
-@dataclass(frozen=True)
-class Circle:
-    """A `JointCircle`: radius, half angle, turn and height, each a parameter or a number."""
-
-    plate: str
-    four: list[Parameter | float]
-    third: Array
-    side: Array
-    tangent: bool
-
-    @property
-    def parameters(self) -> list[Parameter]:
-        return [p for p in self.four if isinstance(p, Parameter)]
-
-    @property
-    def touched(self) -> NDArray[np.int64]:
-        joints = layout.PLACES[f"{self.plate}.joints"].ravel()
-        axes = layout.PLACES["base.universal_axes"].ravel() if self.tangent else joints[:0]
-        return np.concatenate([joints, axes])
-
-    def start(self) -> list[float]:
-        return [p.start for p in self.parameters]
-
-    def put(self, x: Any, numbers: Any) -> None:
-        given = iter(x)
-        radius, half, turn, height = (next(given) if isinstance(p, Parameter) else p for p in self.four)
-        angle = turn + self.third * (2 * np.pi / 3) + self.side * half
-        place = layout.PLACES[f"{self.plate}.joints"]
-        cosine, sine = np.cos(angle), np.sin(angle)
-        numbers[place[:, 0]], numbers[place[:, 1]], numbers[place[:, 2]] = radius * cosine, radius * sine, height
-        if self.tangent:
-            axes = layout.PLACES["base.universal_axes"]
-            numbers[axes[:, 0]], numbers[axes[:, 1]], numbers[axes[:, 2]] = -sine, cosine, 0.0
-
-
-Part = Tie | Circle
-
-
-class DesignMap:
-    """From variables x (n,), SI units, to the numbers of a design (see layout.py) and back to a `Hexapod`."""
-
-    def __init__(self, hexapod: Hexapod, variables: Sequence[Variable | JointCircle]) -> None:
-        if isinstance(variables, Variable | JointCircle):
-            variables = [variables]
-        wrong = [v for v in variables if not isinstance(v, Variable | JointCircle)]
-        if wrong or not variables:
-            what = f"holds {wrong[0]!r}" if wrong else "is empty"
-            raise ArgumentError(f"variables {what}; give at least one Variable or JointCircle.")
-        self.hexapod = hexapod
-        self.parts = [part for variable in variables for part in variable.parts(hexapod)]
-        self.parameters = [p for part in self.parts for p in part.parameters]
-        if not self.parameters:
-            raise ArgumentError("variables holds nothing that varies; give at least one pair of bounds (least, most).")
-        self._check_apart()
-        self.changed = np.zeros(layout.SIZE, dtype=bool)
-        for part in self.parts:
-            self.changed[part.touched] = True
-        self._axes = layout.PLACES["base.universal_axes"]
-        self._turned = self.changed[self._axes].any(axis=1)
-        self._numbers = layout.numbers(hexapod)
-
-    def _check_apart(self) -> None:
-        owner: dict[int, str] = {}
-        names: set[str] = set()
-        for part in self.parts:
-            title = ", ".join(p.name for p in part.parameters) or "a joint circle"
-            for number in part.touched.tolist():
-                if number in owner:
-                    raise ArgumentError(
-                        f"{owner[number]} and {title} both set {layout.describe(number)}. Leave one of them out."
-                    )
-                owner[number] = title
-            for p in part.parameters:
-                if p.name in names:
-                    raise ArgumentError(f"two variables are named {p.name!r}. Give one of them another name.")
-                names.add(p.name)
-
-    @property
-    def names(self) -> list[str]:
-        return [p.name for p in self.parameters]
-
-    @property
-    def low(self) -> Array:
-        return np.array([p.low for p in self.parameters])
-
-    @property
-    def high(self) -> Array:
-        return np.array([p.high for p in self.parameters])
-
-    @property
-    def logarithmic(self) -> NDArray[np.bool_]:
-        return np.array([p.log for p in self.parameters])
-
-    def own(self) -> Array:
-        """Where the design itself has the variables; they may lie outside the bounds."""
-        return np.concatenate([part.start() for part in self.parts])
-
-    def numbers(self, x: Any) -> Any:
-        """The design's numbers, real or complex as x is."""
-        x = np.asarray(x)
-        found = self._numbers.astype(np.result_type(x, np.float64))
-        first = 0
-        for part in self.parts:
-            count = len(part.parameters)
-            part.put(x[first : first + count], found)
-            first += count
-        for axis in self._axes[self._turned]:
-            with np.errstate(invalid="ignore"):  # an axis of length zero is NaN, which makes no hexapod
-                found[axis] = found[axis] / np.sqrt((found[axis] ** 2).sum())
-        return found
-
-    def jacobian(self, x: Array) -> Array:
-        """(m, n): derivatives of the numbers by the variables."""
-        n = len(self.parameters)
-        columns = [self.numbers(x + 1j * _STEP * np.eye(n)[k]).imag / _STEP for k in range(n)]
-        return np.stack(columns, axis=1)
-
-    def hexapod_at(self, x: Array) -> Hexapod:
-        """Raises DesignError where the numbers are no hexapod."""
-        numbers = self.numbers(x)
-        if not np.isfinite(numbers[self.changed]).all():
-            raise DesignError("the variables give numbers that are not finite")
-        return layout.with_numbers(self.hexapod, numbers, self.changed)
-
-    def values(self, x: Array) -> dict[str, float]:
-        """The variables by name, in the unit of their keys."""
-        return {p.name: float(v / p.unit) for p, v in zip(self.parameters, x, strict=True)}
-
-    def from_values(self, values: Mapping[str, float]) -> Array:
-        """The variables from values by name (as `values` gives them); those left out as the design has them."""
-        x = np.clip(self.own(), self.low, self.high)
-        for name, value in values.items():
-            if name not in self.names:
-                raise ArgumentError(f"start names {name!r}, which is no variable. There are: {', '.join(self.names)}.")
-            k = self.names.index(name)
-            p = self.parameters[k]
-            if not p.low <= value * p.unit <= p.high:
-                raise ArgumentError(
-                    f"the start has {name} = {value:.6g}, outside its bounds {p.low / p.unit:.6g} to "
-                    f"{p.high / p.unit:.6g}. Move the start, or widen the bounds."
-                )
-            x[k] = value * p.unit
-        return x
-
-    def unit(self, x: Array) -> Array:
-        """From 0 to 1 between the bounds (of the logarithms, where they are searched)."""
-        low, high, x = self._searched(self.low), self._searched(self.high), self._searched(x)
-        return (x - low) / (high - low)
-
-    def from_unit(self, u: Array) -> tuple[Array, Array]:
-        """The variables at u, and dx/du (n,)."""
-        low, high = self._searched(self.low), self._searched(self.high)
-        x = low + np.clip(u, 0.0, 1.0) * (high - low)
-        x = np.where(self.logarithmic, np.exp(np.where(self.logarithmic, x, 0.0)), x)
-        slope = (high - low) * np.where(self.logarithmic, x, 1.0)
-        return np.clip(x, self.low, self.high), slope
-
-    def _searched(self, x: Array) -> Array:
-        return np.where(self.logarithmic, np.log(np.where(self.logarithmic, x, 1.0)), x)
-
-    def describe(self) -> list[dict[str, Any]]:
-        """Everything that makes this map and no other, in plain numbers and words."""
-        found = []
-        for part in self.parts:
-            plain: dict[str, Any] = {"part": type(part).__name__}
-            for name, value in vars(part).items():
-                plain[name] = _plain(value)
-            found.append(plain)
-        return found
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, Parameter):
-        return {"name": value.name, "low": value.low, "high": value.high, "log": value.log}
-    if isinstance(value, list):
-        return [_plain(item) for item in value]
-    return value.tolist() if isinstance(value, np.ndarray) else value

@@ -101,7 +101,7 @@ def _machines(joint: JointModel) -> dict[str, _Machine]:
     }
     found = {PRINTED: _measured(start, joint)}
     for name, aim in aims.items():
-        best = optimise(start, _variables(), aim, _limits(), trials=0, points=256, verify=512, joint=joint)
+        best = optimise(start, _variables(), aim, _limits(), trials=0, samples=256, verify=512, joint=joint)
         found[name] = _measured(best.hexapod, joint, best.evaluations, best.seconds)
     return found
 

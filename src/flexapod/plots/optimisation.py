@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from flexapod.mechanics.kinematics import home_pose
-from flexapod.optimisation.design_search import OptimalDesign
+from flexapod.optimisation.design_results import OptimalDesign
 from flexapod.optimisation.pareto import ParetoFront
 from flexapod.optimisation.uncertainty import Robustness
 from flexapod.plots.style import FAINT, INK, dress

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
@@ -92,7 +92,7 @@ class Options:
     mean: Path | None
     trials: int
     study: Path | None
-    sampler: str
+    sampler: Literal["tpe", "sobol"]
     seed: int
     points: int
     verify: int
@@ -104,5 +104,5 @@ class Options:
     as_json: bool
 
     def settings(self) -> dict[str, Any]:
-        names = ("trials", "study", "seed", "points", "verify", "threads", "joint")
-        return {name: getattr(self, name) for name in names}
+        names = ("trials", "study", "seed", "threads", "joint")
+        return {"samples": self.points, **{name: getattr(self, name) for name in names}}

@@ -12,8 +12,8 @@ import click
 
 if TYPE_CHECKING:
     from flexapod.design.hexapod import Hexapod
-    from flexapod.optimisation.constraints import Constraint
     from flexapod.optimisation.objectives import Objective
+    from flexapod.optimisation.requirements import Constraint
     from flexapod.optimisation.variables import JointCircle, Variable
     from flexapod.workspace.region import Region
 
@@ -132,7 +132,7 @@ def objective(
 
 def uncertain(texts: Iterable[str]) -> list[Any]:
     """`--uncertain` options: KEY=SPREAD or SPREAD%, then a distribution and `together` after commas."""
-    from flexapod.optimisation.uncertainty import Uncertain
+    from flexapod.optimisation.uncertain_parameters import Uncertain
 
     found = []
     for text in texts:

@@ -8,7 +8,8 @@ from flexapod.cli.options import common, problem
 from flexapod.cli.options.optimise import Options
 from flexapod.cli.output.interrupt import Stopping
 from flexapod.cli.output.progress import TrialProgress
-from flexapod.optimisation.design_search import OptimalDesign, optimise
+from flexapod.optimisation.design_results import OptimalDesign
+from flexapod.optimisation.design_search import optimise
 from flexapod.optimisation.pareto import ParetoFront, pareto_front
 from flexapod.report.studies import optimisation as studies
 from flexapod.report.study import Study
@@ -21,9 +22,9 @@ def compute(options: Options) -> Study:
     varied, kept = problem.variables(options.vary), problem.constraints(options.keep)
     found: OptimalDesign | ParetoFront
     with Stopping() as stop, TrialProgress() as bar:
-        settings = {**options.settings(), "progress": bar, "stop": stop}
+        settings = {**options.settings(), "on_trial": bar, "stop": stop}
         if options.against is None:
-            found = optimise(hexapod, varied, aim, kept, sampler=options.sampler, **settings)
+            found = optimise(hexapod, varied, aim, kept, sampler=options.sampler, verify=options.verify, **settings)
         else:
             other = problem.keep(options.against)
             found = pareto_front(hexapod, varied, other, aim, kept, refine=options.refine, **settings)

@@ -10,7 +10,8 @@ import click
 from flexapod.cli.options import problem
 from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
-from flexapod.optimisation.uncertainty import Payload, robustness
+from flexapod.optimisation.uncertain_parameters import Payload
+from flexapod.optimisation.uncertainty import robustness
 from flexapod.report.studies.robustness import study
 from flexapod.report.study import Study
 
@@ -24,6 +25,13 @@ def compute(hexapod: Hexapod, given: Mapping[str, Any], report: Report) -> Study
         straying.append(Payload(problem.span("--payload", given["payload"]), at))  # type: ignore[arg-type]
     if not straying:
         raise click.UsageError("nothing strays. Give --uncertain KEY=SPREAD or --payload LEAST:LARGEST.")
-    options = {name: given[name] for name in ("samples", "poses", "sensitivity", "joint", "seed", "threads")}
-    found = robustness(hexapod, straying, over, progress=report, **options)
+    options = {name: given[name] for name in ("samples", "sensitivity", "joint", "seed", "threads")}
+    found = robustness(
+        hexapod,
+        straying,
+        over,
+        pose_samples=given["poses"],
+        progress=lambda share: report("designs", share),
+        **options,
+    )
     return study(hexapod, found, "home" if over is None else repr(over))

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import plots
 from flexapod.conventions import TWO_PI
 from flexapod.mechanics.cautions import Caution
-from flexapod.optimisation.design_search import Check, OptimalDesign
+from flexapod.optimisation.design_results import Check, OptimalDesign
 from flexapod.optimisation.pareto import ParetoFront
 from flexapod.report.numbers import brief, file_name, percent, shown, six_words
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table

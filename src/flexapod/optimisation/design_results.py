@@ -1,0 +1,121 @@
+"""What a design search gives: the design, its verification, and every constraint with its margin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from flexapod.conventions import Array
+from flexapod.design.hexapod import Hexapod
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Check:
+    """One constraint of a design as verified.
+
+    Attributes
+    ----------
+    name, unit : str
+        Name and unit of what is bounded.
+    side : {"least", "most"}
+        Whether the bound is a lower or an upper one.
+    value, bound : float
+        The extreme value and the bound.
+    margin : float
+        Relative margin, >= 0 where the bound is kept.
+    kept : bool
+        Whether the bound is kept, but for rounding.
+    """
+
+    name: str
+    unit: str
+    side: str
+    value: float
+    bound: float
+    margin: float
+    kept: bool
+
+
+@dataclass(frozen=True)
+class Verification:
+    """A sweep of every region at poses that the search has not seen, and descents from the worst of them.
+
+    Attributes
+    ----------
+    points : int
+        Number of poses of the sweep.
+    index : float
+        The smallest index found, rad/s.
+    pose : ndarray, shape (6,), or None
+        Where: x, y, z in m, roll, pitch, yaw in rad. None for a mean.
+    checks : tuple of Check
+        Every constraint there.
+    """
+
+    points: int
+    index: float
+    pose: Array | None
+    checks: tuple[Check, ...]
+
+    @property
+    def holds(self) -> bool:
+        """Whether every constraint is kept."""
+        return all(check.kept for check in self.checks)
+
+
+@dataclass(frozen=True, eq=False)
+class OptimalDesign:
+    """The design that `flexapod.optimise` found.
+
+    Attributes
+    ----------
+    hexapod : Hexapod
+        The design.
+    variables : dict of str to float
+        Its variables by name, in the units of their keys.
+    at_bounds : tuple of str
+        Names of the variables that are on a bound.
+    index : float
+        Its objective as verified: rad/s, or 1/cond(H) for `Dexterity`.
+    start : Hexapod
+        The design to start from.
+    start_index : float
+        Its objective, verified alike.
+    searched_index : float
+        The best objective of the trials, before the local search; NaN without trials.
+    coincident : int
+        Number of natural frequencies within 0.1 % of the lowest at the worst pose. More than one means that the optimum
+        lies where modes meet.
+    verification : Verification
+        The verification of the design.
+    start_checks : tuple of Check
+        Every constraint of the design to start from.
+    history : xarray.Dataset
+        The finished trials.
+    evaluations : int
+        Number of designs that the local search evaluated.
+    seconds : float
+        Duration of the search, s.
+    """
+
+    hexapod: Hexapod
+    variables: dict[str, float]
+    at_bounds: tuple[str, ...]
+    index: float
+    start: Hexapod
+    start_index: float
+    searched_index: float
+    coincident: int
+    verification: Verification
+    start_checks: tuple[Check, ...]
+    history: xr.Dataset
+    evaluations: int
+    seconds: float
+
+    @property
+    def gain(self) -> float:
+        """Relative gain, index / start_index - 1; infinite for a start of index zero."""
+        return self.index / self.start_index - 1 if self.start_index > 0 else float("inf")

@@ -1,0 +1,78 @@
+"""Designs with uncertain numbers, many at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flexapod.conventions import TRANSLATIONS, Array
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.layout import HOME, PLACES, numbers
+from flexapod.errors import ArgumentError, shown
+from flexapod.mechanics.inputs import as_hexapod
+from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, quantile
+
+
+class Ensemble:
+    """Designs whose uncertain parameters are functions of points in the unit cube."""
+
+    def __init__(self, hexapod: Hexapod, uncertain: Sequence[Uncertain | Payload]) -> None:
+        uncertain = [uncertain] if isinstance(uncertain, Uncertain | Payload) else uncertain
+        wrong = [u for u in uncertain if not isinstance(u, Uncertain | Payload)]
+        if wrong or not uncertain:
+            raise ArgumentError(
+                f"uncertain {f'holds {shown(wrong[0])}' if wrong else 'is empty'}; give Uncertain or Payload."
+            )
+        self.hexapod = as_hexapod(hexapod)
+        self.base = numbers(hexapod)[: HOME.start]
+        every = [p for u in uncertain for p in u.parameters(hexapod)]
+        self.payload = [p for p in every if p.index is None]
+        self.parameters = [p for p in every if not p.fixed]
+        names = [p.name for p in self.parameters]
+        if len(set(names)) < len(names) or len(self.payload) > 4:
+            double = next((n for n in names if names.count(n) > 1), "the payload")
+            raise ArgumentError(f"{double} is given twice. Leave one of them out.")
+        if not names:
+            raise ArgumentError("nothing is uncertain: every range is one number.")
+        self.names = names
+
+    def designs(self, u: Array) -> Array:
+        """Designs (s, n) at points u (s, p) of the unit cube."""
+        found = np.tile(self.base, (len(u), 1))
+        load = {p.name: np.full(len(u), p.width[0]) for p in self.payload}
+        for k, p in enumerate(self.parameters):
+            if p.index is None:
+                load[p.name] = self.value(k, u[:, k])
+            else:
+                away = quantile(p.distribution, u[:, k], p.spread)
+                if p.distribution == "lognormal":
+                    found[:, p.index] = self.base[p.index] * away[:, None]
+                else:
+                    found[:, p.index] += away[:, None] * p.width
+        if load:
+            _add_payload(
+                found, load["payload.mass"], np.stack([load[f"payload.{axis}"] for axis in TRANSLATIONS], axis=1)
+            )
+        return found
+
+    def value(self, k: int, u: Array) -> Array:
+        """What parameter k is at u, SI: the number itself (the first of several that vary together)."""
+        p = self.parameters[k]
+        if p.index is None:
+            return p.width[0] + (p.width[1] - p.width[0]) * u
+        away, own = quantile(p.distribution, u, p.spread), self.base[p.index[0]]
+        return own * away if p.distribution == "lognormal" else own + away * p.width[0]
+
+
+def _add_payload(designs: Array, mass: Array, at: Array) -> None:
+    """Adds a point mass to the platform: mass, mass centre, and inertia about the new mass centre."""
+    M, R = designs[:, PLACES["platform.mass"]].copy(), designs[:, PLACES["platform.mass_center"]].copy()
+    total = M + mass
+    designs[:, PLACES["platform.mass"]] = total
+    designs[:, PLACES["platform.mass_center"]] = (M[:, None] * R + mass[:, None] * at) / total[:, None]
+    d = at - R
+    reduced = M * mass / total  # two point masses about their common centre
+    inertia, (i, j) = PLACES["platform.inertia"], np.triu_indices(3, 1)
+    designs[:, inertia.diagonal()] += reduced[:, None] * ((d**2).sum(axis=1, keepdims=True) - d**2)
+    designs[:, inertia[i, j]] -= reduced[:, None] * d[:, i] * d[:, j]

@@ -1,0 +1,188 @@
+"""Uncertain numbers of a design and their distributions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod.checks import one_of, positive
+from flexapod.conventions import TRANSLATIONS, Array
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.layout import entries, numbers
+from flexapod.errors import ArgumentError
+
+Distribution = Literal["uniform", "normal", "triangular", "lognormal"]
+#: How many spreads below its value a number may come; a normal distribution is cut off at four.
+_REACH = {"uniform": 1.0, "triangular": 1.0, "normal": 4.0, "lognormal": 0.0}
+
+
+@dataclass(frozen=True)
+class Uncertain:
+    """A number of the design that is only known to lie about its value.
+
+    Parameters
+    ----------
+    target : str
+        A key of the design file with indices, as for `Variable`.
+    spread : float
+        Half the width of a uniform or triangular distribution, or the standard deviation of a normal or lognormal one.
+    distribution : {"uniform", "normal", "triangular", "lognormal"}, optional
+        The distribution. A normal one is cut off at four standard deviations.
+    relative : bool, optional
+        Whether the spread is a share of the design's value, or an amount in the unit of the key.
+    each : bool, optional
+        Whether several entries, such as those of legs.stiffness, vary independently or all together.
+
+    Examples
+    --------
+    >>> tolerance = fx.Uncertain("legs.stiffness", 0.1)
+    >>> len(tolerance.parameters(fx.load("motion-base")))
+    6
+    """
+
+    target: str
+    spread: float
+    distribution: Distribution = "uniform"
+    relative: bool = True
+    each: bool = True
+
+    def parameters(self, hexapod: Hexapod) -> list[UncertainParameter]:
+        """Make the independent parameters for a design.
+
+        Parameters
+        ----------
+        hexapod : Hexapod
+            The design.
+
+        Returns
+        -------
+        list of UncertainParameter
+            One for each number that varies independently.
+
+        Raises
+        ------
+        ArgumentError
+            If the range is one that a design cannot have.
+        """
+        positive(self.spread, f"{self.target}: the spread")
+        one_of(self.distribution, f"{self.target}: the distribution", get_args(Distribution))
+        if self.distribution == "lognormal" and self.spread > 2:
+            raise ArgumentError(
+                f"{self.target}: a lognormal spread of {self.spread} is of the logarithm; it must be at most 2."
+            )
+        index, rule, unit = entries(self.target)
+        if self.target.startswith("home"):
+            raise ArgumentError("the home pose is where the platform is told to stand, not an uncertain number.")
+        value = numbers(hexapod)[index]
+        if self.relative and not value.any():
+            raise ArgumentError(
+                f"{self.target} is zero, so a share of it is nothing. Give relative=False and an amount."
+            )
+        width = self.spread * np.abs(value) if self.relative else np.full(len(index), self.spread * unit)
+        sets = [[k] for k in range(len(index))] if self.each else [list(range(len(index)))]
+        found = []
+        for chosen in sets:
+            name = self.target if len(sets) == 1 else f"{self.target}[{chosen[0]}]"
+            low = (value - width * _REACH[self.distribution])[chosen].min()
+            if rule.least is not None and (low < rule.least or (rule.open_ and low <= rule.least)):
+                raise ArgumentError(
+                    f"{name} may go down to {low / unit:.6g}; {rule.meaning} must be "
+                    f"{'>' if rule.open_ else '>='} {rule.least:.6g}. Lessen the spread, or take another distribution."
+                )
+            found.append(UncertainParameter(name, self.distribution, index[chosen], width[chosen], self.spread))
+        return found
+
+
+@dataclass(frozen=True)
+class Payload:
+    """A load on the platform beyond that of the design: a point mass, uniformly distributed.
+
+    Parameters
+    ----------
+    mass : tuple of float
+        Smallest and largest mass, kg.
+    position : tuple, optional
+        Three coordinates in the platform frame, m: each a number, or a pair (smallest, largest).
+
+    Examples
+    --------
+    >>> payload = fx.optimisation.Payload((0, 5), (0.0, 0.0, (0.1, 0.2)))
+    """
+
+    mass: tuple[float, float]
+    position: tuple[ArrayLike, ArrayLike, ArrayLike] = (0.0, 0.0, 0.0)
+
+    def parameters(self, hexapod: Hexapod) -> list[UncertainParameter]:
+        """Make the independent parameters for a design.
+
+        Parameters
+        ----------
+        hexapod : Hexapod
+            The design.
+
+        Returns
+        -------
+        list of UncertainParameter
+            The mass and the three coordinates.
+
+        Raises
+        ------
+        ArgumentError
+            If the mass is negative, or a range does not ascend.
+        """
+        low, high = self.mass
+        if not 0 <= low <= high < np.inf:
+            raise ArgumentError(f"the payload's mass is from {low} to {high} kg; it must be >= 0, the least first.")
+        found = [UncertainParameter("payload.mass", "uniform", None, np.array([low, high]), 0.0)]
+        for axis, given in zip(TRANSLATIONS, self.position, strict=True):
+            pair = np.broadcast_to(np.asarray(given, dtype=np.float64), 2)
+            if not (np.isfinite(pair).all() and pair[0] <= pair[1]):
+                raise ArgumentError(f"the payload's {axis} is {given!r} m; it must be a number, or (least, most).")
+            found.append(UncertainParameter(f"payload.{axis}", "uniform", None, np.array(pair), 0.0))
+        return found
+
+
+@dataclass(frozen=True)
+class UncertainParameter:
+    """A parameter that varies independently: numbers of the design with their widths, or a range of the payload.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    distribution : {"uniform", "normal", "triangular", "lognormal"}
+        Its distribution.
+    index : ndarray of int or None
+        The numbers of the design; None for the payload.
+    width : ndarray
+        The spread of each number, SI; for the payload its smallest and largest value.
+    spread : float
+        The spread as given.
+    """
+
+    name: str
+    distribution: Distribution
+    index: Any
+    width: Array
+    spread: float
+
+    @property
+    def fixed(self) -> bool:
+        """Whether its range is a single number."""
+        return self.index is None and self.width[0] == self.width[1]
+
+
+def quantile(distribution: str, u: Array, spread: float) -> Array:
+    """The distribution of unit spread about 0 (lognormal: of the factor about 1), cut off where it has no end."""
+    if distribution == "uniform":
+        return 2 * u - 1
+    if distribution == "triangular":
+        return np.where(u < 0.5, np.sqrt(2 * u) - 1, 1 - np.sqrt(np.maximum(2 * (1 - u), 0.0)))
+    from scipy.special import ndtr, ndtri
+
+    cut = ndtr(-4.0)
+    normal = np.asarray(ndtri(cut + u * (1 - 2 * cut)))
+    return np.exp(spread * normal) if distribution == "lognormal" else normal
