@@ -107,7 +107,15 @@ class Pose(metaclass=Suggesting):
     matrix: Array
 
     def __init__(self, position: ArrayLike, rotation: Rotation | ArrayLike | None = None) -> None:
-        p = vectors(position, "position")
+        try:
+            p = vectors(position, "position")
+        except PoseError:
+            if np.asarray(position, dtype=object).shape[-1:] != (6,):
+                raise
+            raise PoseError(
+                "position has six numbers; it must have three, x, y, z in m. With angles: "
+                "Pose.from_rpy(x, y, z, roll, pitch, yaw)."
+            ) from None
         R = np.eye(3) if rotation is None else _rotation_matrices(rotation)
         try:
             shape = np.broadcast_shapes(p.shape[:-1], R.shape[:-2])

@@ -28,7 +28,7 @@ MODES = [
     ("m = fx.natural_modes(h, h.home)", None),
     ("m = fx.natural_modes(h, [0, 0, 2.4, 0, 0, 0])", None),
     ("m = fx.natural_modes(h, fx.Pose([0, 0, 2.4]))", None),
-    ("p = fx.Pose([0, 0, 2.4, 0, 0, 0])", "3 numbers"),
+    ("p = fx.Pose([0, 0, 2.4, 0, 0, 0])", "from_rpy"),
     ("p = fx.Pose.from_euler(0, 0, 2.4, pitch=5)", "from_rpy"),
     ("p = fx.Pose.from_rpy(0, 0, 2.4, pitch=5, degrees=True)", None),
     ("p.pitch", "rpy"),

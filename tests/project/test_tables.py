@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.cli.commands.response import _read_psd
 from flexapod.cli.options import poses, waypoints
+from flexapod.cli.studies.response import _read_psd
 from flexapod.tables import parse_table
 
 ROWS = [(0.01 * i, 0.001 * i**2, 2.0 * i) for i in range(8)]
