@@ -1,4 +1,5 @@
-"""The page of `flexapod serve`: a server of JSON and binary points, and the built front end in `static`.
+"""The server and the page of `flexapod serve`: answers as JSON, jobs as binary streams, the built page in `static`.
 
-A face: it computes nothing itself. The server keeps no state of any page; each request carries its design and pose.
+It computes nothing itself and keeps no state of a page: each request carries its design and pose.
+May import: every package but cli.
 """
