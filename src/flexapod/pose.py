@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -264,7 +265,7 @@ def orthonormal(matrix: Array) -> Array:
 _PARTS = [
     (field.name, slice(field.offset, field.offset + field.index.size), field.shape) for field in _core.MOTION_LAYOUT
 ]
-_RATES = [name for name, _, _ in _PARTS[2:]]
+_rates = attrgetter(*(name for name, _, _ in _PARTS[2:]))
 
 
 def unpack(numbers: Array) -> dict[str, Array]:
@@ -353,7 +354,8 @@ class Motion:
     @property
     def packed(self) -> Array:
         """(..., n): its numbers in the core's order (`flexapod._core.MOTION_LAYOUT`)."""
-        return np.concatenate([self.pose.packed, *(getattr(self, name) for name in _RATES)], axis=-1)
+        flat = self.pose.matrix.reshape(*self.shape, 9)
+        return np.concatenate([self.pose.position, flat, *_rates(self)], axis=-1)
 
     @classmethod
     def unpacked(cls, numbers: Array) -> Motion:
