@@ -19,7 +19,7 @@ from flexapod.design import changes as design_changes
 from flexapod.design import design_file
 from flexapod.design.geometry_checks import check_apart, platform_warnings, unit_axes, warnings_of_part
 from flexapod.design.packing import packed
-from flexapod.design.parts import Damping, Home, LegPart, Legs, Limits, Value, bytes_of
+from flexapod.design.parts import Damping, Home, LegPart, Legs, Limits, Value, bytes_of, more_keys
 from flexapod.design.shorthands import circle_table, expand, tangent_axes
 from flexapod.design.tables import DEFAULT_GRAVITY, complete, flatten
 from flexapod.errors import DesignError, shown
@@ -255,7 +255,13 @@ class Hexapod(Value, metaclass=Suggesting):
         return cls(
             name=values.get("name", "hexapod"),
             **{name: values[key] for name, key in _KEYS.items()},
-            legs=Legs(values["legs.stiffness"], damping, part("lower"), part("upper")),
+            legs=Legs(
+                values["legs.stiffness"],
+                damping,
+                part("lower"),
+                part("upper"),
+                more={key: values[f"legs.{key}"] for key in more_keys()},
+            ),
             limits=Limits(**{item.name: values.get(f"limits.{item.name}") for item in fields(Limits)}),
             home=Home(values["home.position"], values["home.orientation"]) if "home.position" in values else None,
         )
@@ -275,11 +281,13 @@ class Hexapod(Value, metaclass=Suggesting):
         """The whole design by dotted file key: text for `name`, arrays in SI units for all else."""
         values: dict[str, Any] = {"name": self.name}
         values |= {key: np.asarray(getattr(self, name)) for name, key in _KEYS.items()}
-        values["legs.stiffness"] = self.legs.stiffness
-        values |= {f"legs.damping.{item.name}": getattr(self.legs.damping, item.name) for item in fields(Damping)}
+        legs = {"legs.stiffness": self.legs.stiffness}
+        legs |= {f"legs.{key}": np.asarray(value) for key, value in self.legs.more.items()}
+        legs |= {f"legs.damping.{item.name}": getattr(self.legs.damping, item.name) for item in fields(Damping)}
         for part in ("lower", "upper"):
             given = getattr(self.legs, part)
-            values |= {f"legs.{part}.{item.name}": getattr(given, item.name) for item in fields(LegPart)}
+            legs |= {f"legs.{part}.{item.name}": getattr(given, item.name) for item in fields(LegPart)}
+        values |= dict(sorted(legs.items(), key=lambda item: item[0].count(".")))  # keys before the tables below them
         for item in fields(Limits):
             limit = getattr(self.limits, item.name)
             if limit is not None:

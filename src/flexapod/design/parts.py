@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.conventions import Array
+from flexapod.design.packing import PLACES
 from flexapod.design.schema import KEYS
 from flexapod.design.shorthands import rod
 from flexapod.design.value_checks import check_value
@@ -49,6 +50,8 @@ def bytes_of(value: Any) -> bytes:
         return b"(" + bytes_of(value.position) + b"," + bytes_of(value.rpy) + b")"
     if isinstance(value, Value):
         return b"(" + b",".join(map(bytes_of, value.state().values())) + b")"
+    if isinstance(value, Mapping):
+        return b"{" + b",".join(key.encode() + bytes_of(item) for key, item in value.items()) + b"}"
     if isinstance(value, np.ndarray):
         return str(value.shape).encode() + value.tobytes()
     return repr(value).encode()
@@ -171,11 +174,14 @@ class Legs(Value):
         Viscous friction; none where left out.
     lower, upper : LegPart, optional
         The parts on the base joint and on the platform joint; massless where left out.
+    more : mapping, optional
+        Further numbers of the legs, one or six each, by the keys of a design file below `legs`. There are none yet:
+        it is for numbers that are added to the core and to the schema.
 
     Raises
     ------
     DesignError
-        For a stiffness of another shape, or not > 0.
+        For a stiffness of another shape, or not > 0, and for an unknown key in `more`.
 
     Notes
     -----
@@ -193,12 +199,37 @@ class Legs(Value):
     damping: Damping = field(default_factory=Damping)
     lower: LegPart = field(default_factory=LegPart.massless)
     upper: LegPart = field(default_factory=LegPart.massless)
+    more: Mapping[str, ArrayLike] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        self._set_more()
         self.set_checked("stiffness", self.stiffness, "legs.stiffness", (6,))
         for name, kind in (("damping", Damping), ("lower", LegPart), ("upper", LegPart)):
             if not isinstance(getattr(self, name), kind):
                 raise DesignError(f"legs.{name} is {shown(getattr(self, name))}; it must be a {kind.__name__}.")
+
+    def _set_more(self) -> None:
+        """Check the further numbers, fill in those left out, and spread them over the legs."""
+        for key in self.more:
+            if key not in more_keys():
+                raise DesignError(
+                    f"legs.{key} is not a further number of the legs; there are: {more_keys() or 'none'}."
+                )
+        full = {}
+        for key in more_keys():
+            rule = KEYS[f"legs.{key}"]
+            array = check_value(f"legs.{key}", self.more.get(key, rule.default), rule)
+            full[key] = np.broadcast_to(array, PLACES[f"legs.{key}"].shape)
+        object.__setattr__(self, "more", full)
+
+
+@functools.cache
+def more_keys() -> tuple[str, ...]:
+    """Keys below `legs` of numbers that the core has and no attribute of `Legs` names."""
+    named = {"stiffness", *(f"damping.{item.name}" for item in fields(Damping))}
+    named |= {f"{part}.{item.name}" for part in ("lower", "upper") for item in fields(LegPart)}
+    keys = (key.removeprefix("legs.") for key in PLACES if key.startswith("legs."))
+    return tuple(key for key in keys if key not in named)
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -18,6 +18,9 @@ SHAPES = {
 class Key:
     """What a value must be. `least` and `most` are in SI units; `open_` leaves `least` itself out.
 
+    `default` (SI) is what a design has that leaves the key out, where that is said here and not in tables.py. A new
+    number of each leg needs its line in the core (`model/design.hpp`) and one here with a default.
+
     A value that must be `symmetric` may also be given as the three numbers on its diagonal.
     """
 
@@ -29,6 +32,7 @@ class Key:
     most: float | None = None
     open_: bool = False
     symmetric: bool = False
+    default: float | None = None
 
     @property
     def shape_text(self) -> str:
@@ -98,7 +102,9 @@ def _under(table: str, keys: dict[str, Key]) -> dict[str, Key]:
     return {f"{table}.{key}": rule for key, rule in keys.items()}
 
 
-_DAMPING = Key("viscous friction", "angular damping", _LEGS, "Give 0 for a joint without friction.", least=0.0)
+_DAMPING = Key(
+    "viscous friction", "angular damping", _LEGS, "Give 0 for a joint without friction.", least=0.0, default=0.0
+)
 
 KEYS: dict[str, Key] = {
     "gravity": Key("gravity, inertial frame", "acceleration", _VECTOR),
@@ -132,7 +138,7 @@ KEYS: dict[str, Key] = {
         open_=True,
     ),
     "legs.damping.prismatic": Key(
-        "viscous friction along the leg", "damping", _LEGS, "Give 0 for a leg without friction.", least=0.0
+        "viscous friction along the leg", "damping", _LEGS, "Give 0 for a leg without friction.", least=0.0, default=0.0
     ),
     "legs.damping.universal": _DAMPING,
     "legs.damping.spherical": _DAMPING,

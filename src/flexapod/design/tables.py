@@ -73,7 +73,7 @@ def complete(values: Values) -> Values:
         raise DesignError(f"missing: {lines}. Add {'it' if len(missing) == 1 else 'them'} to the design. {START}")
     zero = np.zeros(())
     defaults: Values = {"gravity": DEFAULT_GRAVITY}
-    defaults |= {f"legs.damping.{joint}": zero for joint in ("prismatic", "universal", "spherical")}
+    defaults |= {key: np.array(rule.default) for key, rule in KEYS.items() if rule.default is not None}
     for part in ("legs.lower", "legs.upper"):
         defaults |= {f"{part}.mass": zero, f"{part}.mass_center": np.zeros(3), f"{part}.inertia": np.zeros((3, 3))}
     if "home.position" in values:
