@@ -10,7 +10,7 @@ import flexapod as fx
 
 MACHINE = fx.load("mukherjee-ii")
 #: Functions that do not check at their entry yet.
-PENDING = {"optimise", "pareto_front", "robustness", "animate_simulation"}
+PENDING = {"animate_simulation"}
 OF_A_MACHINE = [
     name for name in FUNCTIONS if "hexapod" in inspect.signature(PUBLIC[name]).parameters and name not in PENDING
 ]
