@@ -1,153 +1,90 @@
-"""Draws the house of docs/architecture.md: `python docs/images/draw_architecture.py`. Every room must be a module."""
+"""Draws the folders of docs/architecture.md in their order: `python docs/images/draw_architecture.py`.
 
+The order, the folders and what each is for are read from the sources, so that the picture cannot be out of date.
+"""
+
+import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
-from matplotlib.patches import FancyArrowPatch, FancyBboxPatch, Polygon
+from matplotlib.patches import FancyArrowPatch, FancyBboxPatch
 
-from flexapod.plots import style
+from flexapod.plots.style import BASE, INK
 
 HERE = Path(__file__).parent
-SOURCE = HERE.parents[1] / "src"
+ROOT = HERE.parents[1]
+sys.path.insert(0, str(ROOT))
+from tests.project.test_architecture import CORE_ORDER, ORDER  # noqa: E402
 
-#: Floors from the top: colour, what it is, and its rows of rooms. A room: what it is about, and its modules.
-FACES = ("#0072b2", "Faces", "show what the library returns; the library does not know them")
-LIBRARY = ("#009e73", "Library, Python", "checks input, spreads batch axes, calls the core, gives results their shapes")
-CORE = ("#d55e00", "Core, C++20", "the mechanics, each piece once, over any scalar: numbers, derivatives, lanes")
-ROOMS = {
-    FACES: [
-        [
-            ("figures", "plots* animate"),
-            ("one machine", "report/ paper/"),
-            ("command line", "cli/"),
-            ("browser page", "web/"),
-            ("other tools", "interchange/"),
-        ]
-    ],
-    LIBRARY: [
-        [
-            ("studies: they do not know one another", ""),
-            ("time", "simulation"),
-            ("frequency", "response stepped"),
-            ("uncertainty", "robust"),
-            ("plans", "path planning"),
-            ("control", "position_loops isolators\nsampled schedule"),
-        ],
-        [
-            ("search", "optimal/"),
-            ("workspace", "sweeps/ posesets\nquantities"),
-            ("what drives it", "excitation spectra\nrecordings trajectory"),
-            ("tangent", "linear steady"),
-            ("loops", "feedback laws\nassessment"),
-            ("paths", "waypoints smoothing\nfreespace requirements"),
-        ],
-        [
-            ("one pose or many", "kinematics dynamics statics modal"),
-            ("rows for the core", "states pose"),
-            ("a design", "hexapod designfile shorthands\njointfile schema units errors extras"),
-        ],
-    ],
-    CORE: [
-        [
-            ("the machine in time", "rig six_legs integrate\nsimulation control_loop"),
-            ("poses in lanes", "stance sweep bidiagonal jacobi"),
-            ("what follows", "modes statics reactions energy\nkinematics design_gradient"),
-        ],
-        [
-            ("Eq. 34", "equations"),
-            ("one leg", "leg"),
-            ("numbers", "design motion"),
-            ("algebra", "vec3 linear6 rotation dual pack"),
-        ],
-    ],
-}
+#: Bands from the top: colour, name, what it is for, and its lowest folder in the order.
+BANDS = (
+    ("#0072b2", "Faces", "show what the library returns; the library does not know them", "interchange"),
+    ("#009e73", "Studies", "take a design, poses and numbers, and return plain results", "workspace"),
+    ("#cc79a7", "The machine at a pose", "checks input, spreads batch axes, calls the core", "design"),
+    ("#8a929b", "What all share", "errors, types and names, checks of arguments, poses", "errors"),
+)
+CORE_BAND = ("#d55e00", "Core, C++20", "the mechanics, each piece once, over any scalar: numbers, derivatives, lanes")
+WIDTH, ROW = 10.0, 0.6
 
 
-def check() -> None:
-    """Every room's modules are there."""
-    for floor, rows in ROOMS.items():
-        folder, endings = (SOURCE / "core", (".hpp",)) if floor is CORE else (SOURCE / "flexapod", (".py", ""))
-        for name in " ".join(modules for row in rows for _, modules in row).split():
-            stem = name.rstrip("/*")
-            if not any((folder / f"{stem}{ending}").exists() for ending in endings):
-                raise SystemExit(f"{name} is no module of {folder}")
+def bands() -> list[tuple[str, str, str, list[str]]]:
+    """Colour, name, words, and folders of every band, from the top."""
+    names, found = [name for name in ORDER if not name.startswith("_")], []
+    for color, name, words, first in BANDS:
+        inside = names[names.index(first) :]
+        names = names[: names.index(first)]
+        found.append((color, name, words, inside))
+    return [*found, (*CORE_BAND, list(CORE_ORDER))]
 
 
 def house() -> plt.Figure:
-    figure, ax = plt.subplots(figsize=(10.6, 7.2), facecolor="white")
+    figure, ax = plt.subplots(figsize=(10.6, 5.8), facecolor="white")
     ax.set_axis_off()
-    ax.set_xlim(-0.6, 10.6)
-    ax.set_ylim(0.7, 8.9)
-    top = 7.75
+    ax.set_xlim(-0.6, WIDTH + 0.1)
+    top = 0.0
+    for color, name, words, rooms in bands():
+        height = 0.5 + ROW
+        box = FancyBboxPatch((0, top - height), WIDTH, height - 0.08, boxstyle="round,pad=0,rounding_size=0.06")
+        box.set(facecolor=color, alpha=0.1, linewidth=0)
+        ax.add_patch(box)
+        ax.text(0.12, top - 0.28, name, fontsize=12.5, fontweight="bold", color=color, va="center")
+        ax.text(WIDTH - 0.12, top - 0.28, words, fontsize=9.5, color=INK, va="center", ha="right")
+        _row(ax, rooms, top - 0.5, color)
+        top -= height + 0.06
+    ax.set_ylim(top, 0.1)
     ax.add_patch(
-        Polygon([(-0.25, top + 0.12), (5.0, 8.75), (10.25, top + 0.12)], facecolor="#eef1f4", edgecolor=style.FAINT)
+        FancyArrowPatch((-0.22, -0.2), (-0.22, top + 0.2), arrowstyle="-|>", mutation_scale=18, lw=2.2, color=BASE)
     )
-    ax.text(5.0, 8.16, "import flexapod as fx", family="monospace", fontsize=12, ha="center", color=style.INK)
-    for floor, rows in ROOMS.items():
-        color, name, words = floor
-        height = 0.52 + 0.82 * len(rows) + (0.36 if floor is LIBRARY else 0.0)
-        bottom = top - height
-        ax.add_patch(
-            FancyBboxPatch(
-                (0, bottom),
-                10,
-                height - 0.1,
-                boxstyle="round,pad=0,rounding_size=0.06",
-                facecolor=color,
-                alpha=0.09,
-                lw=0,
-            )
-        )
-        ax.text(0.14, top - 0.32, name, fontsize=13, fontweight="bold", color=color, va="center")
-        ax.text(9.86, top - 0.32, words, fontsize=9.5, color=style.INK, va="center", ha="right")
-        level = top - 0.56
-        for row in rows:
-            level = _row(ax, row, level, color)
-        top = bottom
-    arrow = {"arrowstyle": "-|>", "mutation_scale": 18, "linewidth": 2.2, "color": style.BASE}
-    ax.add_patch(FancyArrowPatch((-0.3, 7.6), (-0.3, top + 0.15), **arrow))
-    ax.text(-0.48, (7.6 + top) / 2, "imports only point down", rotation=90, va="center", ha="center", color=style.BASE)
+    ax.text(-0.42, top / 2, "imports only point down", rotation=90, va="center", ha="center", color=BASE)
     return figure
 
 
-def _row(ax: Axes, row: list[tuple[str, str]], top: float, color: str) -> float:
-    """Rooms side by side, as wide as their words; returns where the next row begins."""
-    if not row[0][1]:
-        ax.text(0.14, top - 0.14, row[0][0], fontsize=9.5, style="italic", color=style.INK, va="center")
-        row, top = row[1:], top - 0.32
-    wide = [max(max(map(len, modules.split("\n"))) * 1.12, len(name) * 1.25) + 3.0 for name, modules in row]
-    left, scale = 0.12, (9.76 - 0.1 * (len(row) - 1)) / sum(wide)
-    for (name, modules), width in zip(row, wide, strict=True):
-        box = FancyBboxPatch(
-            (left, top - 0.74),
-            width * scale,
-            0.7,
-            boxstyle="round,pad=0,rounding_size=0.05",
-            fc="white",
-            ec=color,
-            lw=1.1,
+def _row(ax: Axes, rooms: list[str], top: float, color: str) -> None:
+    """Rooms side by side, as wide as their names; each may use those left of it, and all below."""
+    wide = [max(len(name), 7) + 2.2 for name in rooms]
+    left, scale = 0.1, (WIDTH - 0.2 - 0.08 * (len(rooms) - 1)) / sum(wide)
+    for name, width in zip(rooms, wide, strict=True):
+        room = FancyBboxPatch(
+            (left, top - ROW + 0.14), width * scale, ROW - 0.2, boxstyle="round,pad=0,rounding_size=0.05"
         )
-        ax.add_patch(box)
-        middle = left + width * scale / 2
-        two = "\n" in modules
-        ax.text(middle, top - (0.17 if two else 0.22), name, fontsize=9.5, ha="center", va="center", color=style.INK)
+        room.set(facecolor="white", edgecolor=color, linewidth=1.1)
+        ax.add_patch(room)
         ax.text(
-            middle, top - (0.49 if two else 0.51), modules, family="monospace", fontsize=8, ha="center", va="center",
-            color=color, linespacing=1.25,
-        )  # fmt: skip
-        left += width * scale + 0.1
-    return top - 0.82
-
-
-FIGURES = (("house", house),)
+            left + width * scale / 2,
+            top - ROW / 2 + 0.04,
+            name,
+            family="monospace",
+            fontsize=9,
+            ha="center",
+            va="center",
+        )
+        left += width * scale + 0.08
 
 
 def main() -> None:
-    check()
     plt.rcParams |= {"svg.hashsalt": "flexapod", "svg.fonttype": "path"}
-    for name, make in FIGURES:
-        make().savefig(HERE / f"{name}.svg", bbox_inches="tight", pad_inches=0.06, metadata={"Date": None})
+    house().savefig(HERE / "house.svg", bbox_inches="tight", pad_inches=0.06, metadata={"Date": None})
 
 
 if __name__ == "__main__":
