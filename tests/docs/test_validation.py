@@ -76,6 +76,19 @@ def test_a_table_needs_every_claim(tmp_path):
         Ledger(None).write(tmp_path / "validation.json")
 
 
+def test_the_readme_says_what_was_measured():
+    text = " ".join((FILE.parents[1] / "README.md").read_text(encoding="utf-8").split())
+    assert f"measures {len(CLAIMS)} claims" in text
+    shown = {
+        "motion/engine": "{:.1e}",
+        "motion/reactions": "{:.1e}",
+        "motion/accelerations": "{:.1e}",
+        "modes/ordinary": "{:.1f} roundings",
+    }
+    for key, form in shown.items():
+        assert form.format(ROWS[key]["found"]) in text, f"the README's number of {key}"
+
+
 def test_the_page_shows_every_claim():
     module = hook()
     page = (FILE.parent / "validation.md").read_text(encoding="utf-8")
