@@ -5,6 +5,7 @@ import struct
 import threading
 import time
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -267,3 +268,10 @@ def test_the_bundle_names_no_other_place() -> None:
     assert "//" not in page.replace("http://www.w3.org", "")
     assert "<script>" not in page
     assert "style=" not in page
+
+
+def test_the_page_s_packages_are_locked_without_a_registry() -> None:
+    """`npm ci` takes them from whichever registry is set up."""
+    lock = (Path(__file__).parents[2] / "web" / "package-lock.json").read_text(encoding="utf-8")
+    assert '"integrity"' in lock
+    assert '"resolved"' not in lock
