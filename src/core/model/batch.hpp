@@ -125,7 +125,10 @@ inline Rows spring_matrix(const Machine<double>& machine, const States& s) {
   Rows F({s.n, 6, std::size_t{spring_count}});
   for_each_state(
       s,
-      [&](std::size_t i, double*& to) { write(to, root.scaled(spring_directions(geometry(machine, s, i)))); }, F);
+      [&](std::size_t i, double*& to) {
+        write(to, root.scaled(spring_directions(geometry(machine, s, i), machine.joint)));
+      },
+      F);
   return F;
 }
 

@@ -80,11 +80,11 @@ class DesignDirections {
   /// K = F F^T by rows, (n, 36).
   ValueGradient stiffness() const {
     ValueGradient found(n_, 36, m_);
-    for_each([&](const Block& block, const Machine<Seed>& machine, const Geometry<Seed>& g, const Pose<Seed>&,
-                 size_t i) {
-      const Mat6<Seed> K = stiffness_matrix(machine.design, spring_directions(g));
-      for (size_t a = 0; a < 36; ++a) found.put(i, a, K[a / 6][a % 6], block.first, block.count);
-    });
+    for_each(
+        [&](const Block& block, const Machine<Seed>& machine, const Geometry<Seed>& g, const Pose<Seed>&, size_t i) {
+          const Mat6<Seed> K = stiffness_matrix(machine.design, spring_directions(g, machine.joint));
+          for (size_t a = 0; a < 36; ++a) found.put(i, a, K[a / 6][a % 6], block.first, block.count);
+        });
     return found;
   }
 

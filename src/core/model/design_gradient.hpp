@@ -38,7 +38,7 @@ struct SeededDesign {
 inline void rayleigh_matrix(const Machine<Seed>& machine, const Geometry<Seed>& g, const Mat3<Seed>& R,
                             const Modes& modes, Seed (&out)[6][6]) {
   const Mat6<Seed> J = inertia(machine, g, R);
-  const SpringMatrix<Seed> directions = spring_directions(g);
+  const SpringMatrix<Seed> directions = spring_directions(g, machine.joint);
   Seed stretch[6][spring_count];
   for (int a = 0; a < 6; ++a) {
     Vec6<double> shape;

@@ -24,7 +24,7 @@ inline Energy energy(const Machine<double>& machine, const Motion<double>& platf
   const Geometry<double> g(d, platform.pose, base.pose);
   const Vec3<double> R_p = platform.pose.R * d.R_0;
   Energy e;
-  e.elastic = elastic_energy(d, g, L_0);
+  e.elastic = elastic_energy(machine, g, L_0);
   e.kinetic = kinetic_energy(d.M, {}, rotate(platform.pose.R, d.I_p), platform.velocity_at(R_p), platform.w);
   e.gravitational = -d.M * dot(d.gravity, platform.pose.t + R_p);
   for (int i = 0; i < 6; ++i) {

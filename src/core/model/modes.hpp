@@ -18,7 +18,7 @@ struct Modes {
 /// J_p^-1 K would lose half the digits of the lowest frequency.
 inline Modes natural_modes(const Machine<double>& machine, const Geometry<double>& g, const Mat3<double>& R) {
   const Cholesky<double> L(inertia(machine, g, R));
-  SpringMatrix<double> B = RootStiffness<double>(machine.design).scaled(spring_directions(g));
+  SpringMatrix<double> B = RootStiffness<double>(machine.design).scaled(spring_directions(g, machine.joint));
   L.forward_all(B);
   const SingularValues values(B);
   Modes modes;
@@ -49,7 +49,7 @@ template <class T, class D>
 Vec6<product_t<T, D>> rayleigh_residuals(const Machine<D>& machine, const Geometry<T>& g, const Mat3<T>& R,
                                          const Modes& modes) {
   const Mat6<T> J = inertia(machine, g, R);
-  const SpringMatrix<T> directions = spring_directions(g);
+  const SpringMatrix<T> directions = spring_directions(g, machine.joint);
   Vec6<T> residual;
   for (int m = 0; m < 6; ++m) {
     Vec6<double> v;

@@ -22,16 +22,22 @@ template <class D> const D& spring_stiffness(const Design<D>& design, int j) { r
 /// The leg that a spring belongs to.
 inline constexpr int spring_leg(int j) { return j % 6; }
 
-/// Sets the directions of the springs of leg i, whose unit vector is s and whose platform joint is at q_p.
+/// Sets the directions of the springs of leg i, whose platform joint is at q_p.
 template <class T, class P>
-void set_spring_directions(SpringMatrix<T>& directions, int i, const Vec3<P>& q_p, const Vec3<T>& s) {
-  const Vec6<T> h = leg_wrench(q_p, s);
+void set_spring_directions(SpringMatrix<T>& directions, int i, const Vec3<P>& q_p, const LegAxes<T>& leg) {
+  const Vec6<T> h = leg_wrench(q_p, leg.s());
+  for (int r = 0; r < 6; ++r) directions[r][i] = h[r];
+}
+/// The same where nobody has the leg's axes, of which springs along the legs need the first only.
+template <class T, class P>
+void set_spring_directions(SpringMatrix<T>& directions, int i, const Geometry<T, P>& g, Joint) {
+  const Vec6<T> h = leg_wrench(g.q_p[i], rsqrt(dot(g.S[i], g.S[i])) * g.S[i]);
   for (int r = 0; r < 6; ++r) directions[r][i] = h[r];
 }
 
-template <class T> SpringMatrix<T> spring_directions(const Geometry<T>& g) {
+template <class T> SpringMatrix<T> spring_directions(const Geometry<T>& g, Joint joint) {
   SpringMatrix<T> directions;
-  for (int i = 0; i < 6; ++i) set_spring_directions(directions, i, g.q_p[i], rsqrt(dot(g.S[i], g.S[i])) * g.S[i]);
+  for (int i = 0; i < 6; ++i) set_spring_directions(directions, i, g, joint);
   return directions;
 }
 
@@ -78,23 +84,24 @@ template <class T> void elongations(const Geometry<T>& g, const double (&L_0)[6]
 }
 
 /// The wrench of all springs on the platform, -D K e.
-template <class T> Vec6<T> spring_wrench(const Design<double>& design, const Geometry<T>& g, const double (&L_0)[6]) {
-  const SpringMatrix<T> directions = spring_directions(g);
+template <class T> Vec6<T> spring_wrench(const Machine<double>& machine, const Geometry<T>& g, const double (&L_0)[6]) {
+  const SpringMatrix<T> directions = spring_directions(g, machine.joint);
   T elongation[spring_count];
   elongations(g, L_0, elongation);
   Vec6<T> wrench;
   for (int j = 0; j < spring_count; ++j) {
-    const T push = -(spring_stiffness(design, j) * elongation[j]);
+    const T push = -(spring_stiffness(machine.design, j) * elongation[j]);
     for (int r = 0; r < 6; ++r) wrench[r] += directions[r][j] * push;
   }
   return wrench;
 }
 
 /// The energy in all springs, J.
-inline double elastic_energy(const Design<double>& design, const Geometry<double>& g, const double (&L_0)[6]) {
+inline double elastic_energy(const Machine<double>& machine, const Geometry<double>& g, const double (&L_0)[6]) {
   double elongation[spring_count], energy = 0;
   elongations(g, L_0, elongation);
-  for (int j = 0; j < spring_count; ++j) energy += 0.5 * spring_stiffness(design, j) * elongation[j] * elongation[j];
+  for (int j = 0; j < spring_count; ++j)
+    energy += 0.5 * spring_stiffness(machine.design, j) * elongation[j] * elongation[j];
   return energy;
 }
 

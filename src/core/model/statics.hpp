@@ -24,7 +24,7 @@ Vec6<T> rest_residual(const Machine<double>& machine, const Pose<T>& platform, c
                       const RestLoad& load) {
   const Geometry<T> g(machine.design, platform, base);
   const Vec6<T> eta = inverse_wrench(machine, g, at_rest(platform), at_rest(base));
-  const Vec6<T> springs = spring_wrench(machine.design, g, load.L_0);
+  const Vec6<T> springs = spring_wrench(machine, g, load.L_0);
   const Vec6<T> external = external_wrench(platform.R, load.wrench);
   Vec6<T> r;
   for (int i = 0; i < 6; ++i) r[i] = eta[i] - springs[i] - external[i];

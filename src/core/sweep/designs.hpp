@@ -19,7 +19,7 @@ template <class T> SpringMatrix<T> scaled_springs(const Machine<T>& machine, con
   for (int i = 0; i < 6; ++i) {
     const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
     add_leg_inertia(J, leg, machine.inertia[i], g.q_p[i]);
-    set_spring_directions(directions, i, g.q_p[i], leg.s());
+    set_spring_directions(directions, i, g.q_p[i], leg);
     legs = legs & (leg.cosecant < 1e7) & (leg.L > 0.0);
   }
   SpringMatrix<T> B = RootStiffness<T>(machine.design).scaled(directions);

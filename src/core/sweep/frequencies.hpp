@@ -101,7 +101,7 @@ template <class T> class Sweep {
     const PosePack<Part> at = pose_pack();
     const unsigned asked = task.quantities;
     if (asked & modal) assemble(at);
-    else if (asked & Quantity::cond_H) part.set_legs(at);
+    else if (asked & Quantity::cond_H) part.set_legs(machine, at);
     else part.fault = at.fault;
     const SweepQuantities<Part> quantities{machine, task, {first, static_cast<int>(count)}, at};
     const auto note = [&](const Part& fault) { part.fault = select(part.fault > 0.0, part.fault, fault); };

@@ -83,12 +83,9 @@ template <class T> struct MassAndForceMap {
 
   Mat6<T> H() const { return leg_directions(directions); }
   /// With lengths and directions only: J is left.
-  void set_legs(const PosePack<T>& at) {
+  void set_legs(const SweptMachine& m, const PosePack<T>& at) {
     fault = at.fault;
-    for (int i = 0; i < 6; ++i) {
-      const Vec3<T>& S = at.g.S[i];
-      set_spring_directions(directions, i, at.g.q_p[i], rsqrt(dot(S, S)) * S);
-    }
+    for (int i = 0; i < 6; ++i) set_spring_directions(directions, i, at.g, m.machine.joint);
   }
   void set(const SweptMachine& m, const PosePack<T>& at) {
     const auto axes = [&](int i) { return LegAxes<T>(at.g.S[i], at.g.k[i], m.machine.joint); };
@@ -97,7 +94,7 @@ template <class T> struct MassAndForceMap {
     fault = at.fault;
     for (int i = 0; i < 6; ++i) {
       add_leg_inertia(J, legs[i], m.machine.inertia[i], at.g.q_p[i]);
-      set_spring_directions(directions, i, at.g.q_p[i], legs[i].s());
+      set_spring_directions(directions, i, at.g.q_p[i], legs[i]);
       fault = worse(!(legs[i].cosecant < 1e7), sweep_task::no_leg, fault);
     }
   }

@@ -98,8 +98,8 @@ template <class T> struct SweepQuantities {
     v = Vec6<T>::of(at.pose.R * v.top(), at.pose.R * v.bottom());
     const Pose<D> moved = displaced(at.pose, variables<D>(0), variables<D>(3));
     const Geometry<D> g(machine.machine.design, moved, Pose<D>());
-    const D residual =
-        rayleigh_residual(machine.machine, inertia(machine.machine, g, moved.R), spring_directions(g), v, lambda);
+    const D residual = rayleigh_residual(machine.machine, inertia(machine.machine, g, moved.R),
+                                         spring_directions(g, machine.machine.joint), v, lambda);
     const T half = 0.5 * rsqrt(lambda);
     T by[6];
     for (int i = 0; i < 6; ++i) by[i] = half * residual.d[i];
@@ -120,7 +120,7 @@ template <class T> struct SweepQuantities {
   }
   MassAndForceMap<T> legs() const {
     MassAndForceMap<T> legs;
-    legs.set_legs(at);
+    legs.set_legs(machine, at);
     return legs;
   }
   /// Solves A x = b with rows of moments divided by the platform's size; how near A is to singular.
