@@ -69,8 +69,8 @@ from .vibration.random_vibration import random_response as random_response
 from .vibration.stepped import stepped_sine as stepped_sine
 from .workspace.box import Box as Box
 from .workspace.box import Workspace as Workspace
-from .workspace.pose_sets import pose_grid as pose_grid
-from .workspace.pose_sets import random_poses as random_poses
+from .workspace.sampling import pose_grid as pose_grid
+from .workspace.sampling import random_poses as random_poses
 from .workspace.store.store import open_sweep as open_sweep
 from .workspace.summary import summarise as summarise
 from .workspace.sweeping import sweep as sweep

@@ -13,10 +13,7 @@ from tests.helpers.public import CLASSES, FUNCTIONS, PUBLIC, call_name
 import flexapod as fx
 
 #: Packages whose docstrings have still to be rewritten.
-PENDING = {
-    "workspace",
-}
-PENDING |= {"plots"}
+PENDING = {"plots"}
 
 #: What numpydoc's validation must not find: no summary or one without a full stop; parameters that are missing, unknown,
 #: in another order, without a type or without a description; no section Returns; sections that are unknown or in

@@ -207,7 +207,8 @@ PROVOKED = {
         MACHINE.replace({"gravity": [0, 0, 0]}), fx.inverse_kinematics(MACHINE, SINGULAR), start=SINGULAR
     ),
     ("stepped_sine", "ArgumentError"): lambda: fx.stepped_sine(MACHINE, HOME, omega=[100.0], amplitude=1e-6, axis="up"),
-    ("summarise", "PoseError"): lambda: fx.summarise(fx.sweep(MACHINE, HOME, quantities=("cond_H",))),
+    ("summarise", "ArgumentError"): lambda: fx.summarise(fx.sweep(MACHINE, HOME, quantities=("cond_H",))),
+    ("summarise", "PoseError"): lambda: fx.summarise(fx.sweep(MACHINE, MEETING)),
     ("sweep", "ArgumentError"): lambda: fx.sweep(MACHINE, BOX, samples=0),
     ("sweep", "DesignError"): lambda: fx.sweep("motion-base", HOME),
     ("sweep", "PoseError"): lambda: fx.sweep(MACHINE, np.full((3, 6), np.nan)),

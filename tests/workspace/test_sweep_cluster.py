@@ -52,8 +52,8 @@ def test_a_killed_worker_costs_nothing_but_time(tmp_path, workers):
     poses = fx.random_poses(BOX, 300_000, seed=5)
     killed = threading.Event()
 
-    def kill(state):
-        if not killed.is_set() and state.done >= 30_000:
+    def kill(share):
+        if not killed.is_set() and share >= 0.1:
             os.kill(victim, signal.SIGKILL)
             killed.set()
 
@@ -72,7 +72,7 @@ def test_a_cluster_stops_when_asked_and_is_gone_on_with_by_threads(tmp_path, wor
     stop = threading.Event()
     with fx.workspace.cluster(workers) as crew:
         store = fx.workspace.SweepStore.create(path, I, POSES, chunk=500)
-        store.run(crew, progress=lambda state: stop.set(), stop=stop.is_set)
+        store.run(crew, progress=lambda share: stop.set(), stop=stop.is_set)
     assert 0 < len(store.done) < store.job.blocks.count
     fx.workspace.SweepStore.resume(path, I, POSES).run()
     stored(tmp_path / "whole.zarr", chunk=500)
@@ -87,7 +87,7 @@ def test_a_lost_scheduler_is_told_and_what_is_done_is_kept(tmp_path):
     with Client(own) as client:
         store = fx.workspace.SweepStore.create(path, I, POSES, chunk=500)
         with pytest.raises(fx.errors.ClusterError, match="connection to the scheduler was lost"):
-            store.run(Cluster(client), progress=lambda state: own.close())
+            store.run(Cluster(client), progress=lambda share: own.close())
     assert 0 < len(fx.workspace.SweepStore.resume(path, I, POSES).done) < 20
 
 

@@ -43,7 +43,7 @@ def test_bins_of_the_index_alone_and_over_decades(monkeypatch):
     values = found.omega_1.values
     assert values.max() > 4 * values.min() > 0
     exact = fx.summarise(found)
-    monkeypatch.setattr(summary, "_EXACT", 100)
+    monkeypatch.setattr(summary, "EXACT", 100)
     binned = fx.summarise(found)
     assert np.isnan(binned.correlation)
     width = np.log(values.max() / values.min()) / 65536

@@ -158,7 +158,7 @@ def test_what_a_killed_worker_left_is_taken_away(tmp_path):
     path = tmp_path / "map.zarr"
     store = fx.workspace.SweepStore.create(path, I, POSES, chunk=4000)
     left = path / "cond_H" / "c" / "1.0123.partial"
-    store.run(progress=lambda state: left.write_bytes(b"half a chunk"))
+    store.run(progress=lambda share: left.write_bytes(b"half a chunk"))
     stored(tmp_path / "whole.zarr", chunk=4000)
     assert content(path) == content(tmp_path / "whole.zarr")
 

@@ -8,6 +8,7 @@ from tests.helpers.stores import BOX, I, stored
 
 import flexapod as fx
 from flexapod.conventions import AXES
+from flexapod.workspace import distribution
 from flexapod.workspace import summary as module
 from flexapod.workspace import worst as worst_module
 from flexapod.workspace.box_minimum import smooth_minimum
@@ -45,11 +46,11 @@ def test_standard_error_is_that_of_repeated_draws():
 
 def test_many_poses_are_summarised_by_bins_as_well(monkeypatch):
     exact = fx.summarise(FOUND, at_least=200.0)
-    monkeypatch.setattr(module, "_EXACT", 1000)
+    monkeypatch.setattr(module, "EXACT", 1000)
     binned = fx.summarise(FOUND, at_least=200.0)
     assert binned.worst.number == exact.worst.number
     assert binned.above == exact.above
-    bins = np.log(exact.best.omega_1 / exact.worst.omega_1) / module._BINS
+    bins = np.log(exact.best.omega_1 / exact.worst.omega_1) / distribution._BINS
     for level, value in exact.quantiles.items():  # a bin's width, or the gap to the next of 20 000 poses
         assert binned.quantiles[level] == pytest.approx(value, rel=bins + 1e-3)
     assert binned.correlation == pytest.approx(exact.correlation, abs=1e-3)  # ranks to a thousandth
@@ -92,7 +93,7 @@ def test_a_grid_names_its_worst_pose():
 
 
 def test_a_summary_needs_the_index():
-    with pytest.raises(fx.PoseError, match="needs the quantity omega_1"):
+    with pytest.raises(fx.ArgumentError, match="does not hold omega_1"):
         fx.summarise(fx.sweep(I, POSES.rows(0, 10), quantities=("cond_H",)))
 
 

@@ -27,7 +27,7 @@ from flexapod.paper.reference_answers import Answer, answers, disagreement
 from flexapod.paper.scatter import CASES
 from flexapod.paper.vibration import PRINTED
 from flexapod.pose import Motion, Pose, rpy_matrix
-from flexapod.workspace.pose_sets import random_poses
+from flexapod.workspace.sampling import random_poses
 from flexapod.workspace.sweeping import sweep
 
 _SMALL = 1e-6  # rad, a turn as of the paper's vibrations

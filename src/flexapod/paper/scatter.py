@@ -17,7 +17,7 @@ from flexapod.mechanics.kinematics import home_pose
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.plots import sweep as plots_sweep
 from flexapod.workspace.box import Box
-from flexapod.workspace.pose_sets import random_poses
+from flexapod.workspace.sampling import random_poses
 from flexapod.workspace.summary import SweepSummary, summarise
 from flexapod.workspace.sweeping import sweep
 

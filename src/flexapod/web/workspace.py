@@ -15,8 +15,8 @@ from flexapod.web.answers import Message, Progress
 from flexapod.web.encode import float32
 from flexapod.web.geometry import in_degrees, in_radians
 from flexapod.workspace.box import Box
-from flexapod.workspace.pose_sets import random_poses
 from flexapod.workspace.quantities import evaluate
+from flexapod.workspace.sampling import random_poses
 
 CHUNK = 50_000  #: poses between two messages: about 0.01 s
 MOST_POINTS = 5_000_000  #: of a cloud, for the browser's memory: 32 bytes each

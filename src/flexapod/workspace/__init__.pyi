@@ -1,10 +1,10 @@
 from .box import Box as Box
 from .box import Workspace as Workspace
 from .pose_sets import PoseSet as PoseSet
-from .pose_sets import low_discrepancy as low_discrepancy
-from .pose_sets import pose_grid as pose_grid
-from .pose_sets import pose_path as pose_path
-from .pose_sets import random_poses as random_poses
+from .sampling import low_discrepancy as low_discrepancy
+from .sampling import pose_grid as pose_grid
+from .sampling import pose_path as pose_path
+from .sampling import random_poses as random_poses
 from .store.dask_cluster import cluster as cluster
 from .store.store import SweepStore as SweepStore
 from .store.store import open_sweep as open_sweep

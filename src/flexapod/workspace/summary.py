@@ -1,4 +1,4 @@
-"""What a designer reads off a sweep: the worst pose, quantiles, how much of the workspace is good enough.
+"""What a designer reads off a sweep: the worst pose, quantiles, and how much of the workspace is good enough.
 
 Everything is gathered block by block, so that a store larger than memory is no different from a sweep in memory.
 """
@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from flexapod.conventions import AXES, Array
-from flexapod.errors import PoseError
+from flexapod.errors import ArgumentError, PoseError
+from flexapod.workspace.distribution import QUANTILES, binned, exactly
 from flexapod.workspace.pose_sets import described
 from flexapod.workspace.quantities import PENDING, statuses
 from flexapod.workspace.store.blocks import Blocks, blocks
@@ -20,12 +21,8 @@ from flexapod.workspace.store.blocks import Blocks, blocks
 if TYPE_CHECKING:
     import xarray as xr
 
-QUANTILES = (0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99)
 _IN_MEMORY = 2**20  # poses looked at together
-_EXACT = 2**22  # poses up to which all are sorted
-_BINS = 2**16
-_RANK_BINS = 2**10
-_BANDS = 50
+EXACT = 2**22  # poses up to which all are sorted
 
 
 class At(NamedTuple):
@@ -48,14 +45,27 @@ class Above(NamedTuple):
 
 
 class SweepSummary(NamedTuple):
-    """Numbers of a sweep. Poses whose index is NaN count in `statuses` only; cond(H) is NaN where it was not swept.
+    """What a sweep says of a workspace: extremes, quantiles, and the part that is good enough.
 
-    poses: how many. statuses: poses by status. worst, best: least and largest omega_1. best_conditioned,
-    worst_conditioned: least and largest cond(H). quantiles: of omega_1, rad/s. above: the part that has a wanted index,
-    and its volume. correlation: Spearman's, of omega_1 with cond(H). spread: over bands of equal cond(H), the median of
-    the ratio between the 95 % and 5 % quantiles of omega_1.
-
-    Source: Section 3; the rank correlation is Spearman's (1904).
+    Attributes
+    ----------
+    poses : int
+        Number of poses. Those whose index is NaN count here and in `statuses` only.
+    statuses : dict of str to int
+        Number of poses by status.
+    worst, best : At
+        The poses with the least and the largest omega_1: `number`, `pose` (6,), `omega_1` (rad/s), `cond_H`.
+    best_conditioned, worst_conditioned : At or None
+        The poses with the least and the largest cond(H); None if it was not swept.
+    quantiles : dict of float to float
+        Quantiles of omega_1, rad/s, by share.
+    above : Above or None
+        The part of the poses that has a wanted index: `omega_1` (rad/s), `fraction`, `standard_error`, `volume` and
+        `volume_unit`; None if no index is wanted.
+    correlation : float
+        Spearman's rank correlation of omega_1 with cond(H).
+    spread : float
+        Ratio of the 95 % quantile to the 5 % quantile of omega_1 in a band of equal cond(H): the median over all bands.
     """
 
     poses: int
@@ -71,22 +81,62 @@ class SweepSummary(NamedTuple):
 
 
 def summarise(sweep: xr.Dataset, at_least: float | None = None) -> SweepSummary:
-    """Summary of a sweep in memory or of `open_sweep`, which must hold `omega_1`. at_least: a wanted index, rad/s.
+    """Summarise a sweep: worst and best poses, quantiles, and the part that is good enough.
 
-    Up to 2^22 poses everything is exact. For more, quantiles are exact to the width of one of 65536 bins between the
-    least and the largest value, and the correlation and the spread come from ranks in 1024 bands. Standard errors are
-    those of random poses; the even ones of grids and low-discrepancy sets do better. Volumes are in the pose
-    coordinates, m and rad.
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        A sweep in memory, or of `open_sweep`; it must hold ``omega_1``.
+    at_least : float, optional
+        A wanted index, rad/s, for `SweepSummary.above`.
 
-    Raises: PoseError where no pose has an index, or the sweep holds none.
-    Source: Section 3.
+    Returns
+    -------
+    SweepSummary
+        The numbers.
+
+    Raises
+    ------
+    ArgumentError
+        If the sweep does not hold ``omega_1``.
+    PoseError
+        If no pose has an index.
+
+    See Also
+    --------
+    sweep : Makes what is summarised.
+    worst_pose : The least index between the poses of a sweep as well.
+
+    Notes
+    -----
+    Numbers as in Section 3 of [1]_. Up to 2^22 poses everything is exact. For more, quantiles are exact to the width of
+    one of 65536 bins between the least and the largest value, and the correlation (Spearman, 1904) and the spread come
+    from ranks in 1024 bands. Standard errors are those of random poses; the even ones of grids and low-discrepancy sets
+    are better. Volumes are in the pose coordinates, m and rad.
+
+    References
+    ----------
+    .. [1] P. Mukherjee, B. Dasgupta and A. K. Mallik, "Dynamic stability index and vibration analysis of a flexible
+       Stewart platform", Journal of Sound and Vibration 307 (2007), 495-512.
+
+    Examples
+    --------
+    >>> machine = fx.load("motion-base")
+    >>> summary = fx.summarise(fx.sweep(machine, fx.Workspace.about_home(0.2, 0.1), samples=1024), at_least=150.0)
+    >>> round(summary.quantiles[0.5], 1), round(summary.above.fraction, 2)
+    (27.9, 0.0)
     """
     if "omega_1" not in sweep:
-        raise PoseError("a summary needs the quantity omega_1. Sweep it.")
+        raise ArgumentError("sweep does not hold omega_1, which a summary needs. Sweep it.")
     first = _extremes(sweep)
     both = "cond_H" in sweep and first.usable > 1
     names = ("omega_1", "cond_H") if both else ("omega_1",)
-    spread_out = _exactly(sweep, names) if first.usable <= _EXACT else _binned(sweep, names, first)
+
+    def usable() -> Iterator[list[Array]]:
+        return _finite(sweep, names)
+
+    ends = [(first.value[name, "least"], first.value[name, "most"]) for name in names]
+    spread_out = exactly(usable()) if first.usable <= EXACT else binned(usable, ends)
     return SweepSummary(
         poses=first.poses,
         statuses=first.statuses,
@@ -175,112 +225,3 @@ def _above(sweep: xr.Dataset, extremes: _Extremes, wanted: float) -> Above:
     error = float(np.sqrt(fraction * (1 - fraction) / computed))
     volume = fraction * sweep.attrs.get("box_volume", np.nan)
     return Above(wanted, fraction, error, volume, sweep.attrs.get("box_volume_unit", ""))
-
-
-class _Distribution(NamedTuple):
-    """How omega_1 is spread, and how it goes with cond(H) (NaN without it)."""
-
-    quantiles: Array
-    correlation: float = float("nan")
-    spread: float = float("nan")
-
-
-def _exactly(sweep: xr.Dataset, names: tuple[str, ...]) -> _Distribution:
-    """From all values at once."""
-    from scipy.stats import rankdata
-
-    found = [np.concatenate(column) for column in zip(*_finite(sweep, names), strict=True)]
-    quantiles = np.quantile(found[0], QUANTILES)
-    if len(found) == 1:
-        return _Distribution(quantiles)
-    omega, cond = found
-    return _Distribution(quantiles, _pearson(rankdata(omega), rankdata(cond)), _spread(omega, cond))
-
-
-def _pearson(a: Array, b: Array) -> float:
-    a, b = a - a.mean(), b - b.mean()
-    scale = np.sqrt((a @ a) * (b @ b))
-    return float(a @ b / scale) if scale > 0 else float("nan")
-
-
-def _spread(omega: Array, cond: Array) -> float:
-    """Median, over bands of equal count in cond(H), of the ratio of the 95 % to the 5 % quantile of omega_1."""
-    bands = max(1, min(_BANDS, len(omega) // 100))
-    parts = np.array_split(omega[np.argsort(cond, kind="stable")], bands)
-    low, high = np.array([np.quantile(part, [0.05, 0.95]) for part in parts]).T
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return float(np.median(high / low))
-
-
-class _Bins:
-    """Narrow bins between two values, even in the logarithm where they are positive and far apart."""
-
-    def __init__(self, least: float, most: float) -> None:
-        self.most = min(most, np.finfo(float).max)
-        self.logarithmic = least > 0 and self.most > 4 * least
-        ends = np.array([least, self.most])
-        self.low, self.high = np.log(ends) if self.logarithmic else ends
-        self.scale = _BINS / (self.high - self.low) if self.high > self.low else 0.0
-        self.counts = np.zeros(_BINS, dtype=np.int64)
-
-    def place(self, values: Array) -> np.ndarray:
-        """The number of each value's bin."""
-        inside = np.minimum(values, self.most)
-        if self.logarithmic:
-            np.log(inside, out=inside)
-        inside -= self.low
-        inside *= self.scale
-        return np.clip(inside.astype(np.int32), 0, _BINS - 1)
-
-    def quantiles(self, at: Array) -> Array:
-        """Within a bin, in proportion."""
-        edges = np.linspace(self.low, self.high, _BINS + 1)
-        cumulated = np.concatenate([[0], np.cumsum(self.counts)])
-        found = np.interp(at * cumulated[-1], cumulated, edges)
-        return np.exp(found) if self.logarithmic else found
-
-    def ranks(self) -> np.ndarray:
-        """Bin -> which of the `_RANK_BINS` parts of equal count its middle is in."""
-        middle = np.cumsum(self.counts) - self.counts / 2
-        return np.minimum(middle * _RANK_BINS / self.counts.sum(), _RANK_BINS - 1).astype(np.int32)
-
-
-def _binned(sweep: xr.Dataset, names: tuple[str, ...], extremes: _Extremes) -> _Distribution:
-    """From counts in bins, in two passes."""
-    bins = [_Bins(extremes.value[name, "least"], extremes.value[name, "most"]) for name in names]
-    for values in _finite(sweep, names):
-        for one, column in zip(bins, values, strict=True):
-            one.counts += np.bincount(one.place(column), minlength=_BINS)
-    quantiles = bins[0].quantiles(np.array(QUANTILES))
-    if len(bins) == 1:
-        return _Distribution(quantiles)
-    ranks = [one.ranks() for one in bins]
-    table = np.zeros((_RANK_BINS, _RANK_BINS), dtype=np.int64)
-    for values in _finite(sweep, names):
-        omega, cond = (rank[one.place(column)] for rank, one, column in zip(ranks, bins, values, strict=True))
-        table += np.bincount(cond * _RANK_BINS + omega, minlength=table.size).reshape(table.shape)
-    edges = bins[0].quantiles(np.arange(_RANK_BINS + 1) / _RANK_BINS)
-    return _Distribution(quantiles, _table_correlation(table), _table_spread(table, edges))
-
-
-def _table_correlation(table: np.ndarray) -> float:
-    """Of ranks, each taken in the middle of its part."""
-
-    def middles(counts: np.ndarray) -> Array:
-        return np.cumsum(counts) - counts / 2.0
-
-    by_cond, by_omega = table.sum(axis=1), table.sum(axis=0)
-    a, b = middles(by_cond), middles(by_omega)
-    total = table.sum()
-    a, b = a - (a @ by_cond) / total, b - (b @ by_omega) / total
-    return float(a @ table @ b / np.sqrt((a * a @ by_cond) * (b * b @ by_omega)))
-
-
-def _table_spread(table: np.ndarray, edges: Array) -> float:
-    """As `_spread`; `edges` are those of the table's columns."""
-    ratios = []
-    for rows in np.array_split(table, _BANDS):
-        cumulated = np.concatenate([[0], np.cumsum(rows.sum(axis=0))])
-        low, high = np.interp([0.05 * cumulated[-1], 0.95 * cumulated[-1]], cumulated, edges)
-        ratios.append(high / low if low > 0 else np.inf)
-    return float(np.median(ratios))

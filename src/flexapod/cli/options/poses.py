@@ -40,7 +40,7 @@ def grid_of(hexapod: Hexapod, texts: Iterable[str]) -> PoseSet:
     """The grid of `--grid x=-0.1:0.1:21,z=0.8`: first:last:count, or one value."""
     import numpy as np
 
-    from flexapod.workspace.pose_sets import pose_grid
+    from flexapod.workspace.sampling import pose_grid
 
     axes: dict[str, Any] = {}
     for name, value in _parts("--grid", texts).items():

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class PoseProgress:
-    """Called with each `flexapod.workspace.store.store.Progress`."""
+    """Called with the `state` of a `flexapod.workspace.SweepStore`."""
 
     def __init__(self) -> None:
         columns = (

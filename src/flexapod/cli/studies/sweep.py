@@ -20,8 +20,9 @@ from flexapod.plots import sweep as plots
 from flexapod.report.studies.sweep import study
 from flexapod.report.study import Study
 from flexapod.workspace.box import Box
-from flexapod.workspace.pose_sets import PoseSet, given_poses, low_discrepancy, random_poses
+from flexapod.workspace.pose_sets import PoseSet, given_poses
 from flexapod.workspace.quantities import QUANTITIES, chosen
+from flexapod.workspace.sampling import low_discrepancy, random_poses
 from flexapod.workspace.store.dask_cluster import cluster
 from flexapod.workspace.store.file_formats import check_file, save
 from flexapod.workspace.store.store import SweepStore, open_sweep
@@ -107,7 +108,7 @@ def _store(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], optio
 def _run(store: SweepStore, workers: Any) -> None:
     """Compute what is missing, with progress on standard error; exits when a signal stopped it."""
     with Stopping() as stop, PoseProgress() as bar:
-        state = store.run(workers, bar, stop)
+        state = store.run(workers, progress=lambda share: bar(store.state), stop=stop)
     if not store.complete:
         click.echo(
             f"stopped with {state.done} of {state.total} poses in {store.job.path}. "

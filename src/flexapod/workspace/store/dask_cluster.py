@@ -95,12 +95,39 @@ def _knock(address: str, timeout: float) -> None:
 
 @contextmanager
 def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
-    """The cluster of the Dask scheduler at an address such as tcp://host:8786; "local" starts one on this machine.
+    """Connect to a Dask cluster whose workers compute the blocks of a stored sweep; for a `with` statement.
 
-    timeout: s. To be used in a `with` statement.
+    Parameters
+    ----------
+    address : str
+        Address of the scheduler, such as ``tcp://host:8786``; "local" starts a cluster on this machine.
+    timeout : float, optional
+        How long to wait for the scheduler and for a worker, s.
 
-    Raises: ClusterError where no scheduler answers within `timeout` seconds, or where it has no worker.
-    Source: own, with Dask.
+    Yields
+    ------
+    Cluster
+        For `SweepStore.run`.
+
+    Raises
+    ------
+    ClusterError
+        If no scheduler answers within `timeout`, or it has no workers.
+
+    See Also
+    --------
+    SweepStore : What the cluster computes.
+
+    Notes
+    -----
+    The store must be on a disk that all workers share. A block whose worker dies is computed again by another.
+
+    Examples
+    --------
+    >>> machine = fx.load("motion-base")
+    >>> store = fx.workspace.SweepStore.create("map.zarr", machine, fx.pose_grid(z=[2.3, 2.4]))
+    >>> with fx.workspace.cluster("local") as workers:  # doctest: +SKIP
+    ...     store.run(workers)
     """
     dask = needed("distributed", "sweep", "a cluster needs dask.distributed")
     if address == LOCAL:

@@ -7,30 +7,38 @@ numbers depend on nothing but its number, a run in pieces writes the bytes of a 
 
 from __future__ import annotations
 
-import json
 import os
-import shutil
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from math import prod
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 from uuid import uuid4
 
 import numpy as np
 
 from flexapod import _core
-from flexapod.conventions import AXES, JointModel
+from flexapod.checks import whole
+from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import OutputError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.workspace.pose_sets import GivenPoses, GridPoses, PoseSet
-from flexapod.workspace.quantities import DEFAULT, PENDING, QUANTITIES, attributes, chosen, provenance
+from flexapod.workspace.quantities import DEFAULT, QUANTITIES, chosen
 from flexapod.workspace.region import RegionLike, poses_of
-from flexapod.workspace.store.block_job import Job, Workers, sync, zarr_package
+from flexapod.workspace.store.block_job import Job, Workers, zarr_package
 from flexapod.workspace.store.blocks import Blocks, blocks
+from flexapod.workspace.store.metadata import (
+    attributes_of,
+    make_store,
+    numbers_in,
+    ranges,
+    read_attributes,
+    refuse_other,
+    replace_attributes,
+)
 from flexapod.workspace.store.threads import Threads
 
 if TYPE_CHECKING:
@@ -38,7 +46,7 @@ if TYPE_CHECKING:
 
 BLOCK_BYTES = 2**26
 MARK_EVERY = 1.0  # s: at most so much work is done again after a power cut
-_FORMAT = "flexapod sweep 1"
+SAMPLES = 2**20  # poses of a box
 
 
 class Progress(NamedTuple):
@@ -51,13 +59,36 @@ class Progress(NamedTuple):
 
 
 class SweepStore:
-    """A sweep in a directory `path`, whole or in part. Made by `create` or `resume`; `run` computes what is missing.
+    """A sweep in a directory of the disk, whole or in part, in the Zarr format.
 
-    Source: own.
+    Made by `create`, or by `resume` where there is one already; `run` computes what is missing. A run that is stopped
+    or killed loses nothing that is on the disk, and a sweep computed in several runs has the bytes of one computed at
+    once.
+
+    Attributes
+    ----------
+    state : Progress
+        How far it is: poses that are done, in all, and done before this run, and poses of this run by status.
+
+    See Also
+    --------
+    open_sweep : The numbers of a store.
+    cluster : Workers on several computers.
+
+    Examples
+    --------
+    >>> machine = fx.load("motion-base")
+    >>> region = fx.Workspace.about_home(0.2, 0.1)
+    >>> store = fx.workspace.SweepStore.create("map.zarr", machine, region, samples=1000)
+    >>> store.run().done, store.complete
+    (1000, True)
+    >>> round(fx.summarise(fx.open_sweep("map.zarr")).worst.omega_1, 1)
+    26.4
     """
 
     def __init__(self, job: Job, done: set[int]) -> None:
         self.job, self.done = job, done
+        self.state = self._progress(self._poses_done(), Counter())
 
     @classmethod
     def create(
@@ -67,27 +98,45 @@ class SweepStore:
         region: RegionLike = None,
         *,
         quantities: str | Iterable[str] = DEFAULT,
-        samples: int = 2**20,
+        samples: int = SAMPLES,
         seed: int = 0,
         joint: JointModel = "universal",
         chunk: int | None = None,
         keep_poses: bool = True,
     ) -> SweepStore:
-        """An empty store.
+        """Make an empty store.
 
-        chunk: poses in a block; default such that a block takes up to 64 MiB. keep_poses=False leaves out the pose
-        coordinates of random and low-discrepancy sets, which `pose_of` can make again.
+        Parameters
+        ----------
+        path : str or Path
+            Where; there must be nothing yet.
+        hexapod : Hexapod
+            The machine.
+        region, quantities, samples, seed, joint : optional
+            As for `fx.sweep`.
+        chunk : int, optional
+            Poses in a block. Default: such that a block takes up to 64 MiB.
+        keep_poses : bool, optional
+            If False, the coordinates of poses that are made from a seed are not written.
 
-        Raises: OutputError where there is something already, or where nothing can be written; PoseError as `sweep`.
+        Returns
+        -------
+        SweepStore
+            The store; nothing is computed yet.
+
+        Raises
+        ------
+        OutputError
+            If there is something at `path`, or nothing can be written there.
+        ArgumentError, PoseError, DesignError
+            As `fx.sweep`.
         """
         points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities)
         as_joint(joint)
-        if chunk is not None and chunk < 1:
-            raise OutputError(f"chunk is {chunk}; it must be at least 1 pose.")
         keep = _streams_poses(points) and (keep_poses or isinstance(points, GivenPoses))
-        cut = blocks(points.shape, chunk or _poses_per_block(wanted, keep))
-        job = Job(str(Path(path).absolute()), hexapod, points, wanted, joint, cut, keep, _core.simd(), uuid4().hex)
-        _make_store(job)
+        most = _poses_per_block(wanted, keep) if chunk is None else whole(chunk, "chunk")
+        job = _job(path, hexapod, points, wanted, joint, blocks(points.shape, most), keep)
+        make_store(job)
         return cls(job, set())
 
     @classmethod
@@ -98,23 +147,39 @@ class SweepStore:
         region: RegionLike = None,
         *,
         quantities: str | Iterable[str] = DEFAULT,
-        samples: int = 2**20,
+        samples: int = SAMPLES,
         seed: int = 0,
         joint: JointModel = "universal",
         chunk: int | None = None,
     ) -> SweepStore:
-        """A store that was begun, to be gone on with.
+        """Take up a store that was begun.
 
-        Raises: OutputError where the design, the poses, the quantities, the joint model or the processor's instructions
-        are not those it was begun with, and names both.
+        Parameters
+        ----------
+        path : str or Path
+            The store.
+        hexapod : Hexapod
+            The machine.
+        region, quantities, samples, seed, joint, chunk : optional
+            Those that it was begun with; `chunk` may be left out.
+
+        Returns
+        -------
+        SweepStore
+            The store, with what is done.
+
+        Raises
+        ------
+        OutputError
+            If there is no store, or the design, the poses, the quantities, the joint model, the version or the
+            processor's instructions are not those it was begun with.
         """
         points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities)
         attrs = read_attributes(path)
-        kept = bool(attrs["keeps_poses"])
         cut = Blocks(points.shape, tuple(map(int, attrs["chunk"].split())))
-        job = Job(str(Path(path).absolute()), hexapod, points, wanted, joint, cut, kept, _core.simd(), uuid4().hex)
-        _refuse_other(path, attrs, _attributes(job), chunk)
-        return cls(job, _numbers(attrs.get("done", "")) if "done" in attrs else set(range(cut.count)))
+        job = _job(path, hexapod, points, wanted, joint, cut, bool(attrs["keeps_poses"]))
+        refuse_other(path, attrs, attributes_of(job), chunk)
+        return cls(job, numbers_in(attrs.get("done", "")) if "done" in attrs else set(range(cut.count)))
 
     @property
     def complete(self) -> bool:
@@ -124,33 +189,50 @@ class SweepStore:
     def run(
         self,
         workers: Workers | int | None = None,
-        progress: Callable[[Progress], None] | None = None,
+        *,
+        progress: Callable[[float], object] | None = None,
         stop: Callable[[], bool] | None = None,
     ) -> Progress:
-        """Compute what is missing, until all is done or `stop()` is true.
+        """Compute what is missing, until all is done.
 
-        workers: how many threads of this process, default one a core; or those of a `flexapod.workspace.cluster`.
+        Parameters
+        ----------
+        workers : int or Cluster, optional
+            How many threads of this process, default one for each core; or a `flexapod.workspace.cluster`.
+        progress : callable, optional
+            Called with the share of the poses that is done, from 0 to 1, after each block; `state` then says more.
+        stop : callable, optional
+            Called often; when it returns True, the blocks that are begun are finished, and no other is begun.
 
-        Raises: OutputError when the disk is full, or another run is writing; ClusterError when a cluster gives up.
+        Returns
+        -------
+        Progress
+            How far it is.
+
+        Raises
+        ------
+        OutputError
+            If the disk is full, or another run is writing.
+        ClusterError
+            If a cluster gives up.
         """
-        cut = self.job.blocks
-        todo = [number for number in range(cut.count) if number not in self.done]
-        before = sum(cut[n].stop - cut[n].start for n in self.done)
-        total = prod(cut.shape)
-        poses, seen, marked = before, Counter[int](), time.monotonic()
+        todo = [number for number in range(self.job.blocks.count) if number not in self.done]
+        before, seen = self._poses_done(), Counter[int]()
+        self.state = self._progress(before, seen)
         crew = Threads(workers) if workers is None or isinstance(workers, int) else workers
         with _locked(self.job.path):
             _sweep_up(self.job.path)
+            marked = time.monotonic()
             try:
                 for block in crew.compute(self.job, todo, stop or (lambda: False)):
                     self.done.add(block.number)
-                    poses += block.poses
                     seen.update(block.statuses)
+                    self.state = self._progress(before, seen)
                     if time.monotonic() - marked > MARK_EVERY:
                         self._mark()
                         marked = time.monotonic()
                     if progress is not None:
-                        progress(Progress(poses, total, before, dict(seen)))
+                        progress(self.state.done / self.state.total)
                 if self.complete:
                     _sweep_up(self.job.path)  # what a killed worker left
                 self._mark()
@@ -160,18 +242,37 @@ class SweepStore:
                 if isinstance(error, OutputError):
                     raise
                 raise OutputError(
-                    f"{self.job.path} cannot be written: {error.strerror or error}. {poses} of {total} poses are in "
-                    "it and stay readable. Make room, then go on with --resume."
+                    f"{self.job.path} cannot be written: {error.strerror or error}. {self.state.done} of "
+                    f"{self.state.total} poses are in it and stay readable. Make room, then go on with --resume."
                 ) from error
             except BaseException:
                 self._mark()
                 raise
-        return Progress(poses, total, before, dict(seen))
+        return self.state
+
+    def _poses_done(self) -> int:
+        cut = self.job.blocks
+        return sum(cut[n].stop - cut[n].start for n in self.done)
+
+    def _progress(self, before: int, seen: Counter[int]) -> Progress:
+        return Progress(before + seen.total(), prod(self.job.blocks.shape), before, dict(seen))
 
     def _mark(self) -> None:
         """Write down which blocks are done; when all are, that the store is complete."""
-        attrs = _attributes(self.job) | ({} if self.complete else {"done": _ranges(self.done)})
-        _replace_attributes(Path(self.job.path), attrs)
+        attrs = attributes_of(self.job) | ({} if self.complete else {"done": ranges(self.done)})
+        replace_attributes(Path(self.job.path), attrs)
+
+
+def _job(
+    path: str | Path,
+    hexapod: Hexapod,
+    points: PoseSet,
+    wanted: tuple[str, ...],
+    joint: JointModel,
+    cut: Blocks,
+    keep: bool,
+) -> Job:
+    return Job(str(Path(path).absolute()), hexapod, points, wanted, joint, cut, keep, _core.simd(), uuid4().hex)
 
 
 def _streams_poses(points: PoseSet) -> bool:
@@ -183,150 +284,6 @@ def _poses_per_block(quantities: tuple[str, ...], keep_poses: bool) -> int:
     for name in quantities:
         bytes_each += np.dtype(QUANTITIES[name].dtype).itemsize * (6 if QUANTITIES[name].trailing else 1)
     return 1 << (BLOCK_BYTES // bytes_each).bit_length() - 1
-
-
-def _attributes(job: Job) -> dict[str, Any]:
-    assert job.points is not None
-    box = job.points.box
-    volume = {} if box is None else {"box_volume": box.volume, "box_volume_unit": box.volume_unit}
-    return {
-        **provenance(job.hexapod, job.joint),
-        "format": _FORMAT,
-        "design_toml": job.hexapod.to_toml(),
-        "poses": json.dumps(job.points.identity()),
-        **volume,
-        "quantities": " ".join(job.quantities),
-        "chunk": " ".join(map(str, job.blocks.chunk)),
-        "keeps_poses": int(job.keep_poses),
-        "coordinates": " ".join(AXES),
-    }
-
-
-def _make_store(job: Job) -> None:
-    """The whole tree of metadata under another name, then moved into place: there is a store or there is none."""
-    path = Path(job.path)
-    if path.exists():
-        raise OutputError(f"{path} exists already. Go on with it (--resume), choose another name, or remove it.")
-    if not path.parent.is_dir():
-        raise OutputError(f"{path.parent} is no directory, so {path.name} cannot be written in it. Make it first.")
-    making = path.with_name(f".{path.name}.{job.token}")
-    try:
-        _write_metadata(making, job)
-        os.replace(making, path)
-    except OSError as error:
-        raise OutputError(f"{path} cannot be written: {error.strerror or error}. Choose another place.") from error
-    finally:
-        shutil.rmtree(making, ignore_errors=True)
-
-
-def _write_metadata(path: Path, job: Job) -> None:
-    assert job.points is not None
-    points, cut = job.points, job.blocks
-    path.mkdir()
-    group = zarr_package().create_group(path, zarr_format=3, attributes={**_attributes(job), "done": ""})
-    coordinate = {name: "float64" for name in AXES if job.keep_poses}
-    columns = {name: QUANTITIES[name].dtype for name in job.quantities} | {"status": "uint8"} | coordinate
-    for name, dtype in columns.items():
-        trailing = QUANTITIES[name].trailing if name in QUANTITIES else ""
-        group.create_array(
-            name,
-            shape=cut.shape + ((6,) if trailing else ()),
-            chunks=cut.chunk + ((6,) if trailing else ()),
-            dtype=dtype,
-            fill_value={"float64": np.nan, "uint8": PENDING, "bool": False}[dtype],
-            compressors="auto" if name == "status" else None,  # numbers of this kind hardly shrink
-            dimension_names=points.dims + ((trailing,) if trailing else ()),
-            attributes=_plain(attributes(name)),
-        )
-        if trailing and trailing not in group:
-            group.create_array(trailing, data=np.arange(1, 7), dimension_names=(trailing,))
-    if isinstance(points, GridPoses):
-        for name in AXES:
-            axis = points.axes[name]
-            along = name in points.dims
-            group.create_array(
-                name,
-                data=axis if along else axis[0].reshape(()),
-                dimension_names=(name,) if along else (),
-                attributes=_plain(attributes(name)),
-            )
-
-
-def _plain(attrs: dict[str, Any]) -> dict[str, Any]:
-    return {key: value.tolist() if isinstance(value, np.ndarray) else value for key, value in attrs.items()}
-
-
-def _replace_attributes(path: Path, attrs: dict[str, Any]) -> None:
-    file, new = path / "zarr.json", path / "zarr.json.partial"
-    document = json.loads(file.read_bytes())
-    document["attributes"] = attrs
-    with new.open("w", encoding="utf-8") as stream:
-        json.dump(document, stream, indent=2)
-        stream.flush()
-        os.fsync(stream.fileno())
-    os.replace(new, file)
-    sync(path)
-
-
-def read_attributes(path: str | Path) -> dict[str, Any]:
-    """Attributes of a sweep store. Raises OutputError where there is none."""
-    file = Path(path, "zarr.json")
-    try:
-        attrs = json.loads(file.read_bytes())["attributes"]
-        found = attrs["format"]
-    except FileNotFoundError:
-        raise OutputError(f"there is no sweep at {path} to read or to resume (no {file.name} in it).") from None
-    except (OSError, ValueError, KeyError, TypeError) as error:
-        raise OutputError(f"{path} is no sweep of Flexapod ({type(error).__name__}: {error}).") from error
-    if found != _FORMAT:
-        raise OutputError(f"{path} has format {found!r}; this version reads {_FORMAT!r}.")
-    return dict(attrs)
-
-
-_COMPARED = {
-    "design_digest": "design",
-    "poses": "poses",
-    "joint": "joint model",
-    "quantities": "choice of quantities",
-    "source": "version",
-    "instruction_set": "instruction set (FLEXAPOD_SIMD)",
-}
-
-
-def _refuse_other(path: str | Path, old: dict[str, Any], new: dict[str, Any], chunk: int | None) -> None:
-    for key, word in _COMPARED.items():
-        if old[key] != new[key]:
-            was, now = (
-                f"{attrs['design']!r} ({attrs[key]})" if key == "design_digest" else str(attrs[key])
-                for attrs in (old, new)
-            )
-            raise OutputError(
-                f"{path} was begun with another {word}: it has {was}, and now it is {now}. "
-                "Resume with what it was begun with, or write to another store."
-            )
-    stored = prod(map(int, old["chunk"].split()))
-    if chunk is not None and chunk != stored:
-        raise OutputError(f"{path} was begun with blocks of {stored} poses, not {chunk}. Leave --chunk out to resume.")
-
-
-def _ranges(numbers: set[int]) -> str:
-    """Such as "0-4,6"."""
-    text: list[str] = []
-    ordered = sorted(numbers)
-    first = 0
-    for k, number in enumerate(ordered):
-        if k + 1 == len(ordered) or ordered[k + 1] != number + 1:
-            text.append(f"{ordered[first]}-{number}" if k > first else str(number))
-            first = k + 1
-    return ",".join(text)
-
-
-def _numbers(ranges: str) -> set[int]:
-    found: set[int] = set()
-    for part in filter(None, ranges.split(",")):
-        first, _, last = part.partition("-")
-        found.update(range(int(first), int(last or first) + 1))
-    return found
 
 
 def _sweep_up(path: str) -> None:
@@ -357,12 +314,38 @@ def _locked(path: str) -> Iterator[None]:
 
 
 def open_sweep(path: str | Path) -> xr.Dataset:
-    """The stored sweep at `path`, whole or in part, as a Dataset in SI units; numbers are read when they are used.
+    """Open a stored sweep, whole or in part.
 
-    Poses not computed yet are NaN and have the status `pending`.
+    Parameters
+    ----------
+    path : str or Path
+        The store.
 
-    Raises: OutputError where there is no such store.
-    Source: own.
+    Returns
+    -------
+    xarray.Dataset
+        As `fx.sweep` gives, in SI units; numbers are read when they are used. Poses that are not computed yet are NaN
+        and have the status ``pending``.
+
+    Raises
+    ------
+    OutputError
+        If there is no such store.
+
+    See Also
+    --------
+    SweepStore : Makes a store.
+
+    Notes
+    -----
+    The store is a Zarr group (version 3), which other programs can read.
+
+    Examples
+    --------
+    >>> store = fx.workspace.SweepStore.create("map.zarr", fx.load("motion-base"), fx.pose_grid(z=[2.3, 2.4]))
+    >>> _ = store.run()
+    >>> fx.open_sweep("map.zarr").omega_1.round(2).values
+    array([28.65, 27.99])
     """
     import xarray as xr
 
