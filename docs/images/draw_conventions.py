@@ -11,7 +11,7 @@ import flexapod as fx
 from flexapod.plots import style
 
 HERE = Path(__file__).parent
-X, Y, Z = (color for _, color in style.AXES)
+X, Y, Z = (color for _, color in style.TRIAD)
 VECTOR = "#cc79a7"  # vectors of the equations; Okabe and Ito
 MACHINE = fx.load("motion-base")
 

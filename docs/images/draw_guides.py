@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 import flexapod as fx
 from flexapod.plots import optimisation, response, sweep
+from flexapod.plots import simulation as plots_simulation
 
 HERE = Path(__file__).parent
 
@@ -31,7 +32,7 @@ def simulation() -> None:
     pose = fx.Pose.from_rpy(0.002, 0, 0.244, 0, 0, np.radians(2))
     shock = fx.half_sine_shock("z", 5.0, 0.005, recovery=0.02)
     run = fx.simulate(machine, pose, base_motion=shock, duration=0.1)
-    save(response.displacements(run.time.values, run.relative_displacement.values), "shock.png")
+    save(plots_simulation.displacements(run.time.values, run.relative_displacement.values), "shock.png")
 
 
 def vibration() -> None:

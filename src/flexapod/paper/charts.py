@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 from matplotlib.figure import Figure
 
 from flexapod.conventions import Array
-from flexapod.plots.style import FAINT, dress
+from flexapod.plots.style import FAINT, dress, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-BLUE, ORANGE, GREEN = "#0072b2", "#d55e00", "#009e73"  # Okabe and Ito
 _ROW = 0.3  # inches
 
 
@@ -28,7 +27,7 @@ class Dots(NamedTuple):
 
 def rows_of_dots(names: Sequence[str], dots: Iterable[Dots], label: str) -> tuple[Figure, Axes]:
     """Values on a logarithmic axis, a named row for each case, the first on top."""
-    figure = Figure(figsize=(9.0, 1.1 + _ROW * len(names)), layout="constrained", dpi=130)
+    figure = new_figure(9.0, 1.1 + _ROW * len(names))
     ax = figure.add_subplot()
     ax.hlines(range(len(names)), 0, 1, transform=ax.get_yaxis_transform(), color=FAINT, lw=0.4, alpha=0.5)
     for kind in dots:

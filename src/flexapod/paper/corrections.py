@@ -15,17 +15,18 @@ from matplotlib.figure import Figure
 from scipy.linalg import eig
 from scipy.spatial.transform import Rotation
 
-from flexapod.conventions import Array, JointModel
+from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.loading import load
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
-from flexapod.paper.charts import BLUE, ORANGE, Dots, percent, rows_of_dots
+from flexapod.paper.charts import Dots, percent, rows_of_dots
 from flexapod.paper.frequencies import home
 from flexapod.paper.printed_errors import MISPRINTS, State, acceleration, legs_at
 from flexapod.paper.reference_answers import Answer, answers, disagreement
 from flexapod.paper.scatter import CASES
 from flexapod.paper.vibration import PRINTED
+from flexapod.plots.style import BLUE, ORANGE
 from flexapod.pose import Motion, Pose, rpy_matrix
 from flexapod.workspace.sampling import random_poses
 from flexapod.workspace.sweeping import sweep
@@ -176,9 +177,9 @@ def _angle(vector: Array) -> float:
 def _e8() -> Row:
     hexapod = load("mukherjee-ii")
     omega = natural_modes(hexapod, home(hexapod), joint="spin_free").omega
-    as_hertz, as_printed = (float(np.abs(value / omega - 1).min()) for value in (2 * np.pi * PRINTED, PRINTED))
+    as_hertz, as_printed = (float(np.abs(value / omega - 1).min()) for value in (TWO_PI * PRINTED, PRINTED))
     more = (
-        f"As Hz, {2 * np.pi * PRINTED:.0f} rad/s, it lies {as_hertz:.0%} from the nearest mode of manipulator II; as "
+        f"As Hz, {TWO_PI * PRINTED:.0f} rad/s, it lies {as_hertz:.0%} from the nearest mode of manipulator II; as "
         f"rad/s, {as_printed:.1%} from the third. Figure 8's 550.136 carries no unit."
     )
     holds = "rad/s; the second distinct resonance, as modes 1 and 2 are nearly one"

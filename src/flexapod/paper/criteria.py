@@ -22,8 +22,7 @@ from flexapod.optimisation.design_search import optimise
 from flexapod.optimisation.objectives import Dexterity, LeastIndex, MeanIndex, Objective
 from flexapod.optimisation.variables import Variable
 from flexapod.paper import Claim, Part, Settings, agrees
-from flexapod.paper.charts import BLUE, GREEN, ORANGE
-from flexapod.plots.style import FAINT, INK, dress
+from flexapod.plots.style import BLUE, FAINT, GREEN, INK, ORANGE, dress, new_figure
 from flexapod.pose import Pose
 
 DESIGN = "mukherjee-ii"
@@ -168,7 +167,7 @@ def _words(measured: pd.DataFrame) -> pd.DataFrame:
 
 def _figure(found: dict[str, _Machine]) -> Figure:
     """All machines, and those that were improved once more, closer."""
-    figure = Figure(figsize=(10.0, 4.4), layout="constrained", dpi=130)
+    figure = new_figure(10.0, 4.4)
     share, bound = np.linspace(0, 1, _FINE), found[LEAST].along.min()
     whole, close = figure.subplots(1, 2, sharex=True, width_ratios=[1, 1.4])
     for name, machine in found.items():

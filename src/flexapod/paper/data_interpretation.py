@@ -17,8 +17,9 @@ from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
-from flexapod.paper.charts import BLUE, ORANGE, Dots, percent, rows_of_dots
+from flexapod.paper.charts import Dots, percent, rows_of_dots
 from flexapod.paper.frequencies import MODES, R_U0_OF_I, home
+from flexapod.plots.style import BLUE, ORANGE
 
 Changes = Mapping[str, Any]
 _TURNED = np.diag([-1.0, -1.0, 1.0])  # half a turn about z: local x from the platform to the base

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-import numpy as np
 import pandas as pd
 
-from flexapod.conventions import Array, JointModel
+from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.loading import load
 from flexapod.mechanics.kinematics import condition_number, home_pose
 from flexapod.mechanics.modes import advised_sampling_time, natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
-from flexapod.paper.charts import BLUE, FAINT, ORANGE, Dots, rows_of_dots
+from flexapod.paper.charts import FAINT, Dots, rows_of_dots
 from flexapod.paper.vibration import PRINTED
+from flexapod.plots.style import BLUE, ORANGE
 from flexapod.pose import Pose
 
 MODES = [f"omega_{mode}" for mode in range(1, 7)]
@@ -96,7 +96,7 @@ def _figure(table: pd.DataFrame) -> Any:
     rows = list(table[table.columns[:6]].values)
     figure, ax = rows_of_dots(list(table.index), [Dots("Eq. 5", rows, BLUE)], "natural frequency, rad/s")
     ax.axvline(PRINTED, color=ORANGE, lw=1.4, ls=(0, (5, 2)))
-    ax.axvline(2 * np.pi * PRINTED, color=FAINT, lw=1.4, ls=(0, (1, 2)))
+    ax.axvline(TWO_PI * PRINTED, color=FAINT, lw=1.4, ls=(0, (1, 2)))
     place: dict[str, Any] = {
         "xycoords": ("data", "axes fraction"),
         "fontsize": 9,
@@ -104,7 +104,7 @@ def _figure(table: pd.DataFrame) -> Any:
         "va": "bottom",
     }
     ax.annotate("749.715 rad/s", (PRINTED, 1.0), (0, 2), color=ORANGE, ha="center", **place)
-    ax.annotate("749.715 Hz", (2 * np.pi * PRINTED, 1.0), (0, 2), color=FAINT, ha="center", **place)
+    ax.annotate("749.715 Hz", (TWO_PI * PRINTED, 1.0), (0, 2), color=FAINT, ha="center", **place)
     return figure
 
 

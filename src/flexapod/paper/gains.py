@@ -27,9 +27,8 @@ from flexapod.excitation.piecewise import half_sine_shock
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import advised_sampling_time
 from flexapod.paper import Claim, Part, Settings, agrees
-from flexapod.paper.charts import ORANGE
 from flexapod.paper.frequencies import home
-from flexapod.plots.style import dress
+from flexapod.plots.style import ORANGE, dress, new_figure
 from flexapod.pose import skew
 
 DESIGN = "mukherjee-ii"
@@ -175,7 +174,7 @@ def _words(numbers: dict[str, Any]) -> pd.DataFrame:
 
 
 def _figure(table: pd.DataFrame) -> Figure:
-    figure = Figure(figsize=(9.0, 4.6), layout="constrained", dpi=130)
+    figure = new_figure(9.0, 4.6)
     ax = figure.add_subplot()
     ratio, distance = (table[column].values.reshape(KI.size, KD.size) for column in ("rms_over_no_control", "distance"))
     ax.add_patch(Rectangle((0, 0), 1, 1, transform=ax.transAxes, color=_UNSTABLE, lw=0, zorder=0))

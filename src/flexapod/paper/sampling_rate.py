@@ -27,9 +27,8 @@ from flexapod.excitation.spectra import flat_spectrum
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import advised_sampling_time
 from flexapod.paper import Claim, Part, Settings, agrees
-from flexapod.paper.charts import BLUE, ORANGE
 from flexapod.paper.frequencies import home
-from flexapod.plots.style import FAINT, INK, dress
+from flexapod.plots.style import BLUE, FAINT, INK, ORANGE, dress, new_figure
 
 DESIGN = "mukherjee-ii"
 DAMPING = 0.1  # of the highest mode, by the continuous controller
@@ -143,7 +142,7 @@ def _or_not(value: float | None) -> str:
 
 
 def _figure(damping: Array, bench: _Bench, edge: float) -> Figure:
-    figure = Figure(figsize=(9.0, 3.8), layout="constrained", dpi=130)
+    figure = new_figure(9.0, 3.8)
     ax = figure.add_subplot()
     ax.axhspan(-1, 0, color=ORANGE, alpha=0.12, lw=0)
     ax.semilogx(FACTORS, damping, color=BLUE, lw=1.9)

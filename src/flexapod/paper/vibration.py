@@ -19,7 +19,7 @@ from flexapod.excitation.sines import harmonic
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
-from flexapod.plots import response
+from flexapod.plots import response, simulation
 from flexapod.pose import Pose
 from flexapod.simulation.integrator import IntegratorOptions, integrate
 from flexapod.simulation.run import SimulationRun
@@ -222,7 +222,9 @@ def _largest(shaken: _Shaken, first: float, last: float) -> Array:
 def _in_time(
     number: int, shaken: _Shaken, title: str, caption: str, numbers: dict[str, Any], claims: tuple[Claim, ...]
 ) -> Part:
-    figure = response.displacements(shaken.times, shaken.displacement, shaken.bound, "bound by the tangent")
+    figure = simulation.displacements(
+        shaken.times, shaken.displacement, bound=shaken.bound, bound_name="bound by the tangent"
+    )
     figure.suptitle(title, fontsize=12)
     columns = [f"{axis}_{'rad' if i > 2 else 'm'}" for i, axis in enumerate(AXES)]
     table = pd.DataFrame(shaken.displacement, index=pd.Index(shaken.times, name="time_s"), columns=columns)

@@ -15,13 +15,13 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from flexapod.conventions import Array, JointModel
+from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.mechanics.mode_shapes import describe_modes
 from flexapod.mechanics.modes import natural_modes
 from flexapod.optional import needed
-from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, VIEW
+from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, VIEW, entitle
 from flexapod.pose import Pose, rotation_from_vector
 
 if TYPE_CHECKING:
@@ -64,10 +64,10 @@ def animate_mode(
     twist = modes.shape[:, number - 1]
     arms = hexapod.platform_joints @ pose.matrix.T
     twist = twist * (amplitude / _travel(arms + pose.position, pose, twist[None]))
-    phase = 2 * np.pi * np.arange(2 * _PER_PERIOD) / (2 * _PER_PERIOD)
+    phase = TWO_PI * np.arange(2 * _PER_PERIOD) / (2 * _PER_PERIOD)
     omega = modes.omega[number - 1]
     words = describe_modes(hexapod, pose, joint=joint)[number - 1].text
-    title = f"{hexapod.name}, mode {number}: {omega:.5g} rad/s ({omega / (2 * np.pi):.5g} Hz)\n{words}"
+    title = f"{hexapod.name}, mode {number}: {omega:.5g} rad/s ({omega / TWO_PI:.5g} Hz)\n{words}"
     film = _Film(hexapod, pose, Pose(np.zeros(3)), np.cos(phase)[:, None] * twist, np.zeros((phase.size, 6)))
     note = f"largest joint motion {_length(amplitude)}"
     return film.write(path, title, [note] * phase.size, exaggeration)
@@ -135,7 +135,7 @@ class _Film(NamedTuple):
         if not (np.isfinite(factor) and factor > 0):
             raise ArgumentError(f"exaggeration is {exaggeration!r}; it must be finite and > 0. Use 1 for true motion.")
         figure, draw = _stage(self.top, self.feet, size + 2 * factor * travel)
-        figure.suptitle(title, color=INK, fontsize=11)
+        entitle(figure, title)
         caption = figure.text(0.5, 0.03, "", ha="center", color=INK, fontsize=10)
         writer, settings = _writer(Path(path))
         with settings, writer.saving(figure, str(path), dpi=100):

@@ -12,14 +12,23 @@ import xarray as xr
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from flexapod.conventions import Array
-from flexapod.plots.style import FAINT, INK, dress
+from flexapod.conventions import TWO_PI, Array
+from flexapod.plots.style import (
+    BLUE,
+    DASHED,
+    FAINT,
+    INK,
+    LEGEND,
+    ORANGE,
+    SIX,
+    VALUES,
+    dress,
+    entitle,
+    new_figure,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-BLUE, ORANGE, GREEN, PURPLE = "#0072b2", "#d55e00", "#009e73", "#cc79a7"  # Okabe and Ito
-MODES = (BLUE, ORANGE, GREEN, PURPLE, "#56b4e9", "#e69f00")
 
 
 def gain_map(dataset: xr.Dataset) -> Figure:
@@ -27,7 +36,7 @@ def gain_map(dataset: xr.Dataset) -> Figure:
 
     Crosses: unstable. The line bounds the gains that the paper warns of, with a pole near a natural frequency.
     """
-    figure = Figure(figsize=(10.5, 4.3), layout="constrained", dpi=130)
+    figure = new_figure(10.5, 4.3)
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
     kd, kp = dataset.kd.values, dataset.kp.values
     unstable = ~dataset.stable.values
@@ -38,7 +47,7 @@ def gain_map(dataset: xr.Dataset) -> Figure:
         (right, np.where(unstable, np.nan, dataset.worst_damping.values), "worst damping ratio", False),
     )
     for ax, values, words, logarithmic in panels:
-        shade: dict[str, Any] = {"cmap": "viridis", "shading": "nearest", "rasterized": True}
+        shade: dict[str, Any] = {"cmap": VALUES, "shading": "nearest", "rasterized": True}
         if logarithmic and np.isfinite(values).any():
             shade["norm"] = LogNorm(np.nanmin(values), max(np.nanmax(values), 1.01 * np.nanmin(values)))
         mesh = ax.pcolormesh(kd, kp, values, **shade)
@@ -56,20 +65,20 @@ def gain_map(dataset: xr.Dataset) -> Figure:
     left.set_ylabel(f"proportional gain kp, {dataset.kp.attrs['units']}")
     words = f"{dataset.attrs['design']}: {dataset.attrs['space']} space, {dataset.attrs['actuator']}"
     note = f"   (orange: a pole within {nearness:.0%} of a natural frequency; ×: unstable; white: no vibration)"
-    figure.suptitle(words + note, color=INK, fontsize=11)
+    entitle(figure, words + note)
     return figure
 
 
 def root_locus(dataset: xr.Dataset) -> Figure:
     """Poles over the gain of `fx.control.root_locus`, upper half plane, and the least damping against the gain."""
-    figure = Figure(figsize=(10.5, 4.6), layout="constrained", dpi=130)
+    figure = new_figure(10.5, 4.6)
     left, right = figure.subplots(1, 2, width_ratios=[1.25, 1])
     pole, omega = dataset.pole.values, dataset.omega.values
     top = 1.15 * float(np.max(omega))
     shown = np.where((pole.imag > -1e-9 * top) & (np.abs(pole) < 2 * top), pole, np.nan)
     moving = [k for k in range(pole.shape[1]) if np.nanmax(pole[:, k].imag, initial=0.0) > 1e-6 * top]
     for number, k in enumerate(moving):
-        left.plot(shown[:, k].real, shown[:, k].imag, color=MODES[number % 6], lw=1.6)
+        left.plot(shown[:, k].real, shown[:, k].imag, color=SIX[number % 6], lw=1.6)
     _damping_rays(left, top)
     left.plot(np.zeros_like(omega), omega, ls="none", marker="x", ms=8, mew=1.8, color=INK, label="no control")
     zero = dataset.zero.values[np.isfinite(dataset.zero.values)]
@@ -100,11 +109,7 @@ def root_locus(dataset: xr.Dataset) -> Figure:
     leak = dataset.attrs["leak_rad_s"]
     legs = dataset.attrs["legs"]
     which = "all legs" if len(legs) == 6 else f"leg{'s' if len(legs) > 1 else ''} {', '.join(map(str, legs))}"
-    figure.suptitle(
-        f"{dataset.attrs['design']}: {kind}, {which}" + (f", leak {leak:.4g} rad/s" if leak else ""),
-        color=INK,
-        fontsize=11,
-    )
+    entitle(figure, f"{dataset.attrs['design']}: {kind}, {which}" + (f", leak {leak:.4g} rad/s" if leak else ""))
     return figure
 
 
@@ -118,26 +123,26 @@ def _damping_rays(ax: Axes, top: float) -> None:
 
 def isolation(dataset: xr.Dataset, axes: tuple[str, ...] = ("x", "z")) -> Figure:
     """Transmissibility with and without control, of the axes named, from `fx.control.controlled_transmissibility`."""
-    figure = Figure(figsize=(4.9 * len(axes) + 0.6, 4.0), layout="constrained", dpi=130)
-    hertz = dataset.omega.values / (2 * np.pi)
+    figure = new_figure(4.9 * len(axes) + 0.6, 4.0)
+    hertz = dataset.omega.values / TWO_PI
     for ax, axis in zip(np.atleast_1d(figure.subplots(1, len(axes), sharey=True)), axes, strict=True):
-        for case, color, style in (("passive", FAINT, (0, (5, 2))), ("controlled", BLUE, "-")):
+        for case, color, style in (("passive", FAINT, DASHED), ("controlled", BLUE, "-")):
             curve = np.abs(dataset[case].sel(output=axis, base=axis).values)
             ax.loglog(hertz, curve, color=color, ls=style, lw=1.8, label={"passive": "no control"}.get(case, "control"))
         ax.axhline(1.0, color=FAINT, lw=0.7)
         ax.set(xlabel="frequency, Hz", title=f"{axis} of platform per {axis} of base")
         ax.title.set(color=INK, fontsize=10)
-        ax.legend(fontsize=9, framealpha=0.9, edgecolor="none")
+        ax.legend(**LEGEND)
         dress(ax)
     figure.axes[0].set_ylabel("transmissibility")
-    figure.suptitle(f"{dataset.attrs['design']}: {dataset.attrs['controller']}", color=INK, fontsize=11)
+    entitle(figure, f"{dataset.attrs['design']}: {dataset.attrs['controller']}")
     return figure
 
 
 def controlled_run(dataset: xr.Dataset, axis: str = "z") -> Figure:
     """Absolute acceleration of one axis in time, with and without control, and root mean squares of all axes beside
     the tangent's prediction, from `fx.control.simulate_control`."""
-    figure = Figure(figsize=(10.5, 4.4), layout="constrained", dpi=130)
+    figure = new_figure(10.5, 4.4)
     left, right = figure.subplots(1, 2, width_ratios=[1.7, 1])
     unit = str(dataset.acceleration_unit.sel(axis=axis).values).replace("2", "²")
     for case, color, width in (("passive", FAINT, 0.9), ("controlled", BLUE, 1.1)):
@@ -145,7 +150,7 @@ def controlled_run(dataset: xr.Dataset, axis: str = "z") -> Figure:
             dataset.time, dataset.acceleration.sel(case=case, axis=axis), color=color, lw=width, label=_WORDS[case]
         )
     left.set(xlabel="time, s", ylabel=f"acceleration {axis}, {unit}")
-    left.legend(loc="upper right", fontsize=9, framealpha=0.9, edgecolor="none")
+    left.legend(loc="upper right", **LEGEND)
     passive = dataset.rms_acceleration.sel(case="passive").values
     shaken = passive > 1e-3 * passive.max()  # less is left by symmetry and second-order effects
     place = np.arange(int(shaken.sum()))
@@ -163,11 +168,7 @@ def controlled_run(dataset: xr.Dataset, axis: str = "z") -> Figure:
         dress(ax)
     attrs = dataset.attrs
     limited = f", force limited in {attrs['saturated']:.1%} of samples" if attrs["saturated"] else ""
-    figure.suptitle(
-        f"{attrs['design']}: {attrs['controller']}, sampled every {1e3 * attrs['dt_s']:.4g} ms{limited}",
-        color=INK,
-        fontsize=11,
-    )
+    entitle(figure, f"{attrs['design']}: {attrs['controller']}, sampled every {1e3 * attrs['dt_s']:.4g} ms{limited}")
     return figure
 
 
@@ -176,7 +177,7 @@ _WORDS = {"passive": "no control", "controlled": "control"}
 
 def schedule(dataset: xr.Dataset) -> Figure:
     """Gain and least damping over one or two axes of `fx.control.gain_schedule`; of more, over the first two."""
-    figure = Figure(figsize=(10.5, 4.2), layout="constrained", dpi=130)
+    figure = new_figure(10.5, 4.2)
     left, right = figure.subplots(1, 2)
     dims = dataset.gain.dims
     if len(dims) == 1:
@@ -191,19 +192,19 @@ def schedule(dataset: xr.Dataset) -> Figure:
             ax.set(xlabel=_label(cut, x), ylabel=_label(cut, y))
     for ax in (left, right):
         dress(ax)
-    figure.suptitle(f"{dataset.attrs['design']}: schedule of {dataset.attrs['law']} feedback", color=INK, fontsize=11)
+    entitle(figure, f"{dataset.attrs['design']}: schedule of {dataset.attrs['law']} feedback")
     return figure
 
 
 def _lines(dataset: xr.Dataset, name: str, left: Axes, right: Axes) -> None:
     x = _shown(dataset, name) if name in dataset.coords else np.arange(dataset.sizes[name])
     left.plot(x, dataset.gain, color=BLUE, lw=1.8, marker=".")
-    left.axhline(dataset.attrs["fixed_gain"], color=FAINT, lw=1.0, ls=(0, (5, 2)))
+    left.axhline(dataset.attrs["fixed_gain"], color=FAINT, lw=1.0, ls=DASHED)
     left.set(ylabel=_named(dataset.gain))
     right.plot(x, dataset.least_damping, color=BLUE, lw=1.8, marker=".", label="gain follows the pose")
-    right.plot(x, dataset.fixed_damping, color=ORANGE, lw=1.4, ls=(0, (5, 2)), label="one gain")
+    right.plot(x, dataset.fixed_damping, color=ORANGE, lw=1.4, ls=DASHED, label="one gain")
     right.set(ylabel="least damping ratio")
-    right.legend(fontsize=9, framealpha=0.9, edgecolor="none")
+    right.legend(**LEGEND)
     for ax in (left, right):
         ax.set_xlabel(_label(dataset, name) if name in dataset.coords else name)
 

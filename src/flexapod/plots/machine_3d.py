@@ -11,7 +11,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
 from flexapod.mechanics.kinematics import force_transformation, home_pose
 from flexapod.mechanics.modes import NaturalModes
-from flexapod.plots.style import AXES, BASE, FAINT, INK, LEG, PLATFORM, SHORTENED, STRETCHED, VIEW
+from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, SHORTENED, STRETCHED, TRIAD, VIEW
 from flexapod.pose import Pose, rotation_from_vector
 
 if TYPE_CHECKING:
@@ -155,7 +155,7 @@ def _points(ax: Axes3D, points: Array, color: str) -> None:
 
 
 def _triad(ax: Axes3D, frame: Pose, length: float, names: bool) -> None:
-    for i, (name, color) in enumerate(AXES):
+    for i, (name, color) in enumerate(TRIAD):
         tip = frame.position + length * frame.matrix[:, i]
         _line(ax, frame.position, tip, color=color, lw=1.6)
         if names:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from flexapod.conventions import Array
+from flexapod.conventions import TWO_PI, Array
 from flexapod.plots.style import FAINT, INK, PLATFORM, STRETCHED
 
 if TYPE_CHECKING:
@@ -23,12 +23,12 @@ def frequencies(
 
         ax = plt.figure(figsize=(7, 2.6), layout="constrained").add_subplot()
     y = np.arange(1, 7)
-    hz = np.asarray(omega) / (2 * np.pi)
+    hz = np.asarray(omega) / TWO_PI
     seen = hz > 0
     ax.hlines(y, 0, 1, transform=ax.get_yaxis_transform(), color=FAINT, lw=0.4, alpha=0.5)
     ax.plot(hz[seen], y[seen], "o", ms=8, color=PLATFORM, label="Eq. 5", clip_on=False, zorder=3)
     if tangent is not None:
-        at = np.abs(tangent) / (2 * np.pi)
+        at = np.abs(tangent) / TWO_PI
         ax.plot(at, y, "|", ms=17, mew=2.2, color=STRETCHED, label="exact tangent", clip_on=False, zorder=4)
         ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False, labelcolor=INK, fontsize=10)
     _logarithmic(ax, hz[seen])

@@ -12,12 +12,24 @@ from flexapod.mechanics.kinematics import home_pose
 from flexapod.optimisation.design_results import OptimalDesign
 from flexapod.optimisation.pareto import ParetoFront
 from flexapod.optimisation.uncertainty import Robustness
-from flexapod.plots.style import FAINT, INK, dress
+from flexapod.plots.style import (
+    BLUE,
+    DASHED,
+    FAINT,
+    GREEN,
+    INK,
+    LEGEND,
+    ORANGE,
+    OUTSIDE,
+    SKY,
+    dress,
+    entitle,
+    new_figure,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-BLUE, ORANGE, GREEN = "#0072b2", "#d55e00", "#009e73"  # Okabe and Ito
 _PARAMETERS = 14  # most that are drawn
 INDEX = "index, rad/s"
 
@@ -33,22 +45,20 @@ def search(found: OptimalDesign) -> Figure:
         best = np.fmax.accumulate(np.where(feasible, index, np.nan))
         ax.step(trial, best, where="post", color=BLUE, lw=1.4, label="best so far")
     ax.axhline(found.index, color=GREEN, lw=1.8, label=f"finished and verified: {found.index:.5g}")
-    ax.axhline(
-        found.start_index, color=ORANGE, lw=1.4, ls=(0, (5, 2)), label=f"design begun with: {found.start_index:.5g}"
-    )
+    ax.axhline(found.start_index, color=ORANGE, lw=1.4, ls=DASHED, label=f"design begun with: {found.start_index:.5g}")
     if not trial.size:
         ax.set_xticks([])
     told = found.history["index"].attrs
     ax.set(xlabel="trial", ylabel=told["label"] + (f", {told['units']}" if told["units"] else ""))
     ax.set_ylim(bottom=0, top=1.08 * max(found.index, found.start_index, *index[np.isfinite(index)]))
-    figure.legend(loc="outside lower center", ncols=3, fontsize=9, frameon=False)
-    figure.suptitle(f"{found.start.name}: search", color=INK, fontsize=11)
+    figure.legend(ncols=3, **OUTSIDE)
+    entitle(figure, f"{found.start.name}: search")
     return figure
 
 
 def plan(found: OptimalDesign) -> Figure:
     """Both designs from above and from the side, at home: joints of base and platform, and the legs. mm."""
-    figure = Figure(figsize=(9.6, 4.8), layout="constrained", dpi=130)
+    figure = new_figure(9.6, 4.8)
     above, beside = figure.subplots(1, 2)
     shapes = ((found.start, ORANGE, (0, (4, 2)), 1.2), (found.hexapod, BLUE, "-", 1.8))
     for hexapod, color, style, width in shapes:
@@ -69,7 +79,7 @@ def plan(found: OptimalDesign) -> Figure:
     for ax in (above, beside):
         _dress(ax)
         ax.title.set(color=INK, fontsize=10)
-    figure.legend(lines, names, loc="outside lower center", ncols=4, fontsize=9, frameon=False)
+    figure.legend(lines, names, ncols=4, **OUTSIDE)
     return figure
 
 
@@ -96,8 +106,8 @@ def front(found: ParetoFront) -> Figure:
         ax.set_xscale("log")
     ax.set(xlabel=f"{found.name}{f', {found.unit}' if found.unit else ''}", ylabel=INDEX)
     ax.set_ylim(bottom=0)
-    ax.legend(fontsize=9, framealpha=0.9, edgecolor="none", loc="best")
-    figure.suptitle(f"{found.hexapod.name}: index against {found.name}", color=INK, fontsize=11)
+    ax.legend(**LEGEND)
+    entitle(figure, f"{found.hexapod.name}: index against {found.name}")
     return figure
 
 
@@ -108,16 +118,14 @@ def spread(found: Robustness) -> Figure:
     ax.hist(values, bins=min(80, max(12, int(np.sqrt(values.size)))), color=BLUE, alpha=0.55, density=True, lw=0)
     lines = [
         (found.nominal, GREEN, "-", f"as designed: {found.nominal:.5g}"),
-        (found.quantiles[0.01], BLUE, (0, (5, 2)), f"99 % are above {found.quantiles[0.01]:.5g}"),
+        (found.quantiles[0.01], BLUE, DASHED, f"99 % are above {found.quantiles[0.01]:.5g}"),
         (found.worst, ORANGE, "-", f"worst case: {found.worst:.5g}"),
     ]
     for value, color, style, label in lines:
         ax.axvline(value, color=color, lw=1.8, ls=style, label=label)
     ax.set(xlabel=f"least {INDEX}" if found.samples.attrs["poses"] > 1 else INDEX, ylabel="share of designs per rad/s")
-    figure.legend(loc="outside lower center", ncols=3, fontsize=9, frameon=False)
-    figure.suptitle(
-        f"{found.samples.attrs['design']}: index of {values.size} uncertain designs", color=INK, fontsize=11
-    )
+    figure.legend(ncols=3, **OUTSIDE)
+    entitle(figure, f"{found.samples.attrs['design']}: index of {values.size} uncertain designs")
     return figure
 
 
@@ -127,7 +135,7 @@ def importance(found: Robustness) -> Figure:
     told = found.sensitivity.sortby("total", ascending=False).isel(parameter=slice(0, _PARAMETERS))
     figure, ax = _figure(7.2, 1.4 + 0.34 * told.sizes["parameter"])
     y = np.arange(told.sizes["parameter"])[::-1]
-    bars = (("total", 0.19, BLUE, "with interactions"), ("first", -0.19, "#56b4e9", "on its own"))
+    bars = (("total", 0.19, BLUE, "with interactions"), ("first", -0.19, SKY, "on its own"))
     for name, offset, color, label in bars:
         error = told[f"{name}_confidence"].values
         ax.barh(
@@ -137,12 +145,12 @@ def importance(found: Robustness) -> Figure:
     ax.set_yticks(y, [str(name) for name in told.parameter.values])
     ax.set(xlabel="share of the variance of the index")
     ax.set_xlim(left=0)
-    figure.legend(loc="outside lower center", ncols=2, fontsize=9, frameon=False)
+    figure.legend(ncols=2, **OUTSIDE)
     return figure
 
 
 def _figure(width: float, height: float) -> tuple[Figure, Axes]:
-    figure = Figure(figsize=(width, height), layout="constrained", dpi=130)
+    figure = new_figure(width, height)
     ax = figure.subplots()
     _dress(ax)
     return figure, ax

@@ -13,13 +13,24 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 
 from flexapod.paths.analysis import PathIndex
-from flexapod.plots.style import FAINT, INK, dress
+from flexapod.plots.style import (
+    BLUE,
+    DASHED,
+    FAINT,
+    INK,
+    LEGEND,
+    ORANGE,
+    OUTSIDE,
+    SIX,
+    VALUES,
+    dress,
+    entitle,
+    new_figure,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-BLUE, ORANGE, GREEN = "#0072b2", "#d55e00", "#009e73"  # Okabe and Ito
-LEGS = (BLUE, ORANGE, GREEN, "#cc79a7", "#56b4e9", "#e69f00")
 STYLES = ("-", "-", "-", (0, (5, 1.5)), (0, (5, 1.5)), (0, (5, 1.5)))
 
 
@@ -28,10 +39,10 @@ def index_along(found: PathIndex, beside: PathIndex | None = None, ax: Axes | No
 
     Paths of different duration are drawn over the share of it.
     """
-    figure = Figure(figsize=(8.2, 5.4), layout="constrained", dpi=130)
+    figure = new_figure(8.2, 5.4)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
     shared = beside is not None and beside.samples.time.values[-1] != found.samples.time.values[-1]
-    paths = [(found, BLUE, "-", "path"), *([] if beside is None else [(beside, FAINT, (0, (5, 2)), "straight line")])]
+    paths = [(found, BLUE, "-", "path"), *([] if beside is None else [(beside, FAINT, DASHED, "straight line")])]
     for result, color, style, label in paths:
         x = _x(result, shared)
         above.plot(x, result.samples["index"], color=color, ls=style, lw=1.9, label=label)
@@ -51,11 +62,11 @@ def index_along(found: PathIndex, beside: PathIndex | None = None, ax: Axes | No
             )
     above.set(ylabel=r"lowest natural frequency $\omega_1$, rad/s")
     above.set_ylim(bottom=0)
-    above.legend(fontsize=9, framealpha=0.9, edgecolor="none", loc="best")
+    above.legend(**LEGEND)
     below.set(ylabel="cond(H)", xlabel="share of the path's time" if shared else "time, s")
     for ax in (above, below):
         dress(ax)
-    figure.suptitle(f"{found.samples.attrs['design']}: index along the path", color=INK, fontsize=11)
+    entitle(figure, f"{found.samples.attrs['design']}: index along the path")
     return figure
 
 
@@ -67,11 +78,11 @@ def _x(result: PathIndex, shared: bool) -> np.ndarray:
 def plan_map(dataset: xr.Dataset) -> Figure:
     """The index on the plane through start, goal and the planned path's farthest point, from `fx.paths.plan_slice`."""
     width, height = np.ptp(dataset.along.values), np.ptp(dataset.aside.values)
-    figure = Figure(figsize=(7.4, 1.4 + 5.6 * min(height / width, 1.2)), layout="constrained", dpi=130)
+    figure = new_figure(7.4, 1.4 + 5.6 * min(height / width, 1.2))
     ax = figure.subplots()
     bound = dataset.attrs["bound"]
     x, y, values = dataset.along.values, dataset.aside.values, dataset["index"].values
-    mesh = ax.pcolormesh(x, y, values, cmap="viridis", shading="gouraud", rasterized=True, vmin=0)
+    mesh = ax.pcolormesh(x, y, values, cmap=VALUES, shading="gouraud", rasterized=True, vmin=0)
     bar = figure.colorbar(mesh, ax=ax)
     bar.set_label(r"lowest natural frequency $\omega_1$, rad/s", color=INK)
     bar.ax.axhline(bound, color="white", lw=2)
@@ -79,7 +90,7 @@ def plan_map(dataset: xr.Dataset) -> Figure:
     ax.clabel(weak, fmt={bound: f"{bound:.4g} rad/s"}, fontsize=9, colors="white")
     blocked = np.where(dataset.met.values, np.nan, 1.0)
     ax.contourf(x, y, np.nan_to_num(blocked), levels=[0.5, 1.5], colors="none", hatches=["////"])
-    ax.plot([0, dataset.attrs["straight"]], [0, 0], color=ORANGE, lw=2.0, ls=(0, (5, 2)), label="straight line")
+    ax.plot([0, dataset.attrs["straight"]], [0, 0], color=ORANGE, lw=2.0, ls=DASHED, label="straight line")
     ax.plot(dataset.path_along, dataset.path_aside, color="white", lw=4.0)
     ax.plot(dataset.path_along, dataset.path_aside, color=INK, lw=2.2, label="planned path")
     for place, name in ((0.0, "start"), (dataset.attrs["straight"], "goal")):
@@ -92,20 +103,18 @@ def plan_map(dataset: xr.Dataset) -> Figure:
         ylim=(y[0], y[-1]),
         aspect="equal",
     )
-    ax.legend(loc="upper right", fontsize=9, framealpha=0.9, edgecolor="none")
+    ax.legend(loc="upper right", **LEGEND)
     ax.tick_params(color=FAINT, labelcolor=INK, labelsize=9)
-    figure.suptitle(
-        f"{dataset.attrs['design']}: round the weak region (hatched: a requirement is broken)", color=INK, fontsize=11
-    )
+    entitle(figure, f"{dataset.attrs['design']}: round the weak region (hatched: a requirement is broken)")
     return figure
 
 
 def loads(dataset: xr.Dataset) -> Figure:
     """Leg forces and leg lengths along a path, from `fx.paths.path_loads`; thin: the forces at rest."""
-    figure = Figure(figsize=(10.5, 4.4), layout="constrained", dpi=130)
+    figure = new_figure(10.5, 4.4)
     left, right = figure.subplots(1, 2, sharex=True)
     for i, leg in enumerate(dataset.leg.values):
-        line = {"color": LEGS[i], "ls": STYLES[i]}
+        line = {"color": SIX[i], "ls": STYLES[i]}
         left.plot(dataset.time, dataset.leg_force[:, i], lw=1.7, label=f"leg {leg}", **line)
         left.plot(dataset.time, dataset.static_force[:, i], lw=0.6, alpha=0.7, **line)
         right.plot(dataset.time, dataset.leg_length[:, i], lw=1.7, **line)
@@ -114,6 +123,6 @@ def loads(dataset: xr.Dataset) -> Figure:
     left.yaxis.set_major_formatter(EngFormatter())
     for ax in (left, right):
         dress(ax)
-    figure.legend(loc="outside lower center", ncols=6, fontsize=9, frameon=False)
-    figure.suptitle(f"{dataset.attrs['design']}: legs along the path", color=INK, fontsize=11)
+    figure.legend(ncols=6, **OUTSIDE)
+    entitle(figure, f"{dataset.attrs['design']}: legs along the path")
     return figure

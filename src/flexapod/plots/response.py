@@ -1,4 +1,4 @@
-"""Figures of vibration: frequency response, random response, stepped sine, displacement in time.
+"""Figures of vibration: frequency response, random response, stepped sine.
 
 Each function draws a result of a study on a new matplotlib Figure and returns it. Frequencies are in Hz unless asked
 for in rad/s; the rest is in SI units.
@@ -12,25 +12,17 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter, FuncFormatter, LogLocator, MaxNLocator, NullLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from flexapod.conventions import Array
-from flexapod.plots.style import FAINT, INK, dress
+from flexapod.conventions import LEGS, ROTATIONS, TRANSLATIONS, TWO_PI, Array
+from flexapod.plots.style import FAINT, INK, OUTPUT_NAMES, SIX, dress, name_panel, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-COLOURS = ("#0072b2", "#d55e00", "#009e73")  # Okabe and Ito; line styles tell them apart as well
+COLOURS = SIX[:3]  # line styles tell them apart as well
 STYLES = ("-", (0, (6, 2)), (0, (2, 1.5)))
 _ROUNDING = 1e-9  # of the largest curve beside it: what is smaller is symmetry broken by rounding, and left out
-OUTPUT_NAMES = {
-    "x": "translation x",
-    "y": "translation y",
-    "z": "translation z",
-    "roll": "rotation about x",
-    "pitch": "rotation about y",
-    "yaw": "rotation about z",
-}
 _VARIABLES = {
     "absolute": ("base", "motion per base motion"),
     "relative": ("base", "motion relative to the base per base motion"),
@@ -49,12 +41,12 @@ def frequency_response(
     """
     dimension, words = _VARIABLES[variable]
     natural, response = list(natural), dataset[variable].sel({dimension: given})
-    hertz = dataset.omega.values / (2 * np.pi)
+    hertz = dataset.omega.values / TWO_PI
     unit = "m" if dimension == "leg" else str(dataset[f"{dimension}_unit"].sel({dimension: given}).values)
-    figure = _figure(10, 6.2)
+    figure = new_figure(10, 6.2)
     grid = figure.subplots(2, 2, sharex=True, height_ratios=[2, 1])
     least = _ROUNDING * np.nanmax(_positive(np.abs(response.values)), initial=0.0)
-    for column, outputs in enumerate((("x", "y", "z"), ("roll", "pitch", "yaw"))):
+    for column, outputs in enumerate((TRANSLATIONS, ROTATIONS)):
         above, below = grid[0, column], grid[1, column]
         for i, output in enumerate(outputs):
             values = response.sel(output=output).values
@@ -82,9 +74,9 @@ def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figur
     """Spectral density and cumulative RMS of a quantity of `fx.random_response`'s result, per Hz."""
     density, cumulative = dataset[f"psd_{quantity}"], dataset[f"cumulative_{quantity}"]
     along = density.dims[1]
-    hertz = dataset.omega.values / (2 * np.pi)
-    groups = [("x", "y", "z"), ("roll", "pitch", "yaw")] if along == "output" else [("1", "2", "3"), ("4", "5", "6")]
-    figure = _figure(10, 6.2)
+    hertz = dataset.omega.values / TWO_PI
+    groups = [TRANSLATIONS, ROTATIONS] if along == "output" else [LEGS[:3], LEGS[3:]]
+    figure = new_figure(10, 6.2)
     grid = figure.subplots(2, 2, sharex=True)
     least = _ROUNDING * float(cumulative[-1].max())
     for column, names in enumerate(groups):
@@ -93,7 +85,7 @@ def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figur
             rms = cumulative.sel({along: name}).values
             seen = 1.0 if rms[-1] > least else np.nan
             label = f"{OUTPUT_NAMES.get(name, f'leg {name}')}: {rms[-1] if seen == 1 else 0:.4g}"
-            grid[0, column].loglog(hertz, _positive(seen * 2 * np.pi * density.sel({along: name}).values), **line)
+            grid[0, column].loglog(hertz, _positive(seen * TWO_PI * density.sel({along: name}).values), **line)
             grid[1, column].loglog(hertz, _positive(seen * rms), label=label, **line)
         unit = _quantity_unit(quantity, column)
         grid[0, column].set_ylabel(f"density, {unit if unit == 'N' else f'({unit})'}²/Hz")
@@ -122,7 +114,7 @@ def stepped_ratio(
     """
     line = dataset["linear"] if linear is None else linear
     natural, least = list(natural), _ROUNDING * float(np.abs(line).max())
-    figure = _figure(10.5, 6.2)
+    figure = new_figure(10.5, 6.2)
     for i, (name, ax) in enumerate(zip(OUTPUT_NAMES, figure.subplots(2, 3, sharex=True).ravel(), strict=True)):
         smooth = np.abs(line.sel(output=name).values)
         dots = dataset.ratio.sel(output=name).values
@@ -138,7 +130,7 @@ def stepped_ratio(
             _plain_decades(ax)
         _mark(ax, natural, hertz=False)
         dress(ax)
-        _name(ax, i, name)
+        name_panel(ax, i, name)
         unit = "rad" if i > 2 else "m"
         ax.set_ylabel(f"ratio, {_ratio_unit(unit, dataset.attrs['amplitude_unit'])}")
         if i > 2:
@@ -148,41 +140,10 @@ def stepped_ratio(
     return figure
 
 
-def displacements(times: Array, displacement: Array, bound: Array | None = None, bound_name: str = "bound") -> Figure:
-    """Figs 7 and 8: displacement from equilibrium (m, 6), m and rad, against time (m,) s, six outputs.
-
-    bound: (m, 6), drawn on both sides of zero.
-    """
-    figure = _figure(10.5, 6.2)
-    for i, (name, ax) in enumerate(zip(OUTPUT_NAMES, figure.subplots(2, 3, sharex=True).ravel(), strict=True)):
-        ax.plot(times, displacement[:, i], color=COLOURS[0], lw=0.5)
-        if bound is not None:
-            ax.plot(times, bound[:, i], color=COLOURS[1], lw=1.1, label=bound_name)
-            ax.plot(times, -bound[:, i], color=COLOURS[1], lw=1.1)
-        dress(ax)
-        _name(ax, i, name)
-        ax.yaxis.set_major_formatter(EngFormatter(unit="rad" if i > 2 else "m"))
-        ax.yaxis.set_major_locator(MaxNLocator(5))
-        ax.margins(x=0)
-        if i > 2:
-            ax.set_xlabel("time, s")
-    if bound is not None:
-        figure.legend(*ax.get_legend_handles_labels(), loc="outside lower right", frameon=False, labelcolor=INK)
-    return figure
-
-
-def _figure(width: float, height: float) -> Figure:
-    return Figure(figsize=(width, height), layout="constrained", dpi=130)
-
-
-def _name(ax: Axes, i: int, output: str) -> None:
-    ax.set_title(f"({'abcdef'[i]}) {OUTPUT_NAMES[output]}", loc="left", fontsize=10, color=INK)
-
-
 def _mark(ax: Axes, natural: Iterable[float], hertz: bool = True) -> None:
     low, high = ax.get_xlim()
     for omega in natural:
-        place = omega / (2 * np.pi) if hertz else omega
+        place = omega / TWO_PI if hertz else omega
         if low < place < high:
             ax.axvline(place, color=FAINT, lw=0.7, ls=(0, (1, 2)), zorder=0)
 

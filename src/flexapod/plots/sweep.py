@@ -17,6 +17,7 @@ import numpy as np
 from flexapod.conventions import AXES, Array
 from flexapod.errors import OutputError, PoseError
 from flexapod.optional import needed
+from flexapod.plots.style import BLUE, INK, NO_VALUE, ORANGE, VALUES
 from flexapod.workspace.quantities import QUANTITIES
 from flexapod.workspace.summary import columns
 
@@ -25,12 +26,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from mpl_toolkits.mplot3d.axes3d import Axes3D
 
-INK = "#20262d"
-DOT = "#0072b2"
-WORST = "#d55e00"
 DENSITY = "viridis_r"
-VALUES = "viridis"
-NO_VALUE = "#d5d9de"
 _DOTS = 20_000  # poses up to which each gets its dot
 _CELLS = (220, 160)
 LABELS = {
@@ -60,7 +56,7 @@ def index_scatter(
     logarithmic = high[1] > 5 * low[1]
     if count <= _DOTS:
         for _, (omega, cond) in columns(sweep, ("omega_1", "cond_H")):
-            ax.plot(cond, omega, ".", color=DOT, ms=_dot_size(count), mew=0, alpha=0.6, rasterized=True)
+            ax.plot(cond, omega, ".", color=BLUE, ms=_dot_size(count), mew=0, alpha=0.6, rasterized=True)
     else:
         _shaded(sweep, ax, (low, high, logarithmic), colorbar)
     if logarithmic:
@@ -143,7 +139,7 @@ def index_map(sweep: xr.Dataset, quantity: str = "omega_1", ax: Axes | None = No
         lines = ax.contour(x, y, numbers, 7, colors="white", linewidths=0.9)
         _label_contours(ax, lines)
         worst = np.unravel_index(np.ma.argmin(numbers), numbers.shape)
-        ax.plot(x[worst[1]], y[worst[0]], "X", color=WORST, mec="white", ms=10, zorder=5, clip_on=False)
+        ax.plot(x[worst[1]], y[worst[0]], "X", color=ORANGE, mec="white", ms=10, zorder=5, clip_on=False)
     if "within_limits" in sweep:
         outside = ~np.asarray(sweep["within_limits"].transpose(down, across).values, dtype=bool)
         if outside.any():
@@ -288,7 +284,7 @@ def index_line(sweep: xr.Dataset, ax: Axes | None = None) -> Axes:
     values = _grid(sweep, "omega_1", 1)
     ax = _axes() if ax is None else ax
     positions, label = _axis(values, str(values.dims[0]))
-    ax.plot(positions, values.values, color=DOT, lw=1.8)
+    ax.plot(positions, values.values, color=BLUE, lw=1.8)
     ax.set_ylim(bottom=0)
     ax.set_xlabel(label)
     ax.set_ylabel(LABELS["omega_1"])

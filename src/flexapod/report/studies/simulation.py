@@ -56,7 +56,7 @@ def study(
 
 
 def _displacement(dataset: xr.Dataset, name: str) -> Figure:
-    return plots.response.displacements(dataset.time.values, dataset[name].values)
+    return plots.simulation.displacements(dataset.time.values, dataset[name].values)
 
 
 def _stored(dataset: xr.Dataset) -> xr.Dataset:
