@@ -24,6 +24,7 @@ from flexapod.pose import Pose
 from flexapod.simulation.integrator import IntegratorOptions, integrate
 from flexapod.simulation.run import SimulationRun
 from flexapod.vibration.frequency_response import transmissibility
+from flexapod.vibration.grid import frequency_grid
 from flexapod.vibration.harmonic import complex_poles, steady_response
 from flexapod.vibration.stepped import stepped_sine
 
@@ -104,7 +105,7 @@ def _ratio(settings: Settings) -> Part:
     near = resonances[:, None] * (1 + np.array([-4, -2, -1, -0.5, -0.2, 0.2, 0.5, 1, 2, 4]) * 1e-3)
     omega = np.sort(np.concatenate([np.linspace(50.0, 800.0, 170), near.ravel()]))
     stepped = stepped_sine(hexapod, pose, omega=omega, amplitude=AMPLITUDE, axis="z", joint=joint)
-    fine = np.union1d(omega, np.concatenate([np.linspace(50, 800, 4000), resonances]))
+    fine = frequency_grid(hexapod, pose, omega_min=50.0, omega_max=800.0, samples=4000, joint=joint)
     line = transmissibility(hexapod, pose, omega=fine, joint=joint).absolute.sel(base="z")
     figure = response.stepped_ratio(stepped, resonances, line)
     title = "Fig. 9: ratio of response to base amplitude, base z, 1 µm"

@@ -1,7 +1,7 @@
 from .analysis import PathIndex as PathIndex
 from .analysis import path_index as path_index
-from .analysis import path_loads as path_loads
 from .leg_speed import LegSpeed as LegSpeed
+from .loads import path_loads as path_loads
 from .plan import Plan as Plan
 from .plan import plan_slice as plan_slice
 from .planning import plan_path as plan_path

@@ -1,4 +1,4 @@
-"""The dynamic stability index along a trajectory, and what the legs do on it."""
+"""The dynamic stability index along a trajectory."""
 
 from __future__ import annotations
 
@@ -13,13 +13,12 @@ from scipy.integrate import cumulative_simpson
 from scipy.optimize import brentq, minimize_scalar
 
 from flexapod.checks import one_of, positive, whole
-from flexapod.conventions import LEGS, TRANSLATIONS, Array, JointModel
+from flexapod.conventions import TRANSLATIONS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError, SingularPoseError
-from flexapod.mechanics.dynamics import inverse_dynamics
-from flexapod.mechanics.inputs import ZERO, as_hexapod
+from flexapod.mechanics.inputs import as_hexapod
 from flexapod.mechanics.joint_limits import check_limits
-from flexapod.mechanics.kinematics import condition_number, force_transformation, leg_rates
+from flexapod.mechanics.kinematics import condition_number, force_transformation
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
@@ -138,7 +137,7 @@ def path_index(
     >>> found.above, round(found.minimum, 1)
     (True, 173.1)
     """
-    _check(hexapod, path, samples)
+    check_arguments(hexapod, path, samples)
     if bound is not None:
         positive(bound, "bound", "rad/s")
     one_of(singular, "singular", ("raise", "keep"))
@@ -149,7 +148,7 @@ def path_index(
 
     values = index(times)
     _all_possible(path, times, values)
-    crossings = _crossings(hexapod, path, times)
+    crossings = singular_times(hexapod, path, times)
     dips = _dips(index, times, values)
     least_time, least = min([*dips, *zip(times, values, strict=True)], key=lambda point: point[1])
     if least < _ZERO_INDEX * values.max() and not crossings:
@@ -168,97 +167,8 @@ def path_index(
     )
 
 
-def path_loads(
-    hexapod: Hexapod,
-    path: Trajectory,
-    *,
-    samples: int = 400,
-    force: ArrayLike = ZERO,
-    moment: ArrayLike = ZERO,
-    joint: JointModel = "universal",
-) -> xr.Dataset:
-    """Compute leg forces, leg speeds and actuator power along a trajectory, under the full dynamics.
-
-    Parameters
-    ----------
-    hexapod : Hexapod
-        The design.
-    path : Trajectory
-        The motion of the platform.
-    samples : int, optional
-        Number of instants, at least 8.
-    force, moment : array_like, optional
-        Force (N) and moment (N m) on the platform at its reference point, in the platform's axes: (3,), or a row for
-        each instant.
-    joint : {"universal", "spin_free"}, optional
-        Model of the joint between a leg and the base.
-
-    Returns
-    -------
-    xarray.Dataset
-        Over `time` (s) and `leg`: leg_force (N, positive: compression), static_force (N, the same at rest), leg_length
-        (m), leg_rate (m/s), leg_acceleration (m/s2), power (W) of each actuator; over `leg`: stroke (m), peak_force
-        (N); over `time`: within_limits.
-
-    Raises
-    ------
-    SingularPoseError
-        If no leg forces can drive the trajectory somewhere.
-    ArgumentError
-        If there are too few samples, or `path` is not a Trajectory.
-
-    See Also
-    --------
-    path_index : the dynamic stability index along a trajectory.
-
-    Notes
-    -----
-    The leg forces solve Eq. 34 of [1]_ at every instant.
-
-    References
-    ----------
-    .. [1] P. Mukherjee, B. Dasgupta and A. K. Mallik, "Dynamic stability index and vibration analysis of a flexible
-       Stewart platform", Journal of Sound and Vibration (2007).
-
-    Examples
-    --------
-    >>> hexapod = fx.load("mukherjee-i")
-    >>> path = fx.Trajectory([[0, 0, 0.89, 0, 0, 0], [0.1, 0, 0.89, 0, 0, 0]], times=[0.0, 1.0])
-    >>> fx.paths.path_loads(hexapod, path).peak_force.dims
-    ('leg',)
-    """
-    _check(hexapod, path, samples)
-    times = path.grid(samples)
-    motion = path(times)
-    crossings = _crossings(hexapod, path, times)
-    leg_force = inverse_dynamics(hexapod, motion, base=None, force=force, moment=moment, joint=joint)
-    lost = [*crossings, *times[~np.isfinite(leg_force).all(axis=-1)]]
-    if lost:
-        raise SingularPoseError(
-            f"no leg forces drive the path at t = {lost[0]:.6g} s, {path(lost[0]).pose!r}: H is singular there. "
-            "Lead the path round it (see plan_path)."
-        )
-    static = inverse_dynamics(hexapod, motion.pose, base=None, force=force, moment=moment, joint=joint)
-    legs = leg_rates(hexapod, motion)
-    grid = ("time", "leg")
-    dataset = xr.Dataset(
-        {
-            "leg_force": (grid, leg_force, {"units": "N", "long_name": "leg force"}),
-            "static_force": (grid, static, {"units": "N", "long_name": "leg force at rest"}),
-            "leg_length": (grid, legs.length, {"units": "m", "long_name": "leg length"}),
-            "leg_rate": (grid, legs.rate, {"units": "m/s", "long_name": "leg rate"}),
-            "leg_acceleration": (grid, legs.acceleration, {"units": "m/s2", "long_name": "leg acceleration"}),
-            "power": (grid, leg_force * legs.rate, {"units": "W", "long_name": "actuator power"}),
-            "stroke": ("leg", np.ptp(legs.length, axis=0), {"units": "m", "long_name": "leg travel"}),
-            "peak_force": ("leg", np.abs(leg_force).max(axis=0), {"units": "N", "long_name": "peak leg force"}),
-            "within_limits": ("time", check_limits(hexapod, motion.pose).ok),
-        },
-        {"time": ("time", times, {"units": "s"}), "leg": list(LEGS)},
-    )
-    return dataset.assign_attrs(design=hexapod.name, digest=hexapod.digest)
-
-
-def _check(hexapod: Hexapod, path: Trajectory, samples: int) -> None:
+def check_arguments(hexapod: Hexapod, path: Trajectory, samples: int) -> None:
+    """Raises DesignError or ArgumentError for what is no design, no trajectory, or too few samples."""
     as_hexapod(hexapod)
     if not isinstance(path, Trajectory):
         raise ArgumentError(f"path is {type(path).__name__}; it must be a flexapod Trajectory.")
@@ -272,7 +182,7 @@ def _all_possible(path: Trajectory, times: Array, values: Array) -> None:
         raise PoseError(f"no leg can take the pose at t = {t:.6g} s of the path, {path(t).pose!r}. Move the waypoints.")
 
 
-def _crossings(hexapod: Hexapod, path: Trajectory, times: Array) -> tuple[float, ...]:
+def singular_times(hexapod: Hexapod, path: Trajectory, times: Array) -> tuple[float, ...]:
     """Times at which det H changes sign: a path from one side to the other passes through a singular pose."""
 
     def side(t: ArrayLike) -> Array:

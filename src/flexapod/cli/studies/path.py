@@ -10,8 +10,9 @@ from flexapod.cli.options import common, waypoints
 from flexapod.cli.options.path import Options
 from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
-from flexapod.paths.analysis import path_index, path_loads
+from flexapod.paths.analysis import path_index
 from flexapod.paths.leg_speed import LegSpeed
+from flexapod.paths.loads import path_loads
 from flexapod.paths.plan import Plan, plan_slice
 from flexapod.paths.planning import plan_path
 from flexapod.paths.requirements import PathRequirements
