@@ -125,7 +125,7 @@ def simulate_control(
     found, predicted = {}, {}
     for number_, (case, law) in enumerate(zip(CASES, (controller, idle), strict=True)):
         report = None if progress is None else _part(progress, 0.5 * number_, 0.5)
-        found[case] = simulate_sampled(run, law, clock, joint, limits, noise, report)
+        found[case] = simulate_sampled(run, law, clock, joint, limits, noise=noise, progress=report)
         predicted[case] = predict(plant, law, base_motion, clock, noise)
     return _dataset(where, clock, found, predicted, after).assign_attrs(
         design=hexapod.name,
@@ -169,6 +169,7 @@ def simulate_sampled(
     clock: Clock,
     joint: JointModel,
     limits: Array,
+    *,
     noise: Array,
     progress: Callable[[float], Any] | None = None,
 ) -> Recording:

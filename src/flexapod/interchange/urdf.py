@@ -128,10 +128,10 @@ def _leg(robot: ET.Element, leg: Leg) -> None:
             _inertial(link, getattr(leg, part))
     names = [f"{leg.name}_{joint}" for joint in ("universal_k", "universal_y", "slide")]
     links = ["base", f"{leg.name}_cross", f"{leg.name}_lower", f"{leg.name}_upper"]
-    _joint(robot, "continuous", names[0], links[0:2], leg.base_joint, leg.axes, leg.axis, leg.universal)
-    _joint(robot, "continuous", names[1], links[1:3], np.zeros(3), np.eye(3), _ALONG["y"], leg.universal)
+    _joint(robot, "continuous", names[0], links[0:2], leg.base_joint, leg.axes, axis=leg.axis, damping=leg.universal)
+    _joint(robot, "continuous", names[1], links[1:3], np.zeros(3), np.eye(3), axis=_ALONG["y"], damping=leg.universal)
     end = np.array([leg.length, 0.0, 0.0])
-    slide = _joint(robot, "prismatic", names[2], links[2:4], end, np.eye(3), _ALONG["x"], leg.prismatic)
+    slide = _joint(robot, "prismatic", names[2], links[2:4], end, np.eye(3), axis=_ALONG["x"], damping=leg.prismatic)
     low, high = leg.travel or (-leg.length, leg.length)
     add(slide, "limit", lower=low, upper=high, effort=UNLIMITED, velocity=UNLIMITED)
 
@@ -145,7 +145,7 @@ def _platform(robot: ET.Element, machine: Machine) -> None:
         child = f"socket_{axis}"
         add(robot, "link", name=child)
         name = f"{first.name}_spherical_{axis}"
-        _joint(robot, "continuous", name, [parent, child], np.zeros(3), turn, along, first.spherical)
+        _joint(robot, "continuous", name, [parent, child], np.zeros(3), turn, axis=along, damping=first.spherical)
         parent, turn = child, np.eye(3)
     _inertial(add(robot, "link", name="platform"), machine.platform)
     _joint(robot, "fixed", "platform_fixed", [parent, "platform"], -first.platform_joint, np.eye(3))
@@ -158,6 +158,7 @@ def _joint(
     links: list[str],
     position: Array,
     rotation: Array,
+    *,
     axis: Array | list[float] | None = None,
     damping: float = 0.0,
 ) -> ET.Element:

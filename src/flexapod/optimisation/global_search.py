@@ -47,6 +47,7 @@ class Study:
         self,
         problem: Problem,
         file: str | Path | None = None,
+        *,
         aim: str = "index",
         directions: tuple[str, ...] = ("maximize",),
         seed: int = 0,
