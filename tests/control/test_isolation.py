@@ -298,7 +298,7 @@ def test_measurements_are_numbered_as_the_plant_says(isolator):
         Clock(1e-3, 300, 1),
         np.zeros((300, 36)),
     )
-    found = simulate_sampled(run, law, clock, "universal", np.full(6, np.inf), nothing).measured[-1]
+    found = simulate_sampled(run, law, clock, "universal", np.full(6, np.inf), noise=nothing).measured[-1]
     expected = predict(plant, law, shaken(), clock, nothing).measured[-1]
     assert len(MEASUREMENTS) == 6
     for k, name in enumerate(MEASUREMENTS):

@@ -135,7 +135,7 @@ class SweepStore:
         as_joint(joint)
         keep = _streams_poses(points) and (keep_poses or isinstance(points, GivenPoses))
         most = _poses_per_block(wanted, keep) if chunk is None else whole(chunk, "chunk")
-        job = _job(path, hexapod, points, wanted, joint, blocks(points.shape, most), keep)
+        job = _job(path, hexapod, points, wanted, joint, cut=blocks(points.shape, most), keep=keep)
         make_store(job)
         return cls(job, set())
 
@@ -177,7 +177,7 @@ class SweepStore:
         points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities)
         attrs = read_attributes(path)
         cut = Blocks(points.shape, tuple(map(int, attrs["chunk"].split())))
-        job = _job(path, hexapod, points, wanted, joint, cut, bool(attrs["keeps_poses"]))
+        job = _job(path, hexapod, points, wanted, joint, cut=cut, keep=bool(attrs["keeps_poses"]))
         refuse_other(path, attrs, attributes_of(job), chunk)
         return cls(job, numbers_in(attrs.get("done", "")) if "done" in attrs else set(range(cut.count)))
 
@@ -269,6 +269,7 @@ def _job(
     points: PoseSet,
     wanted: tuple[str, ...],
     joint: JointModel,
+    *,
     cut: Blocks,
     keep: bool,
 ) -> Job:
