@@ -20,8 +20,6 @@ from flexapod.mechanics.statics import hold
 from flexapod.pose import Motion, Pose, as_pose
 from flexapod.simulation.run import Load, SimulationRun, Start
 
-OUTCOMES = tuple(outcome.name for outcome in _core.Outcome)
-
 
 class Trajectories(NamedTuple):
     """n simulations at m instants; rows after the end of one that was stopped are NaN.
@@ -30,8 +28,8 @@ class Trajectories(NamedTuple):
     vector (rad), with full relative precision however small. relative: the same seen from the base, in its axes: zero
     where the platform rides with the base rigidly. work: (n, m, 4) done by base, external wrench, leg commands and
     friction since t = 0, J (zero unless asked for). platform, base: (n, m, k) motions as `Motion.packed`, and
-    leg_force: (n, m, 6) N (m = 0 unless asked for). status: (n,) of OUTCOMES. end_time: (n,) s. last: (n, k), the
-    platform's motion then. steps: (n, 3) accepted, rejected, evaluations of the equations of motion.
+    leg_force: (n, m, 6) N (m = 0 unless asked for). status: (n,) names of `_core.Outcome`. end_time: (n,) s. last:
+    (n, k), the platform's motion then. steps: (n, 3) accepted, rejected, evaluations of the equations of motion.
     unstretched_length: (n, 6) m, without commands.
     """
 
