@@ -27,6 +27,7 @@ class Field:
 
 DESIGN_LAYOUT: tuple[Field, ...]
 MOTION_LAYOUT: tuple[Field, ...]
+PIECE: list[Any]  # a piece of an excitation, as numpy.dtype takes it
 design_size: int
 motion_size: int
 

@@ -32,6 +32,16 @@ template <std::size_t n> nb::tuple rows_of(const std::array<Field, n>& fields) {
   return nb::tuple(rows);
 }
 
+/// A piece of an excitation, as NumPy describes structures.
+nb::list piece_type() {
+  nb::list type;
+  type.append(nb::make_tuple("start", "f8"));
+  type.append(nb::make_tuple("coefficients", "f8", std::size(Piece().coefficients)));
+  type.append(nb::make_tuple("sine", "f8"));
+  type.append(nb::make_tuple("omega", "f8"));
+  return type;
+}
+
 void bind_layouts(nb::module_& m) {
   nb::class_<Field>(m, "Field")
       .def_prop_ro("name", [](const Field& f) { return f.name; })
@@ -42,6 +52,7 @@ void bind_layouts(nb::module_& m) {
       .def_prop_ro("index", &index);
   m.attr("DESIGN_LAYOUT") = rows_of(design_layout);
   m.attr("MOTION_LAYOUT") = rows_of(motion_layout);
+  m.attr("PIECE") = piece_type();
   m.attr("design_size") = design_size;
   m.attr("motion_size") = motion_size;
 }

@@ -116,24 +116,31 @@ inline Jet chirp(const double* p, double t, bool over) {
   return amplitude * Jet{sine, omega.x * cosine, omega.v * cosine - omega.x * omega.x * sine};
 }
 
-/// Piecewise polynomials with a sine each. Numbers: whether the pieces meet with a corner (0 or 1), then for each piece
-/// its first instant, eight coefficients of powers of the time since then, and B, w of B sin(w time). The last piece
-/// goes on for ever; before the first there is nothing.
+/// From its first instant: coefficients of powers of the time since then, and sine * sin(omega time).
+struct Piece {
+  double start, coefficients[8], sine, omega;
+};
+static_assert(sizeof(Piece) == 11 * sizeof(double));
+
+/// Piecewise polynomials with a sine each. Numbers: whether the pieces meet with a corner (0 or 1), then the pieces. The
+/// last one goes on for ever; before the first there is nothing.
 class Pieces {
  public:
-  static constexpr int width = 11;
-  Pieces(const double* data, size_t size) : first_(data + 1), count_((size - 1) / width), corners_(data[0] != 0.0) {}
+  Pieces(const double* data, size_t size)
+      : pieces_(reinterpret_cast<const Piece*>(data + 1)),
+        count_((size - 1) * sizeof(double) / sizeof(Piece)),
+        corners_(data[0] != 0.0) {}
 
   /// `inside` is an instant of the step that t belongs to: at a corner it tells which piece is meant.
   Jet at(double t, double inside) {
     const double choice = corners_ ? inside : t;
-    if (choice < first_[0]) return {};
-    while (here_ > 0 && choice < first_[width * here_]) --here_;
-    while (here_ + 1 < count_ && choice >= first_[width * (here_ + 1)]) ++here_;
-    const double* p = first_ + width * here_;
-    const double s = t - p[0], B = p[9], w = p[10];
+    if (choice < pieces_[0].start) return {};
+    while (here_ > 0 && choice < pieces_[here_].start) --here_;
+    while (here_ + 1 < count_ && choice >= pieces_[here_ + 1].start) ++here_;
+    const Piece& p = pieces_[here_];
+    const double s = t - p.start, B = p.sine, w = p.omega;
     double x = 0, v = 0, a = 0;
-    for (int k = 8; k >= 1; --k) a = a * s + 2.0 * v, v = v * s + x, x = x * s + p[k];
+    for (int k = 7; k >= 0; --k) a = a * s + 2.0 * v, v = v * s + x, x = x * s + p.coefficients[k];
     if (B != 0.0) {
       const double sine = B * std::sin(w * s);
       x += sine, v += B * w * std::cos(w * s), a -= w * w * sine;
@@ -143,15 +150,15 @@ class Pieces {
   /// Corners; and the least time between pieces that meet smoothly, which a step should not pass by unseen.
   void notes(double start, List<double>& corners, double& spacing) const {
     for (size_t i = 0; i < count_; ++i)
-      if (corners_ || i == 0) corners.push_back(start + first_[width * i]);
+      if (corners_ || i == 0) corners.push_back(start + pieces_[i].start);
     if (!corners_ && count_ > 1) {
-      const double span = first_[width * (count_ - 1)] - first_[0];
+      const double span = pieces_[count_ - 1].start - pieces_[0].start;
       spacing = std::min(spacing, span / static_cast<double>(count_ - 1));
     }
   }
 
  private:
-  const double* first_;
+  const Piece* pieces_;
   size_t count_, here_ = 0;
   bool corners_;
 };

@@ -20,7 +20,10 @@ from flexapod._core import TermKind
 from flexapod.checks import not_negative, positive
 from flexapod.conventions import AXES, LEGS, ROTATIONS, Array
 from flexapod.errors import ArgumentError, shown
-from flexapod.pose import Motion, Pose, PoseLike, as_pose
+from flexapod.pose import Motion, PoseLike, as_pose
+
+#: One of the pieces of a term of `TermKind.pieces`, behind a number that says whether they meet with corners.
+PIECE = np.dtype(_core.PIECE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +54,9 @@ class Term:
         elif self.kind == TermKind.chirp:
             numbers[0] *= factor
         else:
-            pieces = numbers[1:].reshape(-1, 11)
-            pieces[:, 1:10] *= factor
+            pieces = numbers[1:].view(PIECE)
+            pieces["coefficients"] *= factor
+            pieces["sine"] *= factor
         return replace(self, numbers=numbers)
 
 
@@ -212,9 +216,7 @@ class Excitation:
         t = np.asarray(times, dtype=float)
         rest = Motion.fixed(None if base is None else as_pose(base, "base")).packed
         rows = _core.base_motion(self.packed, self.rotation == "rpy", rest, np.ascontiguousarray(t.ravel()))
-        rows = rows.reshape(*t.shape, 24)
-        pose = Pose(rows[..., :3], rows[..., 3:12].reshape(*t.shape, 3, 3))
-        return Motion(pose, *(rows[..., i : i + 3] for i in (12, 15, 18, 21)))
+        return Motion.unpacked(rows.reshape(*t.shape, _core.motion_size))
 
     def __repr__(self) -> str:
         return f"<Excitation of {', '.join(self.channels) or 'nothing'}, {len(self.terms)} terms>"

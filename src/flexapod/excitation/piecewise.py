@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from flexapod._core import TermKind
 from flexapod.checks import number, positive
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError
-from flexapod.excitation.excitation import Excitation, one_term
+from flexapod.excitation.excitation import PIECE, Excitation, one_term
 
 
 def half_sine_shock(axis: str, acceleration: float, duration: float, *, recovery: float | None = None) -> Excitation:
@@ -177,26 +177,26 @@ def sampled_term(axis: str, knots: Array, coefficients: Array, spacing: float, e
 
     spacing: s between samples; end: s, the last one.
     """
-    pieces = np.zeros((knots.size, 11))
-    pieces[:, 0] = knots
-    pieces[:, 1 : 1 + coefficients.shape[1]] = coefficients
-    numbers = np.concatenate([[0.0], pieces.ravel()])
+    pieces = np.zeros(knots.size, PIECE)
+    pieces["start"] = knots
+    pieces["coefficients"][:, : coefficients.shape[1]] = coefficients
+    numbers = np.concatenate([[0.0], pieces.view(np.float64)])
     return one_term(axis, TermKind.pieces, numbers, sampled=spacing, last=end)
 
 
-def _pieces(axis: str, pieces: list[Array]) -> Excitation:
+def _pieces(axis: str, pieces: list[NDArray[np.void]]) -> Excitation:
     """Pieces joined with corners, which a simulation steps onto."""
-    return one_term(axis, TermKind.pieces, np.concatenate([[1.0], *pieces]))
+    return one_term(axis, TermKind.pieces, np.concatenate([[1.0], np.stack(pieces).view(np.float64)]))
 
 
-def _piece(start: float, coefficients: ArrayLike, sine: float = 0.0, omega: float = 0.0) -> Array:
-    row = np.zeros(11)
+def _piece(start: float, coefficients: ArrayLike, sine: float = 0.0, omega: float = 0.0) -> NDArray[np.void]:
+    piece = np.zeros((), PIECE)
     c = np.asarray(coefficients, dtype=float)
-    row[0], row[1 : 1 + c.size], row[9], row[10] = start, c, sine, omega
-    return row
+    piece["start"], piece["coefficients"][: c.size], piece["sine"], piece["omega"] = start, c, sine, omega
+    return piece
 
 
-def _half_sine(start: float, travel: float, speed: float, peak: float, duration: float) -> Array:
+def _half_sine(start: float, travel: float, speed: float, peak: float, duration: float) -> NDArray[np.void]:
     """x'' = peak sin(pi t / duration) from the travel and speed given."""
     omega = np.pi / duration
     return _piece(start, [travel, speed + peak / omega], -peak / omega**2, omega)

@@ -19,7 +19,7 @@ from flexapod.errors import ArgumentError
 from flexapod.excitation.sines import harmonic
 from flexapod.mechanics.inputs import single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
-from flexapod.pose import Motion, Pose, PoseLike
+from flexapod.pose import Motion, Pose, PoseLike, unpack
 from flexapod.simulation.integrator import IntegratorOptions, integrate
 from flexapod.simulation.run import SimulationRun
 from flexapod.vibration.grid import asked, grid_around
@@ -173,7 +173,8 @@ class _Shaker:
         ]
         times = (TWO_PI / omega)[:, None] * np.arange(_SAMPLES + 1) / _SAMPLES
         path = integrate(runs, times, joint=self.joint, options=IntegratorOptions(rtol=1e-11))
-        end = np.concatenate([path.displacement[:, -1], path.platform[:, -1, 12:18]], axis=1)
+        parts = unpack(path.platform[:, -1])
+        end = np.concatenate([path.displacement[:, -1], parts["velocity"], parts["angular_velocity"]], axis=1)
         return path.displacement[:, :-1], end, path.status == "complete"
 
     def _motion(self, state: Array) -> Motion:

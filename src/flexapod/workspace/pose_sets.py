@@ -191,8 +191,8 @@ def given_poses(poses: Pose | ArrayLike) -> PoseSet:
     Raises PoseError for a wrong shape, and for no pose at all; NaN is left to the sweep.
     """
     if isinstance(poses, Pose):
-        flat = poses.matrix.reshape(-1, 9)
-        found = GivenPoses(np.concatenate([poses.position.reshape(-1, 3), flat], axis=1), shape=poses.shape)
+        packed = poses.packed
+        found = GivenPoses(packed.reshape(-1, packed.shape[-1]), shape=poses.shape)
     else:
         array = six_columns(poses)
         found = GivenPoses(array.reshape(-1, 6), shape=array.shape[:-1])

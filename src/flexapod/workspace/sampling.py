@@ -182,7 +182,7 @@ def pose_path(waypoints: Pose | ArrayLike, samples: int) -> PoseSet:
     at = np.linspace(0.0, knots[-1], whole(samples, "samples"))
     position = np.stack([np.interp(at, knots, p) for p in poses.position.T], axis=-1)
     rotation = Slerp(knots, Rotation.from_matrix(poses.matrix))(at).as_matrix()
-    return GivenPoses(np.concatenate([position, rotation.reshape(-1, 9)], axis=1), "path")
+    return GivenPoses(Pose(position, rotation).packed, "path")
 
 
 def _box(value: Any) -> Box:
