@@ -16,14 +16,15 @@ from flexapod.control.controllers import GAIN_UNIT, Feedback, damping_law
 from flexapod.control.gain_search import ascending_gains, best_gain, default_gains
 from flexapod.control.linear_controller import ControlLaw
 from flexapod.control.plant import Plant, poles
-from flexapod.conventions import AXES, Array, JointModel, unit_of
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError, SingularPoseError
 from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, single_pose, wrench
 from flexapod.mechanics.linearisation import linearise
 from flexapod.pose import Pose, PoseLike, rpy_matrix
-from flexapod.workspace.pose_sets import GridPoses, PoseSet
+from flexapod.workspace.pose_sets import PoseSet
 from flexapod.workspace.region import RegionLike, poses_of
+from flexapod.workspace.sweeping import coordinates
 
 Law = Callable[[float], ControlLaw]
 
@@ -187,12 +188,4 @@ def _dataset(poses: PoseSet, rows: Array, values: dict[str, Array], status: np.n
         name: (poses.dims, values[name].reshape(poses.shape), {"long_name": text}) for name, text in names.items()
     }
     variables["status"] = (poses.dims, status.reshape(poses.shape))
-    coordinates: dict[str, Any] = {}
-    for k, name in enumerate(AXES):
-        units = {"units": unit_of(name)}
-        if isinstance(poses, GridPoses):
-            axis = poses.axes[name]
-            coordinates[name] = (name, axis, units) if name in poses.dims else ((), axis[0], units)
-        elif rows.shape[1] == 6:
-            coordinates[name] = (poses.dims, rows[:, k].reshape(poses.shape), units)
-    return xr.Dataset(variables, coordinates)
+    return xr.Dataset(variables, coordinates(poses, rows))

@@ -201,6 +201,13 @@ def given_poses(poses: Pose | ArrayLike) -> PoseSet:
     return found
 
 
+def six_numbers(rows: Array) -> Array:
+    """Rows of x, y, z, roll, pitch, yaw, from such rows, or from rows of twelve: a position and a matrix."""
+    if rows.shape[1] == 6:
+        return rows
+    return np.concatenate([rows[:, :3], Pose(rows[:, :3], rows[:, 3:].reshape(-1, 3, 3)).rpy], axis=1)
+
+
 def six_columns(value: Any) -> Array:
     """Rows (..., 6) of numbers, or PoseError."""
     try:

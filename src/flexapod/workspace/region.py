@@ -19,7 +19,7 @@ from flexapod.errors import PoseError, shown
 from flexapod.mechanics.inputs import as_hexapod, pose_or_home
 from flexapod.pose import Pose
 from flexapod.workspace.box import Box, Workspace
-from flexapod.workspace.pose_sets import PoseSet, SobolPoses, given_poses
+from flexapod.workspace.pose_sets import PoseSet, SobolPoses, given_poses, six_numbers
 
 PATH_SAMPLES = 400  # poses along a trajectory
 
@@ -91,7 +91,7 @@ def as_region(value: RegionLike, name: str = "region") -> Region:
     if isinstance(value, Box):
         return Workspace(value) if value.free else PoseList(value.low[None])
     if isinstance(value, PoseSet):
-        return PoseList(_six(value.rows(0, value.count)))
+        return PoseList(six_numbers(value.rows(0, value.count)))
     if isinstance(value, Curve):
         value = value.poses(PATH_SAMPLES)
     if isinstance(value, Pose):
@@ -137,10 +137,3 @@ def home_of(hexapod: Hexapod, region: Region) -> Array:
         return np.zeros(6)
     pose_or_home(hexapod, None, "region")
     return numbers(hexapod)[HOME]
-
-
-def _six(rows: Array) -> Array:
-    """Rows of six numbers, from rows of six, or of twelve: a position and a matrix."""
-    if rows.shape[1] == 6:
-        return rows
-    return np.concatenate([rows[:, :3], Pose(rows[:, :3], rows[:, 3:].reshape(-1, 3, 3)).rpy], axis=1)

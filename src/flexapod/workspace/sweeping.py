@@ -13,8 +13,7 @@ from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
 from flexapod.mechanics.inputs import as_joint
-from flexapod.pose import Pose
-from flexapod.workspace.pose_sets import GridPoses, PoseSet
+from flexapod.workspace.pose_sets import GridPoses, PoseSet, six_numbers
 from flexapod.workspace.quantities import (
     DEFAULT,
     QUANTITIES,
@@ -151,7 +150,5 @@ def coordinates(points: PoseSet, rows: Array) -> dict[str, Any]:
     if isinstance(points, GridPoses):
         axes = {name: (name if name in points.dims else (), points.axes[name]) for name in AXES}
         return {name: (dims, axis if dims else axis[0], attributes(name)) for name, (dims, axis) in axes.items()}
-    if rows.shape[1] == 12:
-        pose = Pose(np.nan_to_num(rows[:, :3]), rows[:, 3:].reshape(-1, 3, 3))
-        rows = np.concatenate([rows[:, :3], pose.rpy], axis=1)
+    rows = six_numbers(rows)
     return {name: (points.dims, rows[:, k].reshape(points.shape), attributes(name)) for k, name in enumerate(AXES)}

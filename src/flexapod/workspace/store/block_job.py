@@ -15,8 +15,7 @@ from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import OutputError
 from flexapod.optional import needed
-from flexapod.pose import Pose
-from flexapod.workspace.pose_sets import PoseSet
+from flexapod.workspace.pose_sets import PoseSet, six_numbers
 from flexapod.workspace.quantities import QUANTITIES, evaluate
 from flexapod.workspace.store.blocks import Blocks
 
@@ -75,19 +74,13 @@ def write_block(job: Job, number: int, rows: Array | None = None) -> Finished:
         rows = job.points.rows(block.start, block.stop)
     found = evaluate(job.hexapod, rows, job.quantities, job.joint, job.threads)
     if job.keep_poses:
-        found |= _pose_columns(rows)
+        found |= dict(zip(AXES, six_numbers(rows).T, strict=True))
     arrays = open_arrays(job.path, job.token)
     for name, values in found.items():
         shape = tuple(part.stop - part.start for part in block.region)
         arrays[name][block.region] = values.reshape(shape + values.shape[1:])
     counts = np.bincount(found["status"], minlength=1)
     return Finished(number, block.stop - block.start, {code: int(n) for code, n in enumerate(counts) if n})
-
-
-def _pose_columns(rows: Array) -> dict[str, Array]:
-    if rows.shape[1] == 12:
-        rows = np.concatenate([rows[:, :3], Pose(rows[:, :3], rows[:, 3:].reshape(-1, 3, 3)).rpy], axis=1)
-    return dict(zip(AXES, rows.T, strict=True))
 
 
 def zarr_package() -> Any:
