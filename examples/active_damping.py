@@ -23,7 +23,9 @@ def main() -> float:
     controller = fx.control.ForceFeedback(gain, LEAK).on(fx.linearise(machine, home)).sampled(2e-3)
     base = fx.random_motion("z", fx.excitation.flat_spectrum(0.01, 5.0, 200.0), seed=1)
     hardware = fx.control.Hardware(force_limit=5.0, noise={"leg_force": 1e-3})
-    run = fx.control.simulate_control(machine, home, controller, base, 6.0, hardware=hardware, after=1.0)
+    run = fx.control.simulate_control(
+        machine, home, controller=controller, base_motion=base, duration=6.0, hardware=hardware, after=1.0
+    )
     rms = run.rms_acceleration.sel(axis="z")
     predicted = run.predicted_rms_acceleration.sel(axis="z")
     for case in ("passive", "controlled"):

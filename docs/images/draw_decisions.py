@@ -32,7 +32,7 @@ def control() -> None:
     )
     law = fx.control.lqg(machine, pose).sampled(2e-3)
     base = fx.random_motion("z", fx.excitation.flat_spectrum(0.01, 5.0, 200.0), seed=1)
-    run = fx.control.simulate_control(machine, pose, law, base, 10.0)
+    run = fx.control.simulate_control(machine, pose, controller=law, base_motion=base, duration=10.0)
     plots_control.controlled_run(run).savefig(HERE / "isolation.png", dpi=110)
 
 

@@ -237,7 +237,7 @@ def test_sampling_adds_nothing_when_it_is_fast_and_lag_when_it_is_slow(isolator)
 def test_gain_map_agrees_with_single_loops_and_warns(isolator):
     pose = fx.home_pose(isolator)
     with pytest.warns(fx.control.GainWarning, match="pairs of gains put a pole within 10% of a natural frequency"):
-        found = fx.control.gain_map(isolator, pose, [0.0, 4e3], [0.0, 30.0, 400.0])
+        found = fx.control.gain_map(isolator, pose, kp=[0.0, 4e3], kd=[0.0, 30.0, 400.0])
     assert found.attrs["natural_frequencies_rad_s"] == linearise(isolator, pose).modes().omega.tolist()
     for i, kp in enumerate((0.0, 4e3)):
         for j, kd in enumerate((0.0, 30.0, 400.0)):
@@ -257,7 +257,7 @@ def test_gain_map_marks_unstable_gains(isolator):
     k = float(isolator.legs.stiffness[0])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", fx.control.GainWarning)
-        found = fx.control.gain_map(isolator, fx.home_pose(isolator), [-1.5 * k, 0.0], [10.0, 20.0])
+        found = fx.control.gain_map(isolator, fx.home_pose(isolator), kp=[-1.5 * k, 0.0], kd=[10.0, 20.0])
     assert not found.stable.sel(kp=-1.5 * k).any()
     assert found.stable.sel(kp=0.0).all()
 
@@ -309,7 +309,7 @@ def test_schedule_of_an_own_law_and_of_bad_poses():
         ),
         (lambda h, p: fx.control.root_locus(h, p, "speed"), fx.ArgumentError, "must be one of 'force', 'velocity'"),
         (lambda h, p: fx.control.root_locus(h, p, gains=[1.0, -1.0]), fx.ArgumentError, "ascending gains > 0"),
-        (lambda h, p: fx.control.gain_map(h, p, [1.0, 1.0], [1.0]), fx.ArgumentError, "different, finite gains"),
+        (lambda h, p: fx.control.gain_map(h, p, kp=[1.0, 1.0], kd=[1.0]), fx.ArgumentError, "different, finite gains"),
         (lambda h, p: fx.control.gain_schedule(h, p, lambda g: fx.control.PID(g)), fx.ArgumentError, "needs `gains`"),
         (lambda h, p: fx.control.gain_schedule(h, p, damping=2.0), fx.ArgumentError, "between 0 and 1"),
         (lambda h, p: fx.control.lqg(h, p, measure="jerk"), fx.ArgumentError, "one or several of leg_length"),
@@ -353,8 +353,10 @@ def test_a_wrong_argument_is_not_taken_for_a_pose_without_rest(isolator, wrong, 
         fx.control.lqg,
         fx.control.h_infinity,
         fx.control.sampling_time,
-        lambda h, **options: fx.control.gain_map(h, None, [1.0], [1.0], **options),
-        lambda h, **options: fx.control.controlled_transmissibility(h, None, fx.control.PID(), [1.0], **options),
+        lambda h, **options: fx.control.gain_map(h, None, kp=[1.0], kd=[1.0], **options),
+        lambda h, **options: fx.control.controlled_transmissibility(
+            h, None, controller=fx.control.PID(), omega=[1.0], **options
+        ),
     ],
 )
 def test_studies_take_a_hexapod_and_refuse_a_name(call):

@@ -77,7 +77,7 @@ def test_designs_take_the_resonance_away_at_the_recommended_rate(name, design):
     pose = fx.home_pose(h)
     law = getattr(fx.control, design)(h, pose)
     omega = np.geomspace(0.1, 4.0, 300) * fx.stability_index(h, pose)
-    found = fx.control.controlled_transmissibility(h, pose, law, omega)
+    found = fx.control.controlled_transmissibility(h, pose, controller=law, omega=omega)
     for axis in "xyz":
         passive, active = (np.abs(found[c].sel(output=axis, base=axis)).max() for c in ("passive", "controlled"))
         assert passive > 5
@@ -92,7 +92,7 @@ def test_h_infinity_keeps_its_bound_and_the_bound_is_near_the_least(isolator, me
     law = fx.control.h_infinity(isolator, pose, corner=corner, bandwidth=bandwidth)
     gamma = float(law.name.split("gamma ")[1].rstrip(")"))
     omega = np.geomspace(0.5, 2000.0, 400)
-    found = fx.control.controlled_transmissibility(isolator, pose, law, omega)
+    found = fx.control.controlled_transmissibility(isolator, pose, controller=law, omega=omega)
     task = ScaledPlant(Plant(linearise(isolator, pose)), ("acceleration",))
     # base and platform motion in the axes' units, with rotations at the platform's size, as the design weighs them
     T = found.controlled.values * task.axis / task.axis[:, None]
@@ -112,7 +112,7 @@ def test_transmissibility_without_control_is_that_of_the_frequency_response(isol
     pose = fx.home_pose(isolator)
     omega = np.array([3.0, 29.0, 200.0])
     law = fx.control.VelocityFeedback(150.0)
-    found = fx.control.controlled_transmissibility(isolator, pose, law, omega)
+    found = fx.control.controlled_transmissibility(isolator, pose, controller=law, omega=omega)
     np.testing.assert_allclose(
         found.passive, fx.transmissibility(isolator, pose, omega=omega).absolute, rtol=1e-8, atol=1e-9
     )
@@ -120,11 +120,13 @@ def test_transmissibility_without_control_is_that_of_the_frequency_response(isol
     expected = fx.transmissibility(stiffer, pose, omega=omega).absolute
     np.testing.assert_allclose(found.controlled, expected, rtol=1e-8, atol=1e-9)
     sampled = fx.control.controlled_transmissibility(
-        isolator, pose, law.on(linearise(isolator, pose)).sampled(1e-6), omega
+        isolator, pose, controller=law.on(linearise(isolator, pose)).sampled(1e-6), omega=omega
     )
     np.testing.assert_allclose(sampled.controlled, expected, rtol=1e-3, atol=1e-5)  # half a sample late
     with pytest.raises(fx.ArgumentError, match="has a response only below"):
-        fx.control.controlled_transmissibility(isolator, pose, fx.control.lqg(isolator, pose).sampled(0.1), omega)
+        fx.control.controlled_transmissibility(
+            isolator, pose, controller=fx.control.lqg(isolator, pose).sampled(0.1), omega=omega
+        )
 
 
 LAWS = {
@@ -143,7 +145,9 @@ def test_small_motion_is_as_the_tangent_predicts(isolator, name, measured):
     pose = fx.home_pose(isolator)
     law = LAWS[name](isolator, pose).sampled(2e-3)
     noise = {m: 1e-8 if m in ("leg_length", "position") else 1e-5 for m in law.measures}
-    found = fx.control.simulate_control(isolator, pose, law, shaken(), 4.0, hardware=fx.control.Hardware(noise=noise))
+    found = fx.control.simulate_control(
+        isolator, pose, controller=law, base_motion=shaken(), duration=4.0, hardware=fx.control.Hardware(noise=noise)
+    )
     seen = ["x", "z", "roll", "pitch"]
     for quantity in ("acceleration", "displacement"):
         actual = found[f"rms_{quantity}"].sel(axis=seen)
@@ -157,7 +161,7 @@ def test_small_motion_is_as_the_tangent_predicts(isolator, name, measured):
 def test_control_lowers_the_acceleration(isolator, name):
     pose = fx.home_pose(isolator)
     law = LAWS[name](isolator, pose).sampled(2e-3)
-    found = fx.control.simulate_control(isolator, pose, law, shaken(), 4.0, after=0.5)
+    found = fx.control.simulate_control(isolator, pose, controller=law, base_motion=shaken(), duration=4.0, after=0.5)
     ratio = found.rms_acceleration.sel(case="controlled") / found.rms_acceleration.sel(case="passive")
     assert (ratio.sel(axis=["x", "z", "roll"]) < 0.6).all()
 
@@ -167,7 +171,7 @@ def test_the_tangent_is_left_at_large_amplitude(isolator):
     law = fx.control.lqg(isolator, pose).sampled(2e-3)
 
     def error(scale):
-        found = fx.control.simulate_control(isolator, pose, law, shaken(scale), 2.0)
+        found = fx.control.simulate_control(isolator, pose, controller=law, base_motion=shaken(scale), duration=2.0)
         return np.abs(found.rms_acceleration / found.predicted_rms_acceleration - 1).sel(axis="z", case="passive")
 
     assert float(error(1.0)) < 1e-4
@@ -177,7 +181,9 @@ def test_the_tangent_is_left_at_large_amplitude(isolator):
 def test_the_passive_run_is_that_of_the_simulator(isolator):
     pose = fx.home_pose(isolator)
     base = shaken(1000.0)
-    found = fx.control.simulate_control(isolator, pose, fx.control.lqg(isolator, pose).sampled(5e-3), base, 1.0)
+    found = fx.control.simulate_control(
+        isolator, pose, controller=fx.control.lqg(isolator, pose).sampled(5e-3), base_motion=base, duration=1.0
+    )
     run = fx.simulate(isolator, pose, base_motion=base, start="carried", times=found.time.values)
     passive = found.displacement.sel(case="passive").values
     expected = run.displacement.values
@@ -192,7 +198,7 @@ def test_fast_velocity_feedback_is_a_damper_at_any_amplitude(isolator, measured)
     errors = []
     for dt in (2e-3, 1e-3, 5e-4):
         law = fx.control.VelocityFeedback(200.0).on(linearise(isolator, pose)).sampled(dt)
-        found = fx.control.simulate_control(isolator, pose, law, base, 0.5)
+        found = fx.control.simulate_control(isolator, pose, controller=law, base_motion=base, duration=0.5)
         run = fx.simulate(damper, pose, base_motion=base, start="carried", times=found.time.values)
         expected = run.displacement.values
         size = np.abs(expected[:, 2]).max()
@@ -209,9 +215,9 @@ def test_sensor_noise_alone_gives_the_variance_of_the_sampled_loop(isolator):
     found = fx.control.simulate_control(
         isolator,
         pose,
-        law,
-        harmonic("x", 0.0, 1.0),
-        100.0,
+        controller=law,
+        base_motion=harmonic("x", 0.0, 1.0),
+        duration=100.0,
         after=2.0,
         hardware=fx.control.Hardware(noise={"leg_rate": rms}),
     )
@@ -234,10 +240,15 @@ def test_sensor_noise_alone_gives_the_variance_of_the_sampled_loop(isolator):
 def test_forces_are_limited(isolator):
     pose = fx.home_pose(isolator)
     law = fx.control.lqg(isolator, pose).sampled(2e-3)
-    free = fx.control.simulate_control(isolator, pose, law, shaken(), 2.0)
+    free = fx.control.simulate_control(isolator, pose, controller=law, base_motion=shaken(), duration=2.0)
     limit = 0.3 * float(np.abs(free.force).max())
     found = fx.control.simulate_control(
-        isolator, pose, law, shaken(), 2.0, hardware=fx.control.Hardware(force_limit=limit)
+        isolator,
+        pose,
+        controller=law,
+        base_motion=shaken(),
+        duration=2.0,
+        hardware=fx.control.Hardware(force_limit=limit),
     )
     assert float(np.abs(found.force).max()) == pytest.approx(limit)
     assert 0.01 < found.attrs["saturated"] < 1.0
@@ -271,21 +282,35 @@ def test_what_cannot_be_run_is_refused(isolator):
     pose = fx.home_pose(isolator)
     law = fx.control.lqg(isolator, pose)
     with pytest.raises(fx.ArgumentError, match="is continuous; sample it first"):
-        fx.control.simulate_control(isolator, pose, law, shaken(), 1.0)
+        fx.control.simulate_control(isolator, pose, controller=law, base_motion=shaken(), duration=1.0)
     fast = fx.control.lqg(isolator, pose, noise=1e-3)
     with pytest.raises(fx.errors.UnstableError, match=r"is unstable with LQG isolation.*sample faster"):
-        fx.control.simulate_control(isolator, pose, fast.sampled(0.02), shaken(), 1.0)
+        fx.control.simulate_control(isolator, pose, controller=fast.sampled(0.02), base_motion=shaken(), duration=1.0)
     sampled = law.sampled(2e-3)
     with pytest.raises(fx.ArgumentError, match="a key of noise is 'jerk'"):
         fx.control.simulate_control(
-            isolator, pose, sampled, shaken(), 1.0, hardware=fx.control.Hardware(noise={"jerk": 1.0})
+            isolator,
+            pose,
+            controller=sampled,
+            base_motion=shaken(),
+            duration=1.0,
+            hardware=fx.control.Hardware(noise={"jerk": 1.0}),
         )
     with pytest.raises(fx.ArgumentError, match="force_limit is 0 N"):
-        fx.control.simulate_control(isolator, pose, sampled, shaken(), 1.0, hardware=fx.control.Hardware(force_limit=0))
+        fx.control.simulate_control(
+            isolator,
+            pose,
+            controller=sampled,
+            base_motion=shaken(),
+            duration=1.0,
+            hardware=fx.control.Hardware(force_limit=0),
+        )
     with pytest.raises(fx.ArgumentError, match="duration must be > after"):
-        fx.control.simulate_control(isolator, pose, sampled, shaken(), 1.0, after=2.0)
+        fx.control.simulate_control(isolator, pose, controller=sampled, base_motion=shaken(), duration=1.0, after=2.0)
     with pytest.raises(fx.errors.SimulationError, match=r"ended at t = .*: singular"):
-        fx.control.simulate_control(isolator, pose, sampled, harmonic("z", 0.3, 30.0), 1.0)
+        fx.control.simulate_control(
+            isolator, pose, controller=sampled, base_motion=harmonic("z", 0.3, 30.0), duration=1.0
+        )
 
 
 def test_measurements_are_numbered_as_the_plant_says(isolator):

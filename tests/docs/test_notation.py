@@ -64,7 +64,7 @@ def samples() -> dict[str, object]:
         "transmissibility": fx.transmissibility(h, home, omega=omega),
         "random_response": fx.random_response(h, home, psd=[1.0, 1.0], omega=omega, axis="z"),
         "stepped_sine": fx.stepped_sine(h, home, omega=omega, amplitude=1e-6, axis="z"),
-        "controlled_transmissibility": fx.control.controlled_transmissibility(h, home, law, omega),
+        "controlled_transmissibility": fx.control.controlled_transmissibility(h, home, controller=law, omega=omega),
         "simulate": fx.simulate(h, home, duration=0.01, samples=5),
         "sweep": fx.sweep(h, two),
         "worst_pose": fx.worst_pose(h, box, samples=64, starts=2),

@@ -66,7 +66,7 @@ def test_root_locus_of_one_leg_that_damps_nothing():
 def test_gain_map_names_its_units(law, units):
     k = 1.0 if law.actuator == "command" else 1e3
     with pytest.warns(fx.control.GainWarning):
-        found = fx.control.gain_map(*isolator(), [0.0, k, 4 * k], [0.0, 0.03 * k, 0.3 * k], controller=law)
+        found = fx.control.gain_map(*isolator(), kp=[0.0, k, 4 * k], kd=[0.0, 0.03 * k, 0.3 * k], controller=law)
     left, right, *_ = control.gain_map(found).axes
     assert left.get_ylabel() == f"proportional gain kp, {units[0]}"
     assert right.get_xlabel() == f"derivative gain kd, {units[1]}"
@@ -77,7 +77,7 @@ def test_gain_map_bounds_what_lies_near_and_crosses_out_what_is_unstable():
     k = float(hexapod.legs.stiffness[0])
     kp, kd = np.array([-1.5 * k, 0.0, 0.5 * k]), np.geomspace(0.5, 500, 5)
     with pytest.warns(fx.control.GainWarning):
-        found = fx.control.gain_map(hexapod, pose, kp, kd)
+        found = fx.control.gain_map(hexapod, pose, kp=kp, kd=kd)
     assert found.near.any()
     assert not found.near.all()
     left, right, *_ = control.gain_map(found).axes
@@ -92,7 +92,7 @@ def test_gain_map_bounds_what_lies_near_and_crosses_out_what_is_unstable():
 
 def test_gain_map_without_danger_is_silent():
     """Gains that put no pole near a natural frequency: no warning and no line."""
-    found = fx.control.gain_map(*isolator(), [3e5, 4e5], [2e4, 3e4], nearness=1e-3)
+    found = fx.control.gain_map(*isolator(), kp=[3e5, 4e5], kd=[2e4, 3e4], nearness=1e-3)
     assert not found.near.any()
     left, *_ = control.gain_map(found).axes
     assert lines_around(left) == []

@@ -54,7 +54,12 @@ def controlled(**hardware):
     pose = fx.home_pose(h)
     law = fx.control.VelocityFeedback(10.0).on(fx.linearise(h, pose)).sampled(1e-3)
     return fx.control.simulate_control(
-        h, pose, law, fx.harmonic("z", 1e-6, 20.0), 0.01, hardware=fx.control.Hardware(**hardware)
+        h,
+        pose,
+        controller=law,
+        base_motion=fx.harmonic("z", 1e-6, 20.0),
+        duration=0.01,
+        hardware=fx.control.Hardware(**hardware),
     )
 
 
@@ -128,7 +133,7 @@ CASES = [
         "delay, in samples, is 0.5; it must be a whole number, at least 0",
     ),
     (
-        lambda: fx.control.controlled_transmissibility(machine(), NEAR, fx.control.PID(1.0, 1.0), [0.0, 1.0]),
+        lambda: fx.control.controlled_transmissibility(machine(), NEAR, controller=fx.control.PID(1.0, 1.0), omega=[0.0, 1.0]),
         A,
         "holds zero; the loop needs frequencies > 0",
     ),

@@ -38,7 +38,7 @@ CALLS = {
     "closed_loop": lambda h, p: fx.control.closed_loop(h, p, fx.control.VelocityFeedback(1e3)),
     "condition_number": fx.condition_number,
     "controlled_transmissibility": lambda h, p: fx.control.controlled_transmissibility(
-        h, p, fx.control.VelocityFeedback(1e3), [1.0]
+        h, p, controller=fx.control.VelocityFeedback(1e3), omega=[1.0]
     ),
     "describe_modes": fx.describe_modes,
     "energy": fx.energy,
@@ -48,7 +48,7 @@ CALLS = {
     "forward_dynamics": fx.forward_dynamics,
     "frequency_sensitivity": fx.frequency_sensitivity,
     "frequency_grid": fx.vibration.frequency_grid,
-    "gain_map": lambda h, p: fx.control.gain_map(h, p, [1.0], [1.0]),
+    "gain_map": lambda h, p: fx.control.gain_map(h, p, kp=[1.0], kd=[1.0]),
     "h_infinity": fx.control.h_infinity,
     "hold": fx.hold,
     "inverse_dynamics": fx.inverse_dynamics,
@@ -64,7 +64,9 @@ CALLS = {
     "root_locus": fx.control.root_locus,
     "sampling_time": fx.control.sampling_time,
     "simulate": lambda h, p: fx.simulate(h, p, duration=1.0),
-    "simulate_control": lambda h, p: fx.control.simulate_control(h, p, SAMPLED, SHAKEN, 1.0),
+    "simulate_control": lambda h, p: fx.control.simulate_control(
+        h, p, controller=SAMPLED, base_motion=SHAKEN, duration=1.0
+    ),
     "stability_index": fx.stability_index,
     "stepped_sine": lambda h, p: fx.stepped_sine(h, p, omega=[100.0], amplitude=1e-6, axis="z"),
     "transmissibility": lambda h, p: fx.transmissibility(h, p, omega=[1.0]),
@@ -105,7 +107,7 @@ PROVOKED = {
         MACHINE, HOME, TOO_MUCH.on(fx.linearise(MACHINE, HOME)).sampled(0.1)
     ),
     ("controlled_transmissibility", "ArgumentError"): lambda: fx.control.controlled_transmissibility(
-        MACHINE, HOME, TOO_MUCH, [-1.0]
+        MACHINE, HOME, controller=TOO_MUCH, omega=[-1.0]
     ),
     ("flat_spectrum", "ArgumentError"): lambda: fx.excitation.flat_spectrum(-1.0, 1.0, 2.0),
     ("forward_kinematics", "KinematicsError"): lambda: fx.forward_kinematics(MACHINE, LEGS * [10, 1, 1, 1, 1, 1]),
@@ -113,7 +115,7 @@ PROVOKED = {
     ("forward_kinematics", "ArgumentError"): lambda: fx.forward_kinematics(MACHINE, [0.2, 0.2]),
     ("forward_kinematics", "PoseError"): lambda: fx.forward_kinematics(MACHINE, LEGS, start=BATCH),
     ("frequency_grid", "ArgumentError"): lambda: fx.vibration.frequency_grid(MACHINE, omega_min=2.0, omega_max=1.0),
-    ("gain_map", "ArgumentError"): lambda: fx.control.gain_map(MACHINE, HOME, [[1.0]], [1.0]),
+    ("gain_map", "ArgumentError"): lambda: fx.control.gain_map(MACHINE, HOME, kp=[[1.0]], kd=[1.0]),
     ("gain_schedule", "ArgumentError"): lambda: fx.control.gain_schedule(MACHINE, HOME, gains=[2.0, 1.0, 3.0]),
     ("gain_schedule", "PoseError"): lambda: fx.control.gain_schedule(MACHINE, np.zeros((0, 6))),
     ("ground_noise", "ArgumentError"): lambda: fx.excitation.ground_noise("loud"),
@@ -190,10 +192,18 @@ PROVOKED = {
     ("simulate", "ArgumentError"): lambda: fx.simulate(MACHINE, HOME, duration=-1.0),
     ("simulate", "SimulationError"): lambda: fx.simulate(MACHINE, HOME, base_motion=SHAKEN, duration=1.0, max_steps=5),
     ("simulate_control", "ArgumentError"): lambda: fx.control.simulate_control(
-        MACHINE, HOME, fx.control.VelocityFeedback(1e3).on(fx.linearise(MACHINE, HOME)), SHAKEN, 1.0
+        MACHINE,
+        HOME,
+        controller=fx.control.VelocityFeedback(1e3).on(fx.linearise(MACHINE, HOME)),
+        base_motion=SHAKEN,
+        duration=1.0,
     ),
     ("simulate_control", "UnstableError"): lambda: fx.control.simulate_control(
-        MACHINE, HOME, TOO_MUCH.on(fx.linearise(MACHINE, HOME)).sampled(0.1), SHAKEN, 1.0
+        MACHINE,
+        HOME,
+        controller=TOO_MUCH.on(fx.linearise(MACHINE, HOME)).sampled(0.1),
+        base_motion=SHAKEN,
+        duration=1.0,
     ),
     ("simulate_many", "ArgumentError"): lambda: fx.simulate_many([], 1.0),
     ("simulate_many", "SingularPoseError"): lambda: fx.simulate_many(

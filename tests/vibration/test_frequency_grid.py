@@ -48,10 +48,10 @@ def test_responses_take_the_grid_where_no_frequencies_are_given():
     np.testing.assert_array_equal(response.omega, grid)
     steps = fx.stepped_sine(MACHINE, axis="z", amplitude=1e-9)
     np.testing.assert_array_equal(steps.omega, fx.vibration.frequency_grid(MACHINE, samples=100))
-    loop = fx.control.controlled_transmissibility(MACHINE, None, fx.control.VelocityFeedback(100.0))
+    loop = fx.control.controlled_transmissibility(MACHINE, None, controller=fx.control.VelocityFeedback(100.0))
     np.testing.assert_array_equal(loop.omega, fx.vibration.frequency_grid(MACHINE))
     slow = fx.control.VelocityFeedback(100.0).on(fx.linearise(MACHINE)).sampled(np.pi / 60)
-    sampled = fx.control.controlled_transmissibility(MACHINE, None, slow)
+    sampled = fx.control.controlled_transmissibility(MACHINE, None, controller=slow)
     np.testing.assert_array_equal(sampled.omega, loop.omega[loop.omega < 59.4])
     flat = fx.random_response(MACHINE, psd=lambda omega: np.ones_like(omega), axis="z", loss_factor=0.02)
     assert flat.omega[0] == grid[0]
@@ -63,7 +63,9 @@ def test_frequencies_may_be_in_hertz():
     for call in (
         lambda **at: fx.transmissibility(MACHINE, **at).absolute,
         lambda **at: fx.stepped_sine(MACHINE, axis="x", amplitude=1e-9, **at).response,
-        lambda **at: fx.control.controlled_transmissibility(MACHINE, None, fx.control.PID(1.0, 1.0), **at).controlled,
+        lambda **at: (
+            fx.control.controlled_transmissibility(MACHINE, None, controller=fx.control.PID(1.0, 1.0), **at).controlled
+        ),
     ):
         np.testing.assert_array_equal(call(frequency=hertz), call(omega=TWO_PI * hertz))
         with pytest.raises(fx.ArgumentError, match="omega and frequency are both given"):

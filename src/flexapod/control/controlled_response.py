@@ -20,10 +20,10 @@ from flexapod.vibration.harmonic import complex_poles
 
 def controlled_transmissibility(
     hexapod: Hexapod,
-    pose: PoseLike | None,
+    pose: PoseLike | None = None,
+    *,
     controller: ControlLaw,
     omega: ArrayLike | None = None,
-    *,
     frequency: ArrayLike | None = None,
     base: PoseLike | None = None,
     force: ArrayLike = ZERO,
@@ -36,8 +36,8 @@ def controlled_transmissibility(
     ----------
     hexapod : Hexapod
         The design.
-    pose : Pose, array_like of shape (6,), or None
-        Where the platform is held at rest: x, y, z in m, roll, pitch, yaw in rad. None is the home pose.
+    pose : Pose or array_like, shape (6,), optional
+        Where the platform is held at rest: x, y, z in m, roll, pitch, yaw in rad. The home pose by default.
     controller : ControlLaw
         A PID, ForceFeedback or VelocityFeedback, or a Controller. A sampled one acts with its hold.
     omega : array_like, shape (n,), optional
@@ -74,7 +74,8 @@ def controlled_transmissibility(
     Examples
     --------
     >>> hexapod = fx.load("cubic-isolator")
-    >>> found = fx.control.controlled_transmissibility(hexapod, None, fx.control.VelocityFeedback(300.0), [30.0])
+    >>> law = fx.control.VelocityFeedback(300.0)
+    >>> found = fx.control.controlled_transmissibility(hexapod, controller=law, omega=[30.0])
     >>> passive, controlled = (abs(found[name].sel(output="z", base="z")) for name in ("passive", "controlled"))
     >>> round(float(passive[0]), 1), round(float(controlled[0]), 1)
     (9.3, 1.4)

@@ -131,10 +131,10 @@ def closed_loop(
 
 def gain_map(
     hexapod: Hexapod,
-    pose: PoseLike | None,
+    pose: PoseLike | None = None,
+    *,
     kp: ArrayLike,
     kd: ArrayLike,
-    *,
     controller: PID = NO_CONTROL,
     nearness: float = 0.1,
     base: PoseLike | None = None,
@@ -148,8 +148,8 @@ def gain_map(
     ----------
     hexapod : Hexapod
         The design.
-    pose : Pose, array_like of shape (6,), or None
-        Where the platform is held at rest: x, y, z in m, roll, pitch, yaw in rad. None is the home pose.
+    pose : Pose or array_like, shape (6,), optional
+        Where the platform is held at rest: x, y, z in m, roll, pitch, yaw in rad. The home pose by default.
     kp : array_like, shape (m,)
         Different proportional gains, in the units of `PID`.
     kd : array_like, shape (n,)
@@ -193,7 +193,7 @@ def gain_map(
     Examples
     --------
     >>> hexapod = fx.load("cubic-isolator")
-    >>> found = fx.control.gain_map(hexapod, None, kp=[2e3, 4e3], kd=[300.0, 400.0])
+    >>> found = fx.control.gain_map(hexapod, kp=[2e3, 4e3], kd=[300.0, 400.0])
     >>> bool(found.stable.all()), bool(found.near.any())
     (True, False)
     """

@@ -36,11 +36,11 @@ IDEAL_HARDWARE = Hardware()
 
 def simulate_control(
     hexapod: Hexapod,
-    pose: PoseLike | None,
+    pose: PoseLike | None = None,
+    *,
     controller: Controller,
     base_motion: Excitation,
     duration: float,
-    *,
     hardware: Hardware = IDEAL_HARDWARE,
     after: float = 0.0,
     base: PoseLike | None = None,
@@ -55,8 +55,8 @@ def simulate_control(
     ----------
     hexapod : Hexapod
         The design.
-    pose : Pose, array_like of shape (6,), or None
-        Where the platform is held at rest: x, y, z in m, roll, pitch, yaw in rad. None is the home pose.
+    pose : Pose or array_like, shape (6,), optional
+        Where the platform is held at rest: x, y, z in m, roll, pitch, yaw in rad. The home pose by default.
     controller : Controller
         A sampled controller (see ``Controller.sampled``), whose forces are held between samples.
     base_motion : Excitation
@@ -108,7 +108,8 @@ def simulate_control(
     --------
     >>> hexapod = fx.load("cubic-isolator")
     >>> controller = fx.control.VelocityFeedback(300.0).on(fx.linearise(hexapod)).sampled(2e-3)
-    >>> found = fx.control.simulate_control(hexapod, None, controller, fx.harmonic("z", 1e-6, 30.0), 2.0)
+    >>> base = fx.harmonic("z", 1e-6, 30.0)
+    >>> found = fx.control.simulate_control(hexapod, controller=controller, base_motion=base, duration=2.0)
     >>> rms = found.rms_acceleration.sel(axis="z")
     >>> round(float(rms.sel(case="controlled") / rms.sel(case="passive")), 2)
     0.19

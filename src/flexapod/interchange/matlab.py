@@ -17,7 +17,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.interchange.output_files import output_path, write
 from flexapod.mechanics.inputs import ZERO, single_pose
 from flexapod.mechanics.linearisation import linearise
-from flexapod.pose import Pose, as_pose
+from flexapod.pose import PoseLike
 
 #: Kind of a signal: the units of its linear and of its angular parts.
 UNITS = {
@@ -35,9 +35,9 @@ UNITS = {
 def write_mat(
     path: str | PathLike[str],
     hexapod: Hexapod,
-    pose: Pose | ArrayLike | None = None,
+    pose: PoseLike | None = None,
     *,
-    base: Pose | ArrayLike | None = None,
+    base: PoseLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
@@ -99,7 +99,6 @@ def write_mat(
     """
     file = output_path(path)
     where = single_pose(hexapod, pose)
-    base = None if base is None else as_pose(base, "base")
     tangent = linearise(hexapod, where, base=base, force=force, moment=moment, joint=joint)
     system = tangent.state_space()
     content = {

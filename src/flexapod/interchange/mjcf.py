@@ -8,7 +8,6 @@ from os import PathLike
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from flexapod import __version__
 from flexapod.checks import positive
@@ -18,7 +17,7 @@ from flexapod.interchange.multibody import Body, Leg, Machine, at_rest
 from flexapod.interchange.output_files import output_path, write
 from flexapod.interchange.xml_files import add, document
 from flexapod.mechanics.modes import natural_modes
-from flexapod.pose import Pose
+from flexapod.pose import PoseLike
 
 STEPS = 50  # of a simulation for each period of the fastest mode
 SOCKET = 1e-3  # part of the platform that goes to each spherical joint with friction, where it has so much to give
@@ -29,7 +28,7 @@ THICK = 0.02  # radius of a drawn leg, of its length
 def write_mjcf(
     path: str | PathLike[str],
     hexapod: Hexapod,
-    pose: Pose | ArrayLike | None = None,
+    pose: PoseLike | None = None,
     *,
     timestep: float | None = None,
 ) -> Path:
@@ -82,7 +81,7 @@ def write_mjcf(
     return write(output_path(path), mjcf(hexapod, pose, timestep))
 
 
-def mjcf(hexapod: Hexapod, pose: Pose | ArrayLike | None = None, timestep: float | None = None) -> str:
+def mjcf(hexapod: Hexapod, pose: PoseLike | None = None, timestep: float | None = None) -> str:
     """The text of `write_mjcf`'s file."""
     if timestep is not None:
         positive(timestep, "timestep", "s")

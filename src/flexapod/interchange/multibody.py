@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
@@ -13,7 +12,7 @@ from flexapod.design.parts import LegPart
 from flexapod.interchange.rigid_bodies import check_physical
 from flexapod.mechanics.inputs import single_pose
 from flexapod.mechanics.statics import hold
-from flexapod.pose import Pose
+from flexapod.pose import Pose, PoseLike
 
 
 class Body(NamedTuple):
@@ -53,7 +52,7 @@ class Machine(NamedTuple):
     legs: tuple[Leg, ...]
 
 
-def at_rest(hexapod: Hexapod, pose: Pose | ArrayLike | None = None) -> Machine:
+def at_rest(hexapod: Hexapod, pose: PoseLike | None = None) -> Machine:
     """The machine at a pose, by default at home, at rest under gravity, with bodies that rigid-body programs accept."""
     where = single_pose(hexapod, pose)
     check_physical(hexapod)

@@ -7,7 +7,6 @@ from os import PathLike
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from flexapod import __version__
 from flexapod.conventions import Array
@@ -15,13 +14,13 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.interchange.multibody import Body, Leg, Machine, at_rest
 from flexapod.interchange.output_files import output_path, write
 from flexapod.interchange.xml_files import add, document, say
-from flexapod.pose import Pose
+from flexapod.pose import Pose, PoseLike
 
 VERSION = "1.9"
 UNLIMITED = 1e16  # SDF's own value for no limit
 
 
-def write_sdf(path: str | PathLike[str], hexapod: Hexapod, pose: Pose | ArrayLike | None = None) -> Path:
+def write_sdf(path: str | PathLike[str], hexapod: Hexapod, pose: PoseLike | None = None) -> Path:
     """Write the hexapod at rest as an SDF world.
 
     Links stand where they are at the pose, in the base frame and SI units. Legs are universal, prismatic (with spring,

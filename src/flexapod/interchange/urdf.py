@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from flexapod import __version__
 from flexapod.conventions import Array
@@ -17,13 +16,13 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.interchange.multibody import Body, Leg, Machine, at_rest
 from flexapod.interchange.output_files import output_path, write
 from flexapod.interchange.xml_files import add, document
-from flexapod.pose import Pose
+from flexapod.pose import Pose, PoseLike
 
 UNLIMITED = 1e9  # URDF wants a number for every limit of a sliding joint
 _ALONG = {"x": [1.0, 0.0, 0.0], "y": [0.0, 1.0, 0.0], "z": [0.0, 0.0, 1.0]}
 
 
-def write_urdf(path: str | PathLike[str], hexapod: Hexapod, pose: Pose | ArrayLike | None = None) -> tuple[Path, Path]:
+def write_urdf(path: str | PathLike[str], hexapod: Hexapod, pose: PoseLike | None = None) -> tuple[Path, Path]:
     """Write the hexapod at rest as URDF, with a JSON file for what URDF cannot hold.
 
     URDF describes a tree: the platform hangs on leg 1 by three hinges through its spherical joint. The file

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple, TypedDict
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,15 +22,6 @@ from flexapod.pose import PoseLike, skew, unpack
 
 if TYPE_CHECKING:
     import control
-
-
-class RestOptions(TypedDict, total=False):
-    """What `linearise` takes beside the hexapod and the pose, for the studies that pass it on."""
-
-    base: PoseLike | None
-    force: ArrayLike
-    moment: ArrayLike
-    joint: JointModel
 
 
 @suggests(MODE_WORDS | {"poles": "pole"})

@@ -119,7 +119,9 @@ class _Bench:
     def run(self, ki: float, kd: float) -> float:
         """The same ratio of the complete machine, after a shock of the base."""
         controller = self.controller(ki, kd)
-        found = simulate_control(self.hexapod, self.pose, controller, SHOCK, DURATION, joint=self.joint)
+        found = simulate_control(
+            self.hexapod, self.pose, controller=controller, base_motion=SHOCK, duration=DURATION, joint=self.joint
+        )
         controlled, passive = (found.relative.sel(case=case).values for case in ("controlled", "passive"))
         return self._of_joints(controlled.T @ controlled) / self._of_joints(passive.T @ passive)
 

@@ -93,7 +93,12 @@ class _Bench:
         """RMS angular acceleration about x and y, rad/s2, of the complete machine; None where the loop is unstable."""
         try:
             found = simulate_control(
-                self.hexapod, self.pose, self.sampled(factor), _base(seed), DURATION, joint=self.joint
+                self.hexapod,
+                self.pose,
+                controller=self.sampled(factor),
+                base_motion=_base(seed),
+                duration=DURATION,
+                joint=self.joint,
             )
         except UnstableError:
             return None

@@ -66,7 +66,7 @@ def _find(hexapod: Hexapod, pose: Pose, options: Options, report: Report) -> Con
     omega = tangent.modes().omega
     top = min(30 * omega[-1], 0.98 * np.pi / dt)
     response = controlled_transmissibility(
-        hexapod, pose, sampled, np.geomspace(0.03 * omega[0], top, 500), joint=options.joint
+        hexapod, pose, controller=sampled, omega=np.geomspace(0.03 * omega[0], top, 500), joint=options.joint
     )
     run = None if options.shake is None else _run(hexapod, pose, sampled, options, report)
     return ControlFindings(
@@ -118,7 +118,9 @@ def _pid(hexapod: Hexapod, pose: Pose, options: Options) -> _Made:
         np.linspace(min(0.0, 2.5 * g), max(0.0, 2.5 * g), 41) if g else np.zeros(1) for g in (options.kp, options.kd)
     ]
     gains = (
-        gain_map(hexapod, pose, *rows, controller=law, joint=options.joint) if all(r.size > 1 for r in rows) else None
+        gain_map(hexapod, pose, kp=rows[0], kd=rows[1], controller=law, joint=options.joint)
+        if all(r.size > 1 for r in rows)
+        else None
     )
     return _Made(law, gains=gains)
 
@@ -136,9 +138,9 @@ def _run(hexapod: Hexapod, pose: Pose, controller: Controller, options: Options,
     return simulate_control(
         hexapod,
         pose,
-        controller,
-        base,
-        duration,
+        controller=controller,
+        base_motion=base,
+        duration=duration,
         hardware=hardware,
         progress=lambda share: report("run on the moving base", share),
         joint=options.joint,
