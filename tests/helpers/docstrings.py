@@ -20,5 +20,4 @@ def section(doc: str, title: str) -> str:
 def errors_in(name: str) -> set[str]:
     """The errors that a docstring says a function raises."""
     doc = doc_of(name)
-    old = re.search(r"^Raises: (.*?)(?=^Source: |\Z)", doc, re.M | re.S)  # the form of docstrings not yet rewritten
-    return set(re.findall(r"\b[A-Z]\w*Error\b", section(doc, "Raises") or (old[1] if old else "")))
+    return set(re.findall(r"\b[A-Z]\w*Error\b", section(doc, "Raises")))

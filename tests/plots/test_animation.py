@@ -110,7 +110,7 @@ def test_mp4_without_the_extra_names_it(paper, tmp_path, monkeypatch):
 
 def test_bad_arguments(paper, simulation, tmp_path):
     gif = tmp_path / "a.gif"
-    with pytest.raises(fx.ArgumentError, match="mode 7"):
+    with pytest.raises(fx.ArgumentError, match="number is 7"):
         fx.animate_mode(paper, II, 7, gif)
     with pytest.raises(fx.ArgumentError, match="amplitude"):
         fx.animate_mode(paper, II, 1, gif, amplitude=-1.0)

@@ -12,20 +12,13 @@ from tests.helpers.public import CLASSES, FUNCTIONS, PUBLIC, call_name
 
 import flexapod as fx
 
-#: Packages whose docstrings have still to be rewritten.
-PENDING = {"plots"}
-
 #: What numpydoc's validation must not find: no summary or one without a full stop; parameters that are missing, unknown,
 #: in another order, without a type or without a description; no section Returns; sections that are unknown or in
 #: another order; no example.
 CODES = {"GL06", "GL07", "GL08", "SS01", "SS02", "SS03", "PR01", "PR02", "PR03", "PR04", "PR07", "RT01", "RT03", "EX01"}
 
 
-def written(names: list[str]) -> list[str]:
-    return [name for name in names if PUBLIC[name].__module__.split(".")[1] not in PENDING]
-
-
-@pytest.mark.parametrize("name", written(FUNCTIONS))
+@pytest.mark.parametrize("name", FUNCTIONS)
 def test_function_is_described_in_full(name):
     thing = PUBLIC[name]
     found = validate(f"{thing.__module__}.{thing.__qualname__}")
@@ -40,7 +33,7 @@ def fields_of(thing: type) -> list[str]:
     return list(getattr(thing, "_fields", ()))
 
 
-@pytest.mark.parametrize("name", [name for name in written(CLASSES) if not issubclass(PUBLIC[name], BaseException)])
+@pytest.mark.parametrize("name", [name for name in CLASSES if not issubclass(PUBLIC[name], BaseException)])
 def test_class_describes_its_fields_and_methods(name):
     thing = PUBLIC[name]
     doc = NumpyDocString(inspect.getdoc(thing))
@@ -56,7 +49,7 @@ def test_class_describes_its_fields_and_methods(name):
             assert text.split("\n\n")[0].rstrip().endswith("."), f"{name}.{member}: the summary ends with a full stop"
 
 
-@pytest.mark.parametrize("name", written([*FUNCTIONS, *CLASSES]))
+@pytest.mark.parametrize("name", [*FUNCTIONS, *CLASSES])
 def test_example_runs(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     finder = doctest.DocTestFinder(recurse=inspect.isclass(PUBLIC[name]))

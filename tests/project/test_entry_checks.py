@@ -9,11 +9,7 @@ from tests.helpers.public import FUNCTIONS, PUBLIC
 import flexapod as fx
 
 MACHINE = fx.load("mukherjee-ii")
-#: Functions that do not check at their entry yet.
-PENDING = {"animate_simulation"}
-OF_A_MACHINE = [
-    name for name in FUNCTIONS if "hexapod" in inspect.signature(PUBLIC[name]).parameters and name not in PENDING
-]
+OF_A_MACHINE = [name for name in FUNCTIONS if "hexapod" in inspect.signature(PUBLIC[name]).parameters]
 WITH_JOINT = [name for name in OF_A_MACHINE if "joint" in inspect.signature(PUBLIC[name]).parameters]
 
 #: Something for each required argument, good enough that the check of the design or the joint model comes first.

@@ -15,14 +15,16 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from flexapod.checks import positive, whole
 from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import ArgumentError, PoseError
+from flexapod.errors import ArgumentError
+from flexapod.mechanics.inputs import as_hexapod, single_pose
 from flexapod.mechanics.mode_shapes import describe_modes
 from flexapod.mechanics.modes import natural_modes
 from flexapod.optional import needed
 from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, VIEW, entitle
-from flexapod.pose import Pose, rotation_from_vector
+from flexapod.pose import Pose, PoseLike, as_pose, rotation_from_vector
 
 if TYPE_CHECKING:
     from matplotlib.animation import AbstractMovieWriter
@@ -37,7 +39,7 @@ _PER_PERIOD = 16  # frames of a period that show a vibration
 
 def animate_mode(
     hexapod: Hexapod,
-    pose: Pose,
+    pose: PoseLike | None,
     number: int,
     path: str | Path,
     *,
@@ -45,21 +47,56 @@ def animate_mode(
     amplitude: float = 1e-6,
     exaggeration: float | None = None,
 ) -> float:
-    """Write one period of mode `number` (1 to 6) to a file that loops; returns the factor of enlargement.
+    """Write one period of a mode to a file that loops.
 
-    path: ends in .gif or .mp4. amplitude: motion of the platform joint that moves most, m; a mode has no size of its
-    own. exaggeration: how many times larger it is shown; by default so that it is an eighth of the machine. Both stand
-    in the picture.
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose or array_like
+        One pose: a Pose, or x, y, z in m and roll, pitch, yaw in rad; None for the home pose.
+    number : int
+        Which mode, from 1 (the lowest) to 6.
+    path : str or Path
+        The file, which ends in .gif or .mp4.
+    joint : {"universal", "spin_free"}
+        Model of the base joints: exact universal joints, or the paper's legs that do not spin.
+    amplitude : float
+        Motion of the platform joint that moves most, m; a mode has no size of its own.
+    exaggeration : float, optional
+        How many times larger it is shown. Left out, so that it is an eighth of the machine.
 
-    Raises: ArgumentError for a mode, an amplitude or an enlargement that cannot be shown, or another ending; PoseError
-    for a batch of poses; MissingExtraError for .mp4 without the extra "video".
-    Source: own.
+    Returns
+    -------
+    float
+        The factor of enlargement, which stands in the picture with the amplitude.
+
+    Raises
+    ------
+    ArgumentError
+        For a mode, an amplitude or an enlargement that cannot be shown, or another ending.
+    PoseError
+        For a batch of poses, or a pose that no leg can take.
+    MissingExtraError
+        For .mp4 where the extra "video" is not installed.
+
+    See Also
+    --------
+    flexapod.natural_modes : Frequencies and shapes of the modes.
+
+    Notes
+    -----
+    The mode is that of Eq. 5 of the paper, drawn as rotation vector and translation of the platform in 32 pictures.
+
+    Examples
+    --------
+    >>> fx.animate_mode(fx.load("cubic-isolator"), None, 1, "mode.gif")  # doctest: +SKIP
+    35000.0
     """
-    _check_pose(pose)
+    pose = single_pose(hexapod, pose)
     if number not in range(1, 7):
-        raise ArgumentError(f"mode {number!r} does not exist; number them from 1 to 6")
-    if not (np.isfinite(amplitude) and amplitude > 0):
-        raise ArgumentError(f"amplitude is {amplitude!r} m; it must be finite and > 0")
+        raise ArgumentError(f"number is {number!r}; it must be a mode from 1 to 6.")
+    positive(amplitude, "amplitude", "m")
     modes = natural_modes(hexapod, pose, joint=joint)
     twist = modes.shape[:, number - 1]
     arms = hexapod.platform_joints @ pose.matrix.T
@@ -78,26 +115,64 @@ def animate_simulation(
     hexapod: Hexapod,
     path: str | Path,
     *,
-    base: Pose | None = None,
+    base: PoseLike | None = None,
     exaggeration: float | None = None,
     window: tuple[float, float] | None = None,
     frames: int = 96,
     progress: Callable[[float], object] | None = None,
 ) -> float:
-    """Write a simulation to a file that moves; returns the factor of enlargement.
+    """Write a simulation to a file that moves.
 
-    dataset: `fx.simulate`'s result. path: ends in .gif or .mp4. The displacements of platform and base from rest are
-    enlarged by `exaggeration` (by default so that the largest is an eighth of the machine), which stands in the
-    picture. base: the base's pose at rest, as it was simulated. window: first and last time, s; by default the last
-    part in which the main oscillation has 16 frames a period. frames: how many.
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        Result of `flexapod.simulate`.
+    hexapod : Hexapod
+        The machine that was simulated.
+    path : str or Path
+        The file, which ends in .gif or .mp4.
+    base : Pose or array_like, optional
+        Pose of the base at rest, as it was simulated. Left out, the inertial frame.
+    exaggeration : float, optional
+        How many times larger the displacements of platform and base from rest are shown. Left out, so that the largest
+        is an eighth of the machine.
+    window : tuple of float, optional
+        First and last time, s. Left out, the last part in which the main oscillation has 16 frames a period.
+    frames : int
+        How many pictures.
+    progress : callable, optional
+        Is told the share done, 0 to 1.
 
-    Raises: ArgumentError for a dataset, window or enlargement that cannot be shown, or another ending;
-    MissingExtraError for .mp4 without the extra "video".
-    Source: own.
+    Returns
+    -------
+    float
+        The factor of enlargement, which stands in the picture.
+
+    Raises
+    ------
+    ArgumentError
+        For a dataset, window or enlargement that cannot be shown, or another ending.
+    MissingExtraError
+        For .mp4 where the extra "video" is not installed.
+
+    See Also
+    --------
+    flexapod.simulate : Simulate the machine in time.
+
+    Notes
+    -----
+    The displacements are interpolated linearly between the instants of the dataset.
+
+    Examples
+    --------
+    >>> machine = fx.load("cubic-isolator")
+    >>> shaken = fx.simulate(machine, base_motion=fx.harmonic("z", 1e-4, 30.0), duration=0.2)
+    >>> fx.animate_simulation(shaken, machine, "shaken.gif", frames=2)
+    130.0
     """
-    if frames < 2:
-        raise ArgumentError(f"frames is {frames!r}; at least 2 are needed")
-    film, times = _simulated(dataset, hexapod, Pose(np.zeros(3)) if base is None else base)
+    as_hexapod(hexapod)
+    whole(frames, "frames", 2)
+    film, times = _simulated(dataset, hexapod, Pose(np.zeros(3)) if base is None else as_pose(base, "base"))
     first, last = window or _last_periods(times, film.platform, frames)
     if not times[0] <= first < last <= times[-1]:
         raise ArgumentError(f"window is {window!r} s; it must ascend within {times[0]:.6g} to {times[-1]:.6g} s")
@@ -269,8 +344,3 @@ def _length(metres: float) -> str:
         if metres >= scale:
             return f"{metres / scale:.4g} {unit}"
     return f"{metres / 1e-9:.4g} nm"
-
-
-def _check_pose(pose: Pose) -> None:
-    if pose.shape:
-        raise PoseError(f"an animation shows one pose; this one has batch axes {pose.shape}. Index it first.")
