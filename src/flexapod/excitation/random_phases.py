@@ -48,7 +48,7 @@ def random_motion(axis: str, spectrum: Spectrum, *, seed: int = 0, samples: int 
     Examples
     --------
     >>> floor = fx.random_motion("z", fx.vc_curve("VC-C"), seed=1)
-    >>> velocity = floor.evaluate(np.linspace(0, 100, 50_000))[1][:, 2]
+    >>> velocity = floor.evaluate(np.linspace(0, 100, 4001))[1][:, 2]
     >>> round(float(velocity.std() / fx.vc_curve("VC-C").rms()), 1)
     1.0
     """
