@@ -7,11 +7,10 @@ numbers depend on nothing but its number, a run in pieces writes the bytes of a 
 
 from __future__ import annotations
 
-import os
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -39,6 +38,7 @@ from flexapod.workspace.store.metadata import (
     refuse_other,
     replace_attributes,
 )
+from flexapod.workspace.store.one_writer import one_writer, remove_partial
 from flexapod.workspace.store.threads import Threads
 
 if TYPE_CHECKING:
@@ -220,8 +220,8 @@ class SweepStore:
         before, seen = self._poses_done(), Counter[int]()
         self.state = self._progress(before, seen)
         crew = Threads(workers) if workers is None or isinstance(workers, int) else workers
-        with _locked(self.job.path):
-            _sweep_up(self.job.path)
+        with one_writer(self.job.path):
+            remove_partial(self.job.path)
             marked = time.monotonic()
             try:
                 for block in crew.compute(self.job, todo, stop or (lambda: False)):
@@ -234,7 +234,7 @@ class SweepStore:
                     if progress is not None:
                         progress(self.state.done / self.state.total)
                 if self.complete:
-                    _sweep_up(self.job.path)  # what a killed worker left
+                    remove_partial(self.job.path)  # what a killed worker left
                 self._mark()
             except OSError as error:
                 with suppress(OSError):
@@ -285,33 +285,6 @@ def _poses_per_block(quantities: tuple[str, ...], keep_poses: bool) -> int:
     for name in quantities:
         bytes_each += np.dtype(QUANTITIES[name].dtype).itemsize * (6 if QUANTITIES[name].trailing else 1)
     return 1 << (BLOCK_BYTES // bytes_each).bit_length() - 1
-
-
-def _sweep_up(path: str) -> None:
-    """Take away what a killed run left half written."""
-    for file in Path(path).rglob("*.partial"):
-        file.unlink(missing_ok=True)
-
-
-@contextmanager
-def _locked(path: str) -> Iterator[None]:
-    """One run at a time. A lock dies with the process that holds it."""
-    try:
-        import fcntl
-    except ImportError:  # not on Windows
-        yield
-        return
-    handle = os.open(path, os.O_RDONLY)
-    try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise OutputError(
-                f"another run is writing {path} just now. Wait for it, or write to another store."
-            ) from None
-        yield
-    finally:
-        os.close(handle)
 
 
 def open_sweep(path: str | Path) -> xr.Dataset:
