@@ -73,7 +73,7 @@ SANITIZED  := $(CURDIR)/build/sanitize
 CORE_TESTS := $(addprefix tests/,core mechanics excitation simulation workspace/test_sweep_kernel.py \
                 vibration/test_stepped.py optimisation/test_optimise.py control/test_control.py)
 LONG       := thousand_periods or keeps_its_energy or progress_goes or settles_to or run_from_rest or better_design or \
-              mean_over or angles_and_deflection or holds_up or bad_input or symmetric_family or pareto
+              mean_over or angles_and_deflection or holds_up or bad_input or symmetric_family or pareto or number_of_each_leg
 PRELOADED   = $(shell $(CXX) -print-file-name=libasan.so) $(shell $(CXX) -print-file-name=libstdc++.so)
 
 sanitize: $(SANITIZED)/.built ## any finding ends the run
