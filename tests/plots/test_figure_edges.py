@@ -34,7 +34,7 @@ def test_axes_are_made_where_none_are_given():
 
 def frequency_axis(omega):
     ax = Figure().add_subplot()
-    plots.frequencies(np.array(omega), ax)
+    plots.frequencies(np.array(omega), ax=ax)
     return ax
 
 

@@ -261,7 +261,7 @@ def test_a_place_that_cannot_be_written_exits_with_2(tmp_path, capsys):
 def test_the_machine_is_drawn_where_it_is():
     h = fx.load("mukherjee-i")
     pose = fx.Pose.from_rpy(0.1, 0.2, 0.8, 0.1, 0.2, 0.3)
-    ax = plots.machine(h, pose, Figure().add_subplot(projection="3d"))
+    ax = plots.machine(h, pose, ax=Figure().add_subplot(projection="3d"))
     drawn = np.concatenate([np.stack(line.get_data_3d(), axis=1) for line in ax.lines])
     for point in (*h.base_joints, *(pose.position + h.platform_joints @ pose.matrix.T)):
         assert np.linalg.norm(drawn - point, axis=1).min() < 1e-12
@@ -271,7 +271,7 @@ def test_the_machine_is_drawn_where_it_is():
 def test_a_mode_is_drawn_as_a_rigid_motion(number):
     h = fx.load("mukherjee-i")
     pose = fx.home_pose(h)
-    ax = plots.mode(h, None, fx.natural_modes(h, pose), number, Figure().add_subplot(projection="3d"))
+    ax = plots.mode(h, None, fx.natural_modes(h, pose), number, ax=Figure().add_subplot(projection="3d"))
     lines = [np.stack(line.get_data_3d(), axis=1) for line in ax.lines]
     moved = next(points for points in reversed(lines) if len(points) == 6)
     rest = pose.position + h.platform_joints
@@ -290,7 +290,7 @@ def test_legs_are_coloured_by_their_strain():
     h = fx.load("motion-base")
     modes = fx.natural_modes(h, fx.home_pose(h))
     heave = [d.dominant for d in fx.describe_modes(h, fx.home_pose(h))].index("z")
-    ax = plots.mode(h, None, modes, heave + 1, Figure().add_subplot(projection="3d"))
+    ax = plots.mode(h, None, modes, heave + 1, ax=Figure().add_subplot(projection="3d"))
     legs = [line for line in ax.lines if line.get_linewidth() > 4]
     assert len(legs) == 6  # heave, upwards, stretches all alike
     orange = matplotlib.colors.to_rgb(style.STRETCHED)
@@ -302,7 +302,7 @@ def test_plots_refuse_what_they_cannot_draw():
     batch = fx.Pose(np.array([[0, 0, 2.3], [0, 0, 2.4]]))
     with pytest.raises(fx.PoseError, match="batch axes"):
         plots.machine(h, batch)
-    with pytest.raises(fx.PoseError, match="1 to 6"):
+    with pytest.raises(fx.ArgumentError, match="1 to 6"):
         plots.mode(h, None, fx.natural_modes(h, fx.home_pose(h)), 7)
     with pytest.raises(fx.PoseError, match="no home pose"):
         plots.machine(h.replace({"home": None}))

@@ -32,9 +32,26 @@ if TYPE_CHECKING:
 
 
 def gain_map(dataset: xr.Dataset) -> Figure:
-    """Distance of poles to natural frequencies and worst damping over the gains of `fx.control.gain_map`.
+    """Draw the distance of poles to natural frequencies and the worst damping over two gains.
 
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result of `control.gain_map`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
     Crosses: unstable. The line bounds the gains that the paper warns of, with a pole near a natural frequency.
+
+    Examples
+    --------
+    >>> found = fx.control.gain_map(fx.load("motion-base"), None, [4e6, 8e6], [4e5, 8e5])
+    >>> fx.plots.control.gain_map(found).savefig("gains.png")
     """
     figure = new_figure(10.5, 4.3)
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
@@ -70,7 +87,27 @@ def gain_map(dataset: xr.Dataset) -> Figure:
 
 
 def root_locus(dataset: xr.Dataset) -> Figure:
-    """Poles over the gain of `fx.control.root_locus`, upper half plane, and the least damping against the gain."""
+    """Draw poles over the gain, upper half plane, and the least damping against the gain.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result of `control.root_locus`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
+    Crosses: no control. Circles: zeros. Diamonds: the gain with the most damping.
+
+    Examples
+    --------
+    >>> found = fx.control.root_locus(fx.load("cubic-isolator"), None, "force")
+    >>> fx.plots.control.root_locus(found).savefig("locus.png")
+    """
     figure = new_figure(10.5, 4.6)
     left, right = figure.subplots(1, 2, width_ratios=[1.25, 1])
     pole, omega = dataset.pole.values, dataset.omega.values
@@ -122,7 +159,30 @@ def _damping_rays(ax: Axes, top: float) -> None:
 
 
 def isolation(dataset: xr.Dataset, axes: tuple[str, ...] = ("x", "z")) -> Figure:
-    """Transmissibility with and without control, of the axes named, from `fx.control.controlled_transmissibility`."""
+    """Draw the transmissibility with and without control.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result of `control.controlled_transmissibility`.
+    axes : tuple of str, optional
+        The axes, of platform and base alike.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
+    On logarithmic scales; frequencies in Hz.
+
+    Examples
+    --------
+    >>> law = fx.control.VelocityFeedback(50.0)
+    >>> found = fx.control.controlled_transmissibility(fx.load("cubic-isolator"), None, law, np.geomspace(1, 300, 50))
+    >>> fx.plots.control.isolation(found, ("z",)).savefig("isolation.png")
+    """
     figure = new_figure(4.9 * len(axes) + 0.6, 4.0)
     hertz = dataset.omega.values / TWO_PI
     for ax, axis in zip(np.atleast_1d(figure.subplots(1, len(axes), sharey=True)), axes, strict=True):
@@ -140,8 +200,28 @@ def isolation(dataset: xr.Dataset, axes: tuple[str, ...] = ("x", "z")) -> Figure
 
 
 def controlled_run(dataset: xr.Dataset, axis: str = "z") -> Figure:
-    """Absolute acceleration of one axis in time, with and without control, and root mean squares of all axes beside
-    the tangent's prediction, from `fx.control.simulate_control`."""
+    """Draw the acceleration of one axis in time, with and without control, and the RMS values of all axes.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result of `control.simulate_control`.
+    axis : str, optional
+        The axis drawn in time.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
+    Marks: what the tangent predicts. Axes that hardly move are left out.
+
+    Examples
+    --------
+    >>> fx.plots.control.controlled_run(run).savefig("run.png")  # doctest: +SKIP
+    """
     figure = new_figure(10.5, 4.4)
     left, right = figure.subplots(1, 2, width_ratios=[1.7, 1])
     unit = str(dataset.acceleration_unit.sel(axis=axis).values).replace("2", "²")
@@ -176,7 +256,26 @@ _WORDS = {"passive": "no control", "controlled": "control"}
 
 
 def schedule(dataset: xr.Dataset) -> Figure:
-    """Gain and least damping over one or two axes of `fx.control.gain_schedule`; of more, over the first two."""
+    """Draw gain and least damping over one or two axes of a gain schedule.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result of `control.gain_schedule`; of more than two axes, the first two.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
+    Dashed: one gain for all poses.
+
+    Examples
+    --------
+    >>> fx.plots.control.schedule(found).savefig("schedule.png")  # doctest: +SKIP
+    """
     figure = new_figure(10.5, 4.2)
     left, right = figure.subplots(1, 2)
     dims = dataset.gain.dims
@@ -187,7 +286,7 @@ def schedule(dataset: xr.Dataset) -> Figure:
         cut = dataset.isel(rest)
         for ax, name in ((left, "gain"), (right, "fixed_damping")):
             x, y = (str(name) for name in cut.gain.dims)
-            mesh = ax.pcolormesh(_shown(cut, x), _shown(cut, y), cut[name].values.T, cmap="viridis", shading="nearest")
+            mesh = ax.pcolormesh(_shown(cut, x), _shown(cut, y), cut[name].values.T, cmap=VALUES, shading="nearest")
             figure.colorbar(mesh, ax=ax).set_label(_named(cut[name]), color=INK)
             ax.set(xlabel=_label(cut, x), ylabel=_label(cut, y))
     for ax in (left, right):

@@ -8,19 +8,49 @@ import numpy as np
 
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import PoseError
-from flexapod.mechanics.kinematics import force_transformation, home_pose
+from flexapod.errors import ArgumentError
+from flexapod.mechanics.inputs import as_hexapod, single_pose
+from flexapod.mechanics.kinematics import force_transformation
 from flexapod.mechanics.modes import NaturalModes
 from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, SHORTENED, STRETCHED, TRIAD, VIEW
-from flexapod.pose import Pose, rotation_from_vector
+from flexapod.pose import Pose, PoseLike, rotation_from_vector
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 
-def machine(hexapod: Hexapod, pose: Pose | None = None, ax: Axes3D | None = None) -> Axes3D:
-    """The machine in 3-D at a pose (default: home): base, legs with their numbers, platform, both frames. m."""
-    where = _one_pose(hexapod, pose)
+def machine(hexapod: Hexapod, pose: PoseLike | None = None, *, ax: Axes3D | None = None) -> Axes3D:
+    """Draw the machine in 3-D at a pose: base, legs with their numbers, platform, and both frames, in m.
+
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose or array_like, optional
+        One pose: a Pose, or x, y, z (m), roll, pitch, yaw (rad). Default: the home pose.
+    ax : Axes3D, optional
+        Axes to draw on. Default: those of a new figure of pyplot.
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.axes3d.Axes3D
+        The axes; their ``figure`` can be saved.
+
+    Raises
+    ------
+    PoseError
+        If the pose is a batch, or is left out and the design has no home pose.
+
+    Notes
+    -----
+    Lower parts of the legs are thick. The cross is the platform's mass centre.
+
+    Examples
+    --------
+    >>> ax = fx.plots.machine(fx.load("motion-base"))
+    >>> ax.figure.savefig("machine.png")
+    """
+    where = single_pose(as_hexapod(hexapod), pose)
     ax = _axes_3d() if ax is None else ax
     b, p = hexapod.base_joints, _at(where, hexapod.platform_joints)
     size = _frame(ax, b, p)
@@ -43,15 +73,52 @@ def machine(hexapod: Hexapod, pose: Pose | None = None, ax: Axes3D | None = None
     return ax
 
 
-def mode(hexapod: Hexapod, pose: Pose | None, modes: NaturalModes, number: int, ax: Axes3D | None = None) -> Axes3D:
-    """Mode `number` (from 1) of one pose: the platform at rest (grey) and displaced, legs coloured by their strain.
+def mode(
+    hexapod: Hexapod, pose: PoseLike | None, modes: NaturalModes, number: int, *, ax: Axes3D | None = None
+) -> Axes3D:
+    """Draw one mode at a pose: the platform at rest (grey) and displaced, the legs coloured by their strain.
 
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    pose : Pose or array_like or None
+        One pose, that of the modes; None is the home pose.
+    modes : NaturalModes
+        The modes at the pose, from `natural_modes`.
+    number : int
+        Number of the mode, from 1 (the lowest) to 6.
+    ax : Axes3D, optional
+        Axes to draw on. Default: those of a new figure of pyplot.
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.axes3d.Axes3D
+        The axes; their ``figure`` can be saved.
+
+    Raises
+    ------
+    PoseError
+        If the pose is a batch, or is None and the design has no home pose.
+    ArgumentError
+        If there is no such mode, or the modes are those of many poses.
+
+    Notes
+    -----
     The displacement is enlarged so that its largest part is a sixth of the machine. A leg is the wider and the more
     coloured the more it is stretched (orange) or shortened (blue), relative to the leg that is strained most.
+
+    Examples
+    --------
+    >>> hexapod = fx.load("motion-base")
+    >>> ax = fx.plots.mode(hexapod, None, fx.natural_modes(hexapod), 1)
+    >>> ax.figure.savefig("mode-1.png")
     """
-    where = _one_pose(hexapod, pose)
+    where = single_pose(as_hexapod(hexapod), pose)
     if np.shape(modes.omega) != (6,) or not 1 <= number <= 6:
-        raise PoseError(f"mode {number} of modes of shape {np.shape(modes.omega)}: give modes of one pose and 1 to 6.")
+        raise ArgumentError(
+            f"mode {number} of modes of shape {np.shape(modes.omega)}: give modes of one pose and 1 to 6."
+        )
     ax = _axes_3d() if ax is None else ax
     b, p = hexapod.base_joints, _at(where, hexapod.platform_joints)
     size = _frame(ax, b, p, margin=0.12)
@@ -82,15 +149,6 @@ def _enlarged(twist: Array, joints: Array, travel: float) -> Array:
     lead = mean if np.linalg.norm(mean) > 0.3 * largest else twist[3:]
     sign = -1.0 if lead[np.abs(lead).argmax()] < 0 else 1.0
     return twist * (sign * travel / largest)
-
-
-def _one_pose(hexapod: Hexapod, pose: Pose | None) -> Pose:
-    where = home_pose(hexapod) if pose is None else pose
-    if where is None:
-        raise PoseError(f"{hexapod.name!r} names no home pose: give the pose to draw.")
-    if where.shape:
-        raise PoseError(f"a figure shows one pose; this one has batch axes {where.shape}. Index it first.")
-    return where
 
 
 def _axes_3d() -> Axes3D:

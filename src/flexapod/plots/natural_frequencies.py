@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexapod.conventions import TWO_PI, Array
 from flexapod.plots.style import FAINT, INK, PLATFORM, STRETCHED
@@ -15,9 +16,40 @@ if TYPE_CHECKING:
 
 
 def frequencies(
-    omega: Array, ax: Axes | None = None, tangent: Array | None = None, labels: Sequence[str] | None = None
+    omega: ArrayLike,
+    *,
+    ax: Axes | None = None,
+    tangent: ArrayLike | None = None,
+    labels: Sequence[str] | None = None,
 ) -> Axes:
-    """Six natural frequencies (rad/s) on a logarithmic scale in Hz; `tangent`: those of the exact tangent beside."""
+    """Draw six natural frequencies on a logarithmic scale in Hz.
+
+    Parameters
+    ----------
+    omega : array_like
+        (6,) natural frequencies, rad/s; those that are zero are left out.
+    ax : Axes, optional
+        Axes to draw on. Default: those of a new figure of pyplot.
+    tangent : array_like, optional
+        (6,) frequencies of the exact tangent, rad/s, drawn beside.
+    labels : sequence of str, optional
+        Words for each mode. Default: its number.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes; their ``figure`` can be saved.
+
+    Notes
+    -----
+    The frequencies of `natural_modes` are those of Eq. 5 of the paper, undamped and without preload.
+
+    Examples
+    --------
+    >>> ax = fx.plots.frequencies(fx.natural_modes(fx.load("motion-base")).omega)
+    >>> ax.get_xlabel()
+    'natural frequency, Hz'
+    """
     if ax is None:
         import matplotlib.pyplot as plt
 
@@ -28,7 +60,7 @@ def frequencies(
     ax.hlines(y, 0, 1, transform=ax.get_yaxis_transform(), color=FAINT, lw=0.4, alpha=0.5)
     ax.plot(hz[seen], y[seen], "o", ms=8, color=PLATFORM, label="Eq. 5", clip_on=False, zorder=3)
     if tangent is not None:
-        at = np.abs(tangent) / TWO_PI
+        at = np.abs(np.asarray(tangent)) / TWO_PI
         ax.plot(at, y, "|", ms=17, mew=2.2, color=STRETCHED, label="exact tangent", clip_on=False, zorder=4)
         ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False, labelcolor=INK, fontsize=10)
     _logarithmic(ax, hz[seen])

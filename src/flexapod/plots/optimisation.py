@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from flexapod.errors import ArgumentError
 from flexapod.mechanics.kinematics import home_pose
 from flexapod.optimisation.design_results import OptimalDesign
 from flexapod.optimisation.pareto import ParetoFront
@@ -35,7 +36,26 @@ INDEX = "index, rad/s"
 
 
 def search(found: OptimalDesign) -> Figure:
-    """Every trial in its order, the best so far, what gradients made of it, and where the search began."""
+    """Draw every trial of a search in its order, the best so far, and the result.
+
+    Parameters
+    ----------
+    found : OptimalDesign
+        The result of `optimise`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
+    Crosses: trials that break a constraint.
+
+    Examples
+    --------
+    >>> fx.plots.optimisation.search(found).savefig("search.png")  # doctest: +SKIP
+    """
     figure, ax = _figure(7.6, 4.0)
     trial, index = found.history.trial.values, found.history["index"].values
     feasible = found.history["feasible"].values
@@ -57,7 +77,26 @@ def search(found: OptimalDesign) -> Figure:
 
 
 def plan(found: OptimalDesign) -> Figure:
-    """Both designs from above and from the side, at home: joints of base and platform, and the legs. mm."""
+    """Draw both designs from above and from the side, at home: joints and legs, in mm.
+
+    Parameters
+    ----------
+    found : OptimalDesign
+        The result of `optimise`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
+    Dashed: the design begun with.
+
+    Examples
+    --------
+    >>> fx.plots.optimisation.plan(found).savefig("plan.png")  # doctest: +SKIP
+    """
     figure = new_figure(9.6, 4.8)
     above, beside = figure.subplots(1, 2)
     shapes = ((found.start, ORANGE, (0, (4, 2)), 1.2), (found.hexapod, BLUE, "-", 1.8))
@@ -77,14 +116,33 @@ def plan(found: OptimalDesign) -> Figure:
     lines += [Line2D([], [], color=FAINT, ls="none", marker=m, ms=6) for m in "so"]
     names = ["design begun with", "better design", "base joint", "platform joint"]
     for ax in (above, beside):
-        _dress(ax)
+        dress(ax)
         ax.title.set(color=INK, fontsize=10)
     figure.legend(lines, names, ncols=4, **OUTSIDE)
     return figure
 
 
 def front(found: ParetoFront) -> Figure:
-    """The Pareto front among all trials, and the design one began with."""
+    """Draw a Pareto front among all trials, and the design one began with.
+
+    Parameters
+    ----------
+    found : ParetoFront
+        The result of `pareto_front`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
+    Trials that break a constraint are left out.
+
+    Examples
+    --------
+    >>> fx.plots.optimisation.front(found).savefig("front.png")  # doctest: +SKIP
+    """
     figure, ax = _figure(7.2, 4.6)
     told = found.history
     keep = told["feasible"].values & (told["index"].values > 0)
@@ -112,7 +170,27 @@ def front(found: ParetoFront) -> Figure:
 
 
 def spread(found: Robustness) -> Figure:
-    """The distribution of the index, with the nominal and the worst case."""
+    """Draw the distribution of the index of uncertain designs, with the nominal and the worst case.
+
+    Parameters
+    ----------
+    found : Robustness
+        The result of `robustness`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
+    The dashed line is the 1 % quantile.
+
+    Examples
+    --------
+    >>> found = fx.robustness(fx.load("motion-base"), fx.Uncertain("legs.stiffness", 0.1), samples=64, sensitivity=0)
+    >>> fx.plots.optimisation.spread(found).savefig("spread.png")
+    """
     figure, ax = _figure(7.2, 4.0)
     values = found.samples["index"].values
     ax.hist(values, bins=min(80, max(12, int(np.sqrt(values.size)))), color=BLUE, alpha=0.55, density=True, lw=0)
@@ -130,8 +208,33 @@ def spread(found: Robustness) -> Figure:
 
 
 def importance(found: Robustness) -> Figure:
-    """Sobol indices of the parameters, the most important first, with their 95 % confidence."""
-    assert found.sensitivity is not None, "ask for a sensitivity"
+    """Draw the Sobol indices of the parameters, the most important first, with their 95 % confidence.
+
+    Parameters
+    ----------
+    found : Robustness
+        The result of `robustness` with a sensitivity.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Raises
+    ------
+    ArgumentError
+        If the sensitivity was left out.
+
+    Notes
+    -----
+    At most 14 parameters are drawn.
+
+    Examples
+    --------
+    >>> fx.plots.optimisation.importance(found).savefig("importance.png")  # doctest: +SKIP
+    """
+    if found.sensitivity is None:
+        raise ArgumentError("found has no sensitivity. Give robustness a number of base samples: sensitivity=1024.")
     told = found.sensitivity.sortby("total", ascending=False).isel(parameter=slice(0, _PARAMETERS))
     figure, ax = _figure(7.2, 1.4 + 0.34 * told.sizes["parameter"])
     y = np.arange(told.sizes["parameter"])[::-1]
@@ -152,10 +255,5 @@ def importance(found: Robustness) -> Figure:
 def _figure(width: float, height: float) -> tuple[Figure, Axes]:
     figure = new_figure(width, height)
     ax = figure.subplots()
-    _dress(ax)
-    return figure, ax
-
-
-def _dress(ax: Axes) -> None:
     dress(ax)
-    ax.set_axisbelow(True)
+    return figure, ax

@@ -29,15 +29,35 @@ from flexapod.plots.style import (
 )
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    pass
 
 STYLES = ("-", "-", "-", (0, (5, 1.5)), (0, (5, 1.5)), (0, (5, 1.5)))
 
 
-def index_along(found: PathIndex, beside: PathIndex | None = None, ax: Axes | None = None) -> Figure:
-    """The index along a path against its bound, and cond(H) below; beside: another path, such as the straight one.
+def index_along(found: PathIndex, beside: PathIndex | None = None) -> Figure:
+    """Draw the index along a path against its bound, and the condition number below.
 
+    Parameters
+    ----------
+    found : PathIndex
+        The result of `path_index`.
+    beside : PathIndex, optional
+        That of another path, such as the straight one.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
     Paths of different duration are drawn over the share of it.
+
+    Examples
+    --------
+    >>> hexapod = fx.load("mukherjee-i")
+    >>> way = fx.Trajectory(fx.Pose([[0, 0, 0.89], [0.05, 0, 0.89]]), [0, 1])
+    >>> fx.plots.path.index_along(fx.path_index(hexapod, way, bound=100.0)).savefig("index.png")
     """
     figure = new_figure(8.2, 5.4)
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
@@ -76,7 +96,26 @@ def _x(result: PathIndex, shared: bool) -> np.ndarray:
 
 
 def plan_map(dataset: xr.Dataset) -> Figure:
-    """The index on the plane through start, goal and the planned path's farthest point, from `fx.paths.plan_slice`."""
+    """Draw the index on the plane through start, goal and the planned path's farthest point.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result of `paths.plan_slice`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
+    White line: the bound. Hatched: a requirement is broken.
+
+    Examples
+    --------
+    >>> fx.plots.path.plan_map(plane).savefig("plan.png")  # doctest: +SKIP
+    """
     width, height = np.ptp(dataset.along.values), np.ptp(dataset.aside.values)
     figure = new_figure(7.4, 1.4 + 5.6 * min(height / width, 1.2))
     ax = figure.subplots()
@@ -110,7 +149,28 @@ def plan_map(dataset: xr.Dataset) -> Figure:
 
 
 def loads(dataset: xr.Dataset) -> Figure:
-    """Leg forces and leg lengths along a path, from `fx.paths.path_loads`; thin: the forces at rest."""
+    """Draw leg forces and leg lengths along a path.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result of `paths.path_loads`.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
+    Thin lines are the forces at rest.
+
+    Examples
+    --------
+    >>> way = fx.Trajectory(fx.Pose([[0, 0, 0.89], [0.05, 0, 0.89]]), [0, 1])
+    >>> found = fx.paths.path_loads(fx.load("mukherjee-i"), way)
+    >>> fx.plots.path.loads(found).savefig("loads.png")
+    """
     figure = new_figure(10.5, 4.4)
     left, right = figure.subplots(1, 2, sharex=True)
     for i, leg in enumerate(dataset.leg.values):

@@ -34,10 +34,32 @@ _VARIABLES = {
 def frequency_response(
     dataset: xr.Dataset, variable: str = "absolute", given: str = "z", natural: Iterable[float] = ()
 ) -> Figure:
-    """Amplitude and phase of the six outputs for one input of `fx.transmissibility`'s result.
+    """Draw amplitude and phase of the six motions of the platform for one input.
 
-    variable: "absolute", "relative", "compliance" or "command"; given: the input, an axis or a leg's number. natural:
-    frequencies in rad/s to mark.
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result of `transmissibility`.
+    variable : {"absolute", "relative", "compliance", "command"}, optional
+        Which response: to motion of the base (absolute or relative to it), to a wrench, or to a leg's command.
+    given : str, optional
+        The input: an axis, or a leg's number for commands.
+    natural : iterable of float, optional
+        Frequencies to mark, rad/s.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
+    Curves that are symmetry broken by rounding, below 1e-9 of the largest, are left out.
+
+    Examples
+    --------
+    >>> found = fx.transmissibility(fx.load("mukherjee-ii"), frequency=np.geomspace(10, 300, 50))
+    >>> fx.plots.response.frequency_response(found, "absolute", "z").savefig("response.png")
     """
     dimension, words = _VARIABLES[variable]
     natural, response = list(natural), dataset[variable].sel({dimension: given})
@@ -71,7 +93,29 @@ def frequency_response(
 
 
 def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figure:
-    """Spectral density and cumulative RMS of a quantity of `fx.random_response`'s result, per Hz."""
+    """Draw spectral density and cumulative RMS of a quantity on a base that moves at random.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result of `random_response`.
+    quantity : {"acceleration", "displacement", "relative", "leg_force"}, optional
+        What is drawn.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
+    Densities are one-sided and per Hz.
+
+    Examples
+    --------
+    >>> found = fx.random_response(fx.load("cubic-isolator"), psd=fx.vc_curve("VC-C"), axis="z")
+    >>> fx.plots.response.random_spectra(found).savefig("random.png")
+    """
     density, cumulative = dataset[f"psd_{quantity}"], dataset[f"cumulative_{quantity}"]
     along = density.dims[1]
     hertz = dataset.omega.values / TWO_PI
@@ -107,10 +151,32 @@ def stepped_ratio(
     linear: xr.DataArray | None = None,
     scale: Literal["linear", "log"] = "linear",
 ) -> Figure:
-    """Fig. 9: ratio of response amplitude to base amplitude against frequency (rad/s), six outputs.
+    """Draw the ratio of response amplitude to base amplitude against frequency (rad/s), six motions.
 
-    Dots: the non-linear machine (`fx.stepped_sine`); line: the tangent, from `linear` (omega, output; complex) where a
-    finer one is at hand. natural: frequencies in rad/s to mark. scale: of the frequencies.
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result of `stepped_sine`: dots.
+    natural : iterable of float, optional
+        Frequencies to mark, rad/s.
+    linear : xarray.DataArray, optional
+        Complex response of the tangent (omega, output): the line. Default: that in the dataset.
+    scale : {"linear", "log"}, optional
+        Scale of the frequencies.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Notes
+    -----
+    In the form of Fig. 9 of the paper.
+
+    Examples
+    --------
+    >>> found = fx.stepped_sine(fx.load("mukherjee-ii"), omega=[300.0, 500.0], amplitude=1e-6, axis="z")
+    >>> fx.plots.response.stepped_ratio(found).savefig("stepped.png")
     """
     line = dataset["linear"] if linear is None else linear
     natural, least = list(natural), _ROUNDING * float(np.abs(line).max())

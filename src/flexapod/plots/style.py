@@ -54,6 +54,7 @@ def entitle(figure: Figure, title: str) -> None:
 
 def dress(ax: Axes) -> None:
     """Quiet axes, as in all figures."""
+    ax.set_axisbelow(True)
     ax.grid(True, which="major", color=FAINT, lw=0.3, alpha=0.6)
     for side in ("top", "right"):
         ax.spines[side].set_visible(False)

@@ -1,8 +1,7 @@
 """Figures of sweeps: index against condition number, maps of workspace slices, surfaces of equal index.
 
-    from flexapod import plots_sweep
-    plots_sweep.index_scatter(fx.sweep(hexapod, fx.random_poses(box, 100_000)))
-    plots_sweep.index_map(fx.sweep(hexapod, fx.pose_grid(x=..., y=..., z=0.8)))
+    fx.plots.sweep.index_scatter(fx.sweep(hexapod, fx.random_poses(box, 100_000)))
+    fx.plots.sweep.index_map(fx.sweep(hexapod, fx.pose_grid(x=..., y=..., z=0.8)))
 
 Without `ax` a new figure is made. Colour maps are even in lightness and safe for colour-blind readers.
 """
@@ -15,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.conventions import AXES, Array
-from flexapod.errors import OutputError, PoseError
+from flexapod.errors import ArgumentError, OutputError
 from flexapod.optional import needed
 from flexapod.plots.style import BLUE, INK, NO_VALUE, ORANGE, VALUES
 from flexapod.workspace.quantities import QUANTITIES
@@ -39,17 +38,45 @@ LABELS = {
 
 
 def index_scatter(
-    sweep: xr.Dataset, ax: Axes | None = None, colorbar: bool = True, most_cond: float | None = None
+    sweep: xr.Dataset, *, ax: Axes | None = None, colorbar: bool = True, most_cond: float | None = None
 ) -> Axes:
-    """omega_1 against cond(H), one dot a pose; of many poses the shade tells how many lie together.
+    """Draw omega_1 against cond(H), one dot a pose; of many poses the shade tells how many lie together.
 
-    Takes a sweep of both in memory, or one of `open_sweep`, which is read block by block. The axis of cond(H) is
-    logarithmic where it spans more than a factor of five; it ends at `most_cond`, where given. Poses without an
-    index are left out.
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        A sweep of both, in memory or from `open_sweep`, which is read block by block.
+    ax : Axes, optional
+        Axes to draw on. Default: those of a new figure.
+    colorbar : bool, optional
+        Whether a bar says how many poses a shade stands for.
+    most_cond : float, optional
+        Where the axis of cond(H) ends.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes; their ``figure`` can be saved.
+
+    Raises
+    ------
+    ArgumentError
+        If a quantity was not swept, or no pose has an index.
+
+    Notes
+    -----
+    The axis of cond(H) is logarithmic where it spans more than a factor of five. Poses without an index are left out.
+
+    Examples
+    --------
+    >>> hexapod = fx.load("mukherjee-i")
+    >>> poses = fx.random_poses(fx.Box.about(fx.home_pose(hexapod), 0.1, 0.2), 200)
+    >>> ax = fx.plots.sweep.index_scatter(fx.sweep(hexapod, poses))
+    >>> ax.figure.savefig("scatter.png")
     """
     for name in ("omega_1", "cond_H"):
         if name not in sweep:
-            raise PoseError(f"this figure needs the quantity {name}. Sweep it.")
+            raise ArgumentError(f"this figure needs the quantity {name}. Sweep it.")
     ax = _axes() if ax is None else ax
     low, high, count = _ranges(sweep)
     high[1] = high[1] if most_cond is None else min(high[1], most_cond)
@@ -87,7 +114,7 @@ def _ranges(sweep: xr.Dataset) -> tuple[Array, Array, int]:
             high = np.maximum(high, [v.max() for v in pair])
             count += pair[0].size
     if not count:
-        raise PoseError("no pose of this sweep has an index. See the variable `status` for the reasons.")
+        raise ArgumentError("no pose of this sweep has an index. See the variable `status` for the reasons.")
     return low, high, count
 
 
@@ -121,11 +148,37 @@ def _plain_log_ticks(ax: Axes, low: float, high: float) -> None:
     ax.xaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
 
 
-def index_map(sweep: xr.Dataset, quantity: str = "omega_1", ax: Axes | None = None) -> Axes:
-    """A slice of the workspace: a quantity over the two axes of a grid as a map with contours; a cross at its least.
+def index_map(sweep: xr.Dataset, quantity: str = "omega_1", *, ax: Axes | None = None) -> Axes:
+    """Draw a quantity over the two axes of a grid as a map with contours; a cross at its least.
 
-    Give a sweep of a `pose_grid` with two varied coordinates, or take one out: `sweep.isel(z=0)`. Grey: no value; where
-    `within_limits` was swept, hatched: outside the limits.
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        A sweep of a `pose_grid` with two varied coordinates, or one taken out of more: ``sweep.isel(z=0)``.
+    quantity : str, optional
+        What is drawn.
+    ax : Axes, optional
+        Axes to draw on. Default: those of a new figure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes; their ``figure`` can be saved.
+
+    Raises
+    ------
+    ArgumentError
+        If the quantity was not swept, or the sweep is not over two coordinates.
+
+    Notes
+    -----
+    Grey: no value. Where `within_limits` was swept, hatched: outside the limits.
+
+    Examples
+    --------
+    >>> grid = fx.pose_grid(x=[-0.05, 0, 0.05], y=[0, 0.1, 0.2], z=0.89)
+    >>> ax = fx.plots.sweep.index_map(fx.sweep(fx.load("mukherjee-i"), grid))
+    >>> ax.figure.savefig("map.png")
     """
     values = _grid(sweep, quantity, 2)
     ax = _axes() if ax is None else ax
@@ -160,12 +213,40 @@ def _label_contours(ax: Axes, lines: Any) -> None:
 
 
 def iso_surface(
-    sweep: xr.Dataset, level: float | None = None, quantity: str = "omega_1", ax: Axes3D | None = None
+    sweep: xr.Dataset, level: float | None = None, *, quantity: str = "omega_1", ax: Axes3D | None = None
 ) -> Axes3D:
-    """The surface in a three-dimensional slice of the workspace where a quantity has the value `level`.
+    """Draw the surface in a volume of the workspace where a quantity has one value.
 
-    Give a sweep of a `pose_grid` with three varied coordinates. Default level: the median. The surface is shaded by
-    its height. Raises PoseError for a level that the slice does not reach.
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        A sweep of a `pose_grid` with three varied coordinates.
+    level : float, optional
+        The value. Default: the median.
+    quantity : str, optional
+        What is drawn.
+    ax : Axes3D, optional
+        Axes to draw on. Default: those of a new figure.
+
+    Returns
+    -------
+    mpl_toolkits.mplot3d.axes3d.Axes3D
+        The axes; their ``figure`` can be saved.
+
+    Raises
+    ------
+    ArgumentError
+        If the quantity was not swept, the sweep is not over three coordinates, or no value is at the level.
+    MissingExtraError
+        If the extra "sweep" is not installed.
+
+    Notes
+    -----
+    Marching cubes of scikit-image. The surface is shaded by its height.
+
+    Examples
+    --------
+    >>> fx.plots.sweep.iso_surface(sweep, 150.0).figure.savefig("surface.png")  # doctest: +SKIP
     """
     from matplotlib.ticker import MaxNLocator
 
@@ -173,7 +254,7 @@ def iso_surface(
     numbers = np.asarray(values.values, dtype=float)
     level = float(np.nanmedian(numbers)) if level is None else level
     if not np.nanmin(numbers) < level < np.nanmax(numbers):
-        raise PoseError(
+        raise ArgumentError(
             f"{quantity} is between {np.nanmin(numbers):.6g} and {np.nanmax(numbers):.6g} in this slice, so no surface "
             f"of {level:.6g} passes through it. Choose a level between them."
         )
@@ -201,11 +282,11 @@ def _marching_cubes(numbers: Array, level: float, axes: list[Array]) -> tuple[Ar
 
 def _grid(sweep: xr.Dataset, quantity: str, varied: int) -> xr.DataArray:
     if quantity not in sweep:
-        raise PoseError(f"this sweep has no {quantity}; it has {', '.join(map(str, sweep.data_vars))}.")
+        raise ArgumentError(f"this sweep has no {quantity}; it has {', '.join(map(str, sweep.data_vars))}.")
     values = sweep[quantity]
     dims = [str(dim) for dim in values.dims]
     if len(dims) != varied or any(dim not in AXES for dim in dims):
-        raise PoseError(
+        raise ArgumentError(
             f"this figure needs a grid with {varied} varied coordinates; {quantity} here has the axes {dims}. "
             "Sweep such a pose_grid, or select one value of the others (sweep.isel)."
         )
@@ -238,7 +319,33 @@ def _spelled(quantity: str) -> str:
 
 
 def save(ax: Axes, path: str | Path) -> None:
-    """Write the figure of some axes. Raises OutputError where that cannot be."""
+    """Write the figure of some axes to a file.
+
+    Parameters
+    ----------
+    ax : Axes
+        The axes.
+    path : str or Path
+        The file; its name says the format.
+
+    Returns
+    -------
+    None
+        Nothing; the file is written.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written, or its format is unknown.
+
+    Notes
+    -----
+    At 160 dots per inch.
+
+    Examples
+    --------
+    >>> fx.plots.sweep.save(fx.plots.frequencies(np.arange(1.0, 7.0)), "six.png")
+    """
     try:
         ax.figure.savefig(path, dpi=160)  # type: ignore[union-attr]
     except OSError as error:
@@ -267,7 +374,31 @@ def _axes_3d() -> Axes3D:
 
 
 def auto(sweep: xr.Dataset, level: float | None = None) -> Axes:
-    """The figure that fits a sweep: a map of a grid of two coordinates, a surface of one of three, else the scatter."""
+    """Draw the figure that fits a sweep: a line, a map, a surface, or else the scatter.
+
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        The sweep.
+    level : float, optional
+        The value of a surface. Default: the median.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes; their ``figure`` can be saved.
+
+    Notes
+    -----
+    A grid with one, two or three varied coordinates gives the first three.
+
+    Examples
+    --------
+    >>> grid = fx.pose_grid(x=[-0.05, 0, 0.05], z=0.89)
+    >>> ax = fx.plots.sweep.auto(fx.sweep(fx.load("mukherjee-i"), grid))
+    >>> ax.get_xlabel()
+    'x (mm)'
+    """
     dims = [str(dim) for dim in sweep["omega_1"].dims] if "omega_1" in sweep else []
     if all(dim in AXES for dim in dims):
         if len(dims) == 2:
@@ -279,8 +410,36 @@ def auto(sweep: xr.Dataset, level: float | None = None) -> Axes:
     return index_scatter(sweep)
 
 
-def index_line(sweep: xr.Dataset, ax: Axes | None = None) -> Axes:
-    """omega_1 along the one varied coordinate of a grid."""
+def index_line(sweep: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+    """Draw omega_1 along the one varied coordinate of a grid.
+
+    Parameters
+    ----------
+    sweep : xarray.Dataset
+        A sweep of a `pose_grid` with one varied coordinate.
+    ax : Axes, optional
+        Axes to draw on. Default: those of a new figure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes; their ``figure`` can be saved.
+
+    Raises
+    ------
+    ArgumentError
+        If the index was not swept, or the sweep is not over one coordinate.
+
+    Notes
+    -----
+    The coordinates that are held stand above.
+
+    Examples
+    --------
+    >>> grid = fx.pose_grid(x=[-0.05, 0, 0.05], z=0.89)
+    >>> ax = fx.plots.sweep.index_line(fx.sweep(fx.load("mukherjee-i"), grid))
+    >>> ax.figure.savefig("line.png")
+    """
     values = _grid(sweep, "omega_1", 1)
     ax = _axes() if ax is None else ax
     positions, label = _axis(values, str(values.dims[0]))
