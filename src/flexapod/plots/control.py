@@ -50,7 +50,7 @@ def gain_map(dataset: xr.Dataset) -> Figure:
 
     Examples
     --------
-    >>> found = fx.control.gain_map(fx.load("motion-base"), None, [4e6, 8e6], [4e5, 8e5])
+    >>> found = fx.control.gain_map(fx.load("motion-base"), kp=[4e6, 8e6], kd=[4e5, 8e5])
     >>> fx.plots.control.gain_map(found).savefig("gains.png")
     """
     figure = new_figure(10.5, 4.3)
