@@ -11,7 +11,17 @@ from tests.project.test_docstrings import CODES
 
 import flexapod as fx
 
-MODULES = ("control", "machine_3d", "natural_frequencies", "optimisation", "path", "response", "simulation", "sweep")
+MODULES = (
+    "control",
+    "machine_3d",
+    "natural_frequencies",
+    "optimisation",
+    "path",
+    "response",
+    "simulation",
+    "sweep",
+    "sweep_surface",
+)
 FUNCTIONS = {
     f"{module.__name__}.{name}": thing
     for module in (import_module(f"flexapod.plots.{name}") for name in MODULES)

@@ -6,6 +6,7 @@ from tests.helpers.stores import BOX, I, stored
 
 import flexapod as fx
 from flexapod.plots import sweep as plots_sweep
+from flexapod.plots import sweep_surface
 
 FEW = fx.sweep(I, fx.random_poses(BOX, 300))
 MANY = fx.sweep(I, fx.random_poses(BOX, 30_000))
@@ -74,7 +75,7 @@ def test_poses_outside_the_limits_are_hatched():
 def test_points_of_the_surface_have_the_index_of_its_level():
     fine = fx.sweep(I, fx.pose_grid(x=np.linspace(-0.1, 0.3, 25), y=np.linspace(0, 0.4, 25), z=np.linspace(0.6, 1, 25)))
     axes = [fine[name].values for name in "xyz"]
-    points, faces = plots_sweep._marching_cubes(fine.omega_1.values, 215.0, axes)
+    points, faces = sweep_surface._marching_cubes(fine.omega_1.values, 215.0, axes)
     there = fx.sweep(I, np.pad(points, ((0, 0), (0, 3)))).omega_1.values
     # linear between neighbours 17 mm apart: the curvature of the index is worth less than 0.2 %
     assert np.abs(there / 215.0 - 1).max() < 2e-3

@@ -180,7 +180,7 @@ def isolation(dataset: xr.Dataset, axes: tuple[str, ...] = ("x", "z")) -> Figure
     Examples
     --------
     >>> law = fx.control.VelocityFeedback(50.0)
-    >>> found = fx.control.controlled_transmissibility(fx.load("cubic-isolator"), None, law, np.geomspace(1, 300, 50))
+    >>> found = fx.control.controlled_transmissibility(fx.load("cubic-isolator"), controller=law)
     >>> fx.plots.control.isolation(found, ("z",)).savefig("isolation.png")
     """
     figure = new_figure(4.9 * len(axes) + 0.6, 4.0)

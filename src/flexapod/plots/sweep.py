@@ -15,26 +15,20 @@ import numpy as np
 
 from flexapod.conventions import AXES, Array
 from flexapod.errors import ArgumentError, OutputError
-from flexapod.optional import needed
 from flexapod.plots.style import BLUE, INK, NO_VALUE, ORANGE, VALUES
-from flexapod.workspace.quantities import QUANTITIES
+from flexapod.plots.sweep_axes import LABELS, axis_of, grid_values, held, spelled
+from flexapod.plots.sweep_surface import iso_surface
 from flexapod.workspace.summary import columns
+
+__all__ = ["auto", "index_line", "index_map", "index_scatter", "iso_surface", "save"]
 
 if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.axes import Axes
-    from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 DENSITY = "viridis_r"
 _DOTS = 20_000  # poses up to which each gets its dot
 _CELLS = (220, 160)
-LABELS = {
-    "omega_1": r"lowest natural frequency $\omega_1$ (rad/s)",
-    "cond_H": "cond(H)",
-    "leg_distance": "least distance between legs (m)",
-    "leg_force": "largest static leg force (N)",
-    "lowest_stiffness": "lowest stiffness (N/m)",
-}
 
 
 def index_scatter(
@@ -180,11 +174,11 @@ def index_map(sweep: xr.Dataset, quantity: str = "omega_1", *, ax: Axes | None =
     >>> ax = fx.plots.sweep.index_map(fx.sweep(fx.load("mukherjee-i"), grid))
     >>> ax.figure.savefig("map.png")
     """
-    values = _grid(sweep, quantity, 2)
+    values = grid_values(sweep, quantity, 2)
     ax = _axes() if ax is None else ax
     across, down = values.dims
     values = values.transpose(down, across)
-    (x, x_label), (y, y_label) = (_axis(values, str(dim)) for dim in (across, down))
+    (x, x_label), (y, y_label) = (axis_of(values, str(dim)) for dim in (across, down))
     numbers = np.ma.masked_invalid(np.asarray(values.values, dtype=float))
     ax.set_facecolor(NO_VALUE)
     mesh = ax.pcolormesh(x, y, numbers, cmap=VALUES, shading="nearest", rasterized=True)
@@ -198,10 +192,10 @@ def index_map(sweep: xr.Dataset, quantity: str = "omega_1", *, ax: Axes | None =
         if outside.any():
             levels = [-0.5, 0.5, 1.5]
             ax.contourf(x, y, outside.astype(float), levels, hatches=[None, "///"], colors="none")
-    ax.figure.colorbar(mesh, ax=ax, label=LABELS.get(quantity, _spelled(quantity)), pad=0.02)
+    ax.figure.colorbar(mesh, ax=ax, label=LABELS.get(quantity, spelled(quantity)), pad=0.02)
     ax.set_xlabel(x_label)
     ax.set_ylabel(y_label)
-    ax.set_title(_held(values), fontsize=10, color=INK)
+    ax.set_title(held(values), fontsize=10, color=INK)
     return ax
 
 
@@ -210,112 +204,6 @@ def _label_contours(ax: Axes, lines: Any) -> None:
 
     for text in ax.clabel(lines, fmt="%.4g", fontsize=8):
         text.set_path_effects([withStroke(linewidth=2, foreground=INK)])
-
-
-def iso_surface(
-    sweep: xr.Dataset, level: float | None = None, *, quantity: str = "omega_1", ax: Axes3D | None = None
-) -> Axes3D:
-    """Draw the surface in a volume of the workspace where a quantity has one value.
-
-    Parameters
-    ----------
-    sweep : xarray.Dataset
-        A sweep of a `pose_grid` with three varied coordinates.
-    level : float, optional
-        The value. Default: the median.
-    quantity : str, optional
-        What is drawn.
-    ax : Axes3D, optional
-        Axes to draw on. Default: those of a new figure.
-
-    Returns
-    -------
-    mpl_toolkits.mplot3d.axes3d.Axes3D
-        The axes; their ``figure`` can be saved.
-
-    Raises
-    ------
-    ArgumentError
-        If the quantity was not swept, the sweep is not over three coordinates, or no value is at the level.
-    MissingExtraError
-        If the extra "sweep" is not installed.
-
-    Notes
-    -----
-    Marching cubes of scikit-image. The surface is shaded by its height.
-
-    Examples
-    --------
-    >>> fx.plots.sweep.iso_surface(sweep, 150.0).figure.savefig("surface.png")  # doctest: +SKIP
-    """
-    from matplotlib.ticker import MaxNLocator
-
-    values = _grid(sweep, quantity, 3)
-    numbers = np.asarray(values.values, dtype=float)
-    level = float(np.nanmedian(numbers)) if level is None else level
-    if not np.nanmin(numbers) < level < np.nanmax(numbers):
-        raise ArgumentError(
-            f"{quantity} is between {np.nanmin(numbers):.6g} and {np.nanmax(numbers):.6g} in this slice, so no surface "
-            f"of {level:.6g} passes through it. Choose a level between them."
-        )
-    axes = [_axis(values, str(dim)) for dim in values.dims]
-    points, faces = _marching_cubes(numbers, level, [positions for positions, _ in axes])
-    ax = _axes_3d() if ax is None else ax
-    ax.plot_trisurf(*points.T, triangles=faces, cmap=VALUES, lw=0.1, edgecolor=(1, 1, 1, 0.25), antialiased=True)
-    for name, (positions, label) in zip("xyz", axes, strict=True):
-        getattr(ax, f"set_{name}lim")(positions.min(), positions.max())
-        getattr(ax, f"set_{name}label")(label, labelpad=8)
-        getattr(ax, f"{name}axis").set_major_locator(MaxNLocator(5, prune="both"))
-    title = f"{LABELS.get(quantity, _spelled(quantity))} = {level:.4g}"
-    ax.set_title("\n".join(filter(None, [title, _held(values)])), fontsize=10, color=INK)
-    return ax
-
-
-def _marching_cubes(numbers: Array, level: float, axes: list[Array]) -> tuple[Array, np.ndarray]:
-    measure = needed("skimage.measure", "sweep", "a surface of equal index needs scikit-image")
-    filled = np.where(np.isfinite(numbers), numbers, np.nanmax(numbers[np.isfinite(numbers)]))
-    inside = np.isfinite(numbers)
-    points, faces, _, _ = measure.marching_cubes(filled, level, mask=inside)
-    placed = [np.interp(p, np.arange(len(axis)), axis) for p, axis in zip(points.T, axes, strict=True)]
-    return np.stack(placed, axis=-1), faces
-
-
-def _grid(sweep: xr.Dataset, quantity: str, varied: int) -> xr.DataArray:
-    if quantity not in sweep:
-        raise ArgumentError(f"this sweep has no {quantity}; it has {', '.join(map(str, sweep.data_vars))}.")
-    values = sweep[quantity]
-    dims = [str(dim) for dim in values.dims]
-    if len(dims) != varied or any(dim not in AXES for dim in dims):
-        raise ArgumentError(
-            f"this figure needs a grid with {varied} varied coordinates; {quantity} here has the axes {dims}. "
-            "Sweep such a pose_grid, or select one value of the others (sweep.isel)."
-        )
-    return values
-
-
-def _axis(values: xr.DataArray, name: str) -> tuple[Array, str]:
-    """Positions along a coordinate as people read them, and its label."""
-    positions = np.asarray(values[name].values, dtype=float)
-    if name in AXES[3:]:
-        return np.degrees(positions), f"{name} (°)"
-    if np.abs(positions).max() <= 1:
-        return 1000 * positions, f"{name} (mm)"
-    return positions, f"{name} (m)"
-
-
-def _held(values: xr.DataArray) -> str:
-    """The coordinates that do not vary."""
-    words = []
-    for name in AXES:
-        if name in values.coords and name not in values.dims:
-            number = float(values[name])
-            words.append(f"{name} {np.degrees(number):.4g}°" if name in AXES[3:] else f"{name} {1000 * number:.4g} mm")
-    return ", ".join(words)
-
-
-def _spelled(quantity: str) -> str:
-    known = QUANTITIES[quantity]
-    return f"{known.meaning} ({known.unit})" if known.unit not in ("", "1") else known.meaning
 
 
 def save(ax: Axes, path: str | Path) -> None:
@@ -361,15 +249,6 @@ def _axes() -> Axes:
 
     ax: Axes = Figure(figsize=(6.4, 4.6), layout="constrained").add_subplot()
     ax.spines[["top", "right"]].set_visible(False)
-    return ax
-
-
-def _axes_3d() -> Axes3D:
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.4, 5.6))
-    figure.subplots_adjust(left=0.02, right=0.92, bottom=0.06, top=0.92)
-    ax: Any = figure.add_subplot(projection="3d")
     return ax
 
 
@@ -440,12 +319,12 @@ def index_line(sweep: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     >>> ax = fx.plots.sweep.index_line(fx.sweep(fx.load("mukherjee-i"), grid))
     >>> ax.figure.savefig("line.png")
     """
-    values = _grid(sweep, "omega_1", 1)
+    values = grid_values(sweep, "omega_1", 1)
     ax = _axes() if ax is None else ax
-    positions, label = _axis(values, str(values.dims[0]))
+    positions, label = axis_of(values, str(values.dims[0]))
     ax.plot(positions, values.values, color=BLUE, lw=1.8)
     ax.set_ylim(bottom=0)
     ax.set_xlabel(label)
     ax.set_ylabel(LABELS["omega_1"])
-    ax.set_title(_held(values), fontsize=10, color=INK)
+    ax.set_title(held(values), fontsize=10, color=INK)
     return ax
