@@ -513,7 +513,7 @@ def test_readings_of_the_appendix():
 
 def test_loading_a_design_imports_nothing_slow():
     code = (
-        "import sys, flexapod.design.hexapod as h; before = set(sys.modules); h.load('mukherjee-ii'); "
+        "import sys, flexapod.design.loading as h; before = set(sys.modules); h.load('mukherjee-ii'); "
         "new = set(sys.modules) - before; "
         "print(new & {'tomlkit', 'scipy', 'xarray', 'matplotlib', 'difflib'}, 'tomlkit' in before)"
     )

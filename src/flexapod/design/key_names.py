@@ -1,6 +1,5 @@
 """Names of keys as people write them: with a unit at the end, misspelt, or in another table."""
 
-from difflib import get_close_matches
 from typing import NoReturn
 
 from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS, Key
@@ -65,4 +64,6 @@ def _elsewhere(key: str) -> list[str]:
 
 
 def _near(word: str, known: list[str]) -> list[str]:
+    from difflib import get_close_matches  # only a wrong key needs it
+
     return get_close_matches(word, known, n=2, cutoff=0.72)
