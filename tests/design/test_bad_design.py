@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 
 from flexapod.design.changes import parse_assignments
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.home import Home
 from flexapod.design.loading import load
-from flexapod.design.parts import Damping, Home, LegPart, Legs, Limits
+from flexapod.design.parts import Damping, LegPart, Legs, Limits
 from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS
 from flexapod.errors import DesignError
 

@@ -15,8 +15,9 @@ from hypothesis.extra import numpy as hnp
 from flexapod.design.changes import parse_assignments
 from flexapod.design.design_file import packaged_designs, template
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.home import Home
 from flexapod.design.loading import load
-from flexapod.design.parts import Damping, Home, LegPart, Legs, Limits
+from flexapod.design.parts import Damping, LegPart, Legs, Limits
 from flexapod.errors import DesignError
 from flexapod.pose import Pose
 

@@ -18,8 +18,9 @@ from flexapod.conventions import Array
 from flexapod.design import changes as design_changes
 from flexapod.design import design_file
 from flexapod.design.geometry_checks import check_apart, platform_warnings, unit_axes, warnings_of_part
+from flexapod.design.home import Home
 from flexapod.design.packing import packed
-from flexapod.design.parts import Damping, Home, LegPart, Legs, Limits, Value, bytes_of, more_keys
+from flexapod.design.parts import Damping, LegPart, Legs, Limits, Value, bytes_of, more_keys
 from flexapod.design.shorthands import circle_table, expand, tangent_axes
 from flexapod.design.tables import DEFAULT_GRAVITY, complete, flatten
 from flexapod.errors import DesignError, shown

@@ -1,9 +1,9 @@
-"""The parts of a design: legs with their bodies and friction, limits, and the home pose; frozen and checked."""
+"""The parts of a design: legs with their bodies and friction, and limits; frozen and checked."""
 
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.conventions import Array
+from flexapod.design.home import Home
 from flexapod.design.packing import PLACES
 from flexapod.design.schema import KEYS
 from flexapod.design.shorthands import rod
 from flexapod.design.value_checks import check_value
 from flexapod.errors import DesignError, shown
-from flexapod.pose import Pose, PoseLike, as_pose, rpy_matrix
 
 
 class Value:
@@ -282,49 +282,3 @@ class Limits(Value):
             if value is not None:
                 key = f"limits.{name}"
                 object.__setattr__(self, name, float(check_value(key, value, KEYS[key])))
-
-
-class Home(Pose):
-    """The home pose of a design: one `Pose` that keeps roll, pitch and yaw as they were given, bit for bit.
-
-    Unpacks as `position, rpy = home`.
-    """
-
-    __slots__ = ("_rpy",)
-
-    def __init__(self, position: ArrayLike, rpy: ArrayLike = (0.0, 0.0, 0.0)) -> None:
-        angles = check_value("home.orientation", rpy, KEYS["home.orientation"])
-        super().__init__(check_value("home.position", position, KEYS["home.position"]), rpy_matrix(angles))
-        angles.flags.writeable = False
-        self._rpy = angles
-
-    @classmethod
-    def of(cls, value: PoseLike) -> Home:
-        """A home from any single pose; DesignError where it is none."""
-        if isinstance(value, Home):
-            return value
-        if not isinstance(value, Pose):
-            try:
-                six = np.asarray(value, dtype=np.float64)
-            except (TypeError, ValueError):
-                six = np.empty(0)
-            if six.shape != (6,):
-                raise DesignError(
-                    f"home is {shown(value)}; it must be a Pose, or x, y, z in m and roll, pitch, yaw in rad."
-                )
-            return cls(six[:3], six[3:])
-        pose = as_pose(value, "home")
-        if pose.shape:
-            raise DesignError(f"home has batch axes {pose.shape}; a design has one home pose. Index it first.")
-        return cls(pose.position, pose.rpy)
-
-    @property
-    def rpy(self) -> Array:
-        """Roll, pitch, yaw in rad, (3,), as they were given."""
-        return self._rpy
-
-    def __iter__(self) -> Iterator[Array]:
-        return iter((self.position, self.rpy))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return Home, (self.position, self.rpy)
