@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
+from flexapod.design.layout import PLACES
 from flexapod.errors import InfeasibleError
 from flexapod.optimisation import constraint_quantities, pareto
 from flexapod.optimisation import local_search as finishing
@@ -138,6 +139,41 @@ def test_limits_that_begin_at_nothing_bound_one_side(positioner):
     names = [r.name for r in asked.requirements]
     assert "longest leg" in names
     assert "shortest leg" not in names
+
+
+class PlatformMass(fx.optimisation.ConstraintQuantity):
+    unit = "kg"
+
+    def columns(self, found, numbers):
+        return numbers[PLACES["platform.mass"]].reshape(1, 1)
+
+    def derivatives(self, at):
+        place = PLACES["platform.mass"].reshape(1)
+        return fx.optimisation.Values(at.numbers[place], at.jacobian[place], np.zeros(1, int))
+
+
+class Ballast(fx.optimisation.Constraint):
+    def requirements(self, hexapod, region, measure):
+        return [fx.optimisation.Requirement("ballast", PlatformMass(), "least", np.array(25.0), None)]
+
+
+class HalfIndex:
+    quantity, unit, label = "omega_1", "rad/s", "half the index"
+    whole = fx.LeastIndex()
+    region, worst_poses, derivatives = whole.region, whole.worst_poses, whole.derivatives
+
+    def index(self, found):
+        return 0.5 * self.whole.index(found)
+
+    def describe(self):
+        return {"half": self.whole.describe()}
+
+
+def test_an_objective_and_a_constraint_of_ones_own(positioner):
+    found = fx.optimise(positioner, heavier(20, 30), HalfIndex(), Ballast(), trials=3, samples=8, verify=16)
+    assert found.variables["platform.mass"] == pytest.approx(25.0)
+    assert found.index == pytest.approx(0.5 * fx.stability_index(found.hexapod, fx.home_pose(found.hexapod)))
+    assert found.verification.checks[0].name == "ballast"
 
 
 @pytest.mark.parametrize("name", ["scattered", "on a line", "repeated"])
