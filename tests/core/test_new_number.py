@@ -49,12 +49,12 @@ else:
 index, rule, unit = entries("legs.lead_mm[2]")
 assert numbers(machine)[index] == 0.006 and unit == 0.001 and describe(int(index[0])) == "legs.lead[2]"
 assert numbers(machine)[PLACES["home.position"]].tolist() == machine.home.position.tolist()
-from flexapod.optimisation.variables import DesignMap, Variable
-design = DesignMap(machine, [Variable("legs.lead_mm[2]", 1, 10), Variable("legs.stiffness[4]", 1e7, 1e8)])
+from flexapod.optimisation.design_map import DesignMap
+design = DesignMap(machine, [fx.Variable("legs.lead_mm[2]", 1, 10), fx.Variable("legs.stiffness[4]", 1e7, 1e8)])
 other = design.hexapod_at(np.array([0.002, 8e7]))
 assert other.legs.more["lead"][2] == 0.002 and other.legs.stiffness[4] == 8e7
-from flexapod.optimisation.uncertainty import Ensemble, Uncertain
-drawn = Ensemble(machine, Uncertain("legs.lead", 0.1, each=False)).designs(np.array([[0.0], [1.0]]))
+from flexapod.optimisation.ensemble import Ensemble
+drawn = Ensemble(machine, fx.Uncertain("legs.lead", 0.1, each=False)).designs(np.array([[0.0], [1.0]]))
 assert np.allclose(drawn[:, PLACES["legs.lead"]] / machine.legs.more["lead"], [[0.9] * 6, [1.1] * 6])
 
 # What the mechanics makes of it: nothing, and nothing else has moved.
