@@ -11,7 +11,6 @@ from pathlib import Path
 import click
 
 from flexapod.cli.options import common
-from flexapod.design import design_file
 from flexapod.errors import FlexapodError
 from flexapod.optional import needed
 
@@ -51,6 +50,8 @@ def command(design: str | None, port: int, host: str, allow_host: tuple[str, ...
 
 def _checked(design: str) -> Path:
     """The design's file. A file that is no design is still served: the page shows what is wrong, at its fields."""
+    from flexapod.design import design_file  # loads NumPy, which `flexapod --help` does without
+
     path = design_file.find(design)
     try:
         design_file.read_file(path)

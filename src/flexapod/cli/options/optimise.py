@@ -8,10 +8,26 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import click
 
-from flexapod.cli.options import common, problem
+from flexapod.cli.options import common
 
 if TYPE_CHECKING:
     from flexapod.conventions import JointModel
+
+#: What --keep may name: the constraint, and the dimension of its bound.
+KEEPS = {
+    "footprint": "length",
+    "platform-footprint": "length",
+    "stroke": "length",
+    "shortest-leg": "length",
+    "longest-leg": "length",
+    "clearance": "length",
+    "universal-angle": "angle",
+    "spherical-angle": "angle",
+    "cond": None,
+    "mass": "mass",
+    "deflection": "length",
+    "limits": None,
+}
 
 where_options = common.stack(
     common.pose_option,
@@ -45,7 +61,7 @@ optimise_options = common.stack(
         "--keep",
         multiple=True,
         metavar="NAME[_UNIT][=BOUND]",
-        help=f"A constraint: {', '.join(problem.KEEPS)}. Without a bound: no worse than the design is now. Repeatable.",
+        help=f"A constraint: {', '.join(KEEPS)}. Without a bound: no worse than the design is now. Repeatable.",
     ),
     click.option(
         "--against", metavar="NAME", help="The Pareto front of the index against this (mass, footprint, cond, ...)."

@@ -5,23 +5,26 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
+import numpy as np
 
-if TYPE_CHECKING:
-    from flexapod.conventions import Array
-    from flexapod.design.hexapod import Hexapod
-    from flexapod.workspace.box import Box
-    from flexapod.workspace.pose_sets import PoseSet
+from flexapod.conventions import AXES, ROTATIONS, Array
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.units import UNITS
+from flexapod.errors import ArgumentError
+from flexapod.mechanics.kinematics import home_pose
+from flexapod.tables import naming, parse_table, read_text
+from flexapod.workspace.box import Box
+from flexapod.workspace.pose_sets import PoseSet
+from flexapod.workspace.sampling import pose_grid
 
 _FORM = "Give rows of six columns x,y,z,roll,pitch,yaw (m, degrees), with or without these titles."
 
 
 def box_of(hexapod: Hexapod, texts: Iterable[str], around: tuple[float, float] | None) -> Box:
     """The box of `--box x=-0.1:0.1,roll=-10:10 ...` or `--around 0.1 10`; the rest is held at the home pose."""
-    from flexapod.workspace.box import Box
-
     parts = _parts("--box", texts)
     if around is not None:
         if parts:
@@ -38,10 +41,6 @@ def box_of(hexapod: Hexapod, texts: Iterable[str], around: tuple[float, float] |
 
 def grid_of(hexapod: Hexapod, texts: Iterable[str]) -> PoseSet:
     """The grid of `--grid x=-0.1:0.1:21,z=0.8`: first:last:count, or one value."""
-    import numpy as np
-
-    from flexapod.workspace.sampling import pose_grid
-
     axes: dict[str, Any] = {}
     for name, value in _parts("--grid", texts).items():
         numbers = value.split(":")
@@ -58,8 +57,6 @@ def grid_of(hexapod: Hexapod, texts: Iterable[str]) -> PoseSet:
 
 def read_poses(path: Path) -> Array:
     """Rows x y z (m) roll pitch yaw (deg) of a .npy file, or of a .csv file with or without a line of names."""
-    import numpy as np
-
     if path.suffix != ".npy":
         return _read_csv(path)
     try:
@@ -73,13 +70,6 @@ def read_poses(path: Path) -> Array:
 
 
 def _read_csv(path: Path) -> Array:
-    import numpy as np
-
-    from flexapod.conventions import AXES, ROTATIONS
-    from flexapod.design.units import UNITS
-    from flexapod.errors import ArgumentError
-    from flexapod.tables import naming, parse_table, read_text
-
     text = read_text(path)
     with naming(path):
         table = parse_table(text, {axis: axis for axis in AXES}, _FORM, titles=AXES)
@@ -92,8 +82,6 @@ def _read_csv(path: Path) -> Array:
 
 
 def _parts(option: str, texts: Iterable[str]) -> dict[str, str]:
-    from flexapod.conventions import AXES
-
     found: dict[str, str] = {}
     for text in ",".join(texts).replace(" ", "").split(","):
         if not text:
@@ -120,8 +108,6 @@ def _number(option: str, name: str, text: str) -> float:
 
 def _with_home(hexapod: Hexapod, option: str, given: dict[str, Any]) -> dict[str, Any]:
     """The coordinates that were not named, from the home pose."""
-    from flexapod.conventions import AXES
-
     if len(given) == len(AXES):
         return given
     home = _home(hexapod, option)
@@ -130,8 +116,6 @@ def _with_home(hexapod: Hexapod, option: str, given: dict[str, Any]) -> dict[str
 
 
 def _home(hexapod: Hexapod, option: str) -> Any:
-    from flexapod.mechanics.kinematics import home_pose
-
     home = home_pose(hexapod)
     if home is None:
         raise click.UsageError(

@@ -6,39 +6,28 @@ import math
 from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
+import numpy as np
 
-if TYPE_CHECKING:
-    from flexapod.design.hexapod import Hexapod
-    from flexapod.optimisation.objectives import Objective
-    from flexapod.optimisation.requirements import Constraint
-    from flexapod.optimisation.variables import JointCircle, Variable
-    from flexapod.workspace.region import Region
+from flexapod.cli.options.optimise import KEEPS
+from flexapod.cli.options.poses import box_of, read_poses
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.units import UNITS, to_si
+from flexapod.optimisation import constraints as c
+from flexapod.optimisation.objectives import LeastIndex, MeanIndex, Objective
+from flexapod.optimisation.requirements import Constraint
+from flexapod.optimisation.uncertain_parameters import Uncertain
+from flexapod.optimisation.variables import JointCircle, Variable
+from flexapod.workspace.box import Workspace
+from flexapod.workspace.region import Region, as_region
 
 _CIRCLE = {"radius": "length", "half_angle": "angle", "turn": "angle", "height": "length"}
-#: What --keep may name: the constraint, and the dimension of its bound.
-KEEPS = {
-    "footprint": "length",
-    "platform-footprint": "length",
-    "stroke": "length",
-    "shortest-leg": "length",
-    "longest-leg": "length",
-    "clearance": "length",
-    "universal-angle": "angle",
-    "spherical-angle": "angle",
-    "cond": None,
-    "mass": "mass",
-    "deflection": "length",
-    "limits": None,
-}
 
 
 def variables(texts: Iterable[str]) -> list[Variable | JointCircle]:
     """`--vary` options: KEY=LEAST:LARGEST, tied keys with commas, + to add, * to scale, PLATE.circle.PART."""
-    from flexapod.optimisation.variables import JointCircle, Variable
-
     found: list[Any] = []
     circles: dict[str, dict[str, Any]] = {}
     for text in texts:
@@ -62,8 +51,6 @@ def constraints(texts: Iterable[str]) -> list[Constraint]:
 
 def keep(text: str) -> Constraint:
     """One of them."""
-    from flexapod.optimisation import constraints as c
-
     given, equals, value = text.partition("=")
     name, unit = _unit("--keep", given.strip(), KEEPS)
     bound = unit(_number("--keep", text, value)) if equals else None
@@ -95,12 +82,6 @@ def where(
     around: tuple[float, float] | None,
 ) -> Region | None:
     """The places of --pose, --box or --around (which moves with home); None for the home pose."""
-    import numpy as np
-
-    from flexapod.cli.options.poses import box_of
-    from flexapod.workspace.box import Workspace
-    from flexapod.workspace.region import as_region
-
     box = tuple(box)
     if sum((pose is not None, bool(box), around is not None)) > 1:
         raise click.UsageError("--pose, --box and --around each say where. Give one of them.")
@@ -119,9 +100,6 @@ def objective(
     poses: Path | None,
 ) -> Objective:
     """The least index over the places, or the mean over the poses of a file."""
-    from flexapod.cli.options.poses import read_poses
-    from flexapod.optimisation.objectives import LeastIndex, MeanIndex
-
     over = where(hexapod, pose, box, around)
     if poses is None:
         return LeastIndex(over)
@@ -132,8 +110,6 @@ def objective(
 
 def uncertain(texts: Iterable[str]) -> list[Any]:
     """`--uncertain` options: KEY=SPREAD or SPREAD%, then a distribution and `together` after commas."""
-    from flexapod.optimisation.uncertain_parameters import Uncertain
-
     found = []
     for text in texts:
         key, equals, value = text.partition("=")
@@ -177,15 +153,11 @@ def _number(option: str, text: str, number: str) -> float:
 
 
 def _si(number: float, dimension: str, unit: str) -> float:
-    from flexapod.design.units import to_si
-
     return float(to_si(number, dimension, unit))
 
 
 def _unit(option: str, given: str, known: dict[str, Any]) -> tuple[str, Callable[[float], float]]:
     """`stroke_mm` -> its name and what turns its numbers into SI units."""
-    from flexapod.design.units import UNITS
-
     for name in sorted(known, key=len, reverse=True):
         if given == name:
             return name, float

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from flexapod.conventions import AXES, ROTATIONS, TRANSLATIONS
+from flexapod.design.units import UNITS
 from flexapod.errors import ArgumentError
-
-if TYPE_CHECKING:
-    from flexapod.paths.trajectory import Ends, Trajectory
+from flexapod.paths.trajectory import Ends, Trajectory
+from flexapod.pose import Pose
+from flexapod.tables import TIMES, naming, parse_table, read_text
 
 COLUMNS = ("t", *AXES)
 NAMES = {"t": "t", "time": "t", "weight": "weight", **{axis: axis for axis in AXES}}
@@ -18,12 +20,6 @@ FORM = f"Its first line must be {','.join(COLUMNS)} and may end in ,weight (s, m
 
 def read(file: Path, ends: Ends) -> Trajectory:
     """The trajectory in a file. Raises ArgumentError, with the line, if it is not such a file."""
-
-    from flexapod.design.units import UNITS
-    from flexapod.paths.trajectory import Trajectory
-    from flexapod.pose import Pose
-    from flexapod.tables import TIMES, naming, parse_table, read_text
-
     text = read_text(file)
     with naming(file):
         table = parse_table(text, NAMES, FORM)
@@ -39,8 +35,6 @@ def read(file: Path, ends: Ends) -> Trajectory:
 
 def written(path: Trajectory) -> str:
     """A path as the text of a file."""
-    import numpy as np
-
     table = np.column_stack([path.times, path.waypoints.position, np.degrees(path.waypoints.rpy)])
     lines = (",".join(f"{value:.12g}" for value in row) for row in table)
     return "\n".join([",".join(COLUMNS), *lines]) + "\n"
