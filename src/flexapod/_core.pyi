@@ -32,8 +32,8 @@ design_size: int
 motion_size: int
 
 class Joint(Enum):
-    universal = 0
-    spin_free = 1
+    universal = 1
+    spin_free = 0
 
 class Measure(Enum):
     leg_length = 0

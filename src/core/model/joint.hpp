@@ -3,9 +3,10 @@
 
 namespace core_enums {
 
+/// The numbers are those of the truth values that "universal" has or not: True, by mistake, is not the other model.
 enum class Joint {
-  universal,  // exact: a universal joint lets the leg spin about itself as the base axis k demands
-  spin_free   // the paper's W.s = 0 (corrections, part B)
+  universal = 1,  // exact: a universal joint lets the leg spin about itself as the base axis k demands
+  spin_free = 0   // the paper's W.s = 0 (corrections, part B)
 };
 
 }  // namespace core_enums
