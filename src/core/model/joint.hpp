@@ -3,7 +3,7 @@
 
 namespace core_enums {
 
-/// The numbers are those of the truth values that "universal" has or not: True, by mistake, is not the other model.
+/// Python may give a number for an enumerator: True, given by mistake, then is the universal joint.
 enum class Joint {
   universal = 1,  // exact: a universal joint lets the leg spin about itself as the base axis k demands
   spin_free = 0   // the paper's W.s = 0 (corrections, part B)
