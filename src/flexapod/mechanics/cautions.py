@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -12,9 +12,11 @@ from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.joint_limits import check_limits
 from flexapod.mechanics.kinematics import condition_number
-from flexapod.mechanics.linearisation import DampedModes
 from flexapod.mechanics.modes import near_repeated
 from flexapod.pose import Pose
+
+if TYPE_CHECKING:
+    from flexapod.mechanics.linearisation import DampedModes
 
 SINGULAR = 1e12  # condition number without units from which H is singular to rounding
 NEAR_SINGULAR = 100.0  # a leg force up to a hundred times the load; stiffness 1e4 times less in some direction
