@@ -87,17 +87,9 @@ void bind_enums(nb::module_& m) {
       .value("stopped", Outcome::stopped);
 
   using sweep_task::Quantity, sweep_task::Status;
-  nb::enum_<Quantity>(m, "SweepQuantity", nb::is_flag())
-      .value("omega_1", Quantity::omega_1)
-      .value("omega", Quantity::omega)
-      .value("cond_H", Quantity::cond_H)
-      .value("leg_length", Quantity::leg_length)
-      .value("leg_distance", Quantity::leg_distance)
-      .value("leg_force", Quantity::leg_force)
-      .value("lowest_stiffness", Quantity::lowest_stiffness)
-      .value("joint_angle", Quantity::joint_angle)
-      .value("within_limits", Quantity::within_limits)
-      .value("omega_1_gradient", Quantity::omega_1_gradient);
+  nb::enum_<Quantity> quantities(m, "SweepQuantity", nb::is_flag());
+#define FLEXAPOD_VALUE(name) quantities.value(#name, Quantity::name);
+  FLEXAPOD_SWEEP_QUANTITIES(FLEXAPOD_VALUE)
   nb::enum_<Status>(m, "SweepStatus")
       .value("ok", Status::ok)
       .value("singular", Status::singular)

@@ -22,17 +22,9 @@ struct SweepArray {
   std::size_t columns;
 };
 inline constexpr SweepArray sweep_arrays[] = {
-    {"omega_1", sweep_task::omega_1, &sweep_task::Task::omega_1_, 1},
-    {"omega", sweep_task::omega, &sweep_task::Task::omega_, 6},
-    {"cond_H", sweep_task::cond_H, &sweep_task::Task::cond_H_, 1},
-    {"leg_length", sweep_task::leg_length, &sweep_task::Task::leg_length_, 6},
-    {"leg_distance", sweep_task::leg_distance, &sweep_task::Task::leg_distance_, 1},
-    {"leg_force", sweep_task::leg_force, &sweep_task::Task::leg_force_, 1},
-    {"lowest_stiffness", sweep_task::lowest_stiffness, &sweep_task::Task::lowest_stiffness_, 1},
-    {"universal_angle", sweep_task::joint_angle, &sweep_task::Task::universal_angle_, 6},
-    {"spherical_angle", sweep_task::joint_angle, &sweep_task::Task::spherical_angle_, 6},
-    {"omega_1_gradient", sweep_task::omega_1_gradient, &sweep_task::Task::omega_1_gradient_, 6},
-};
+#define FLEXAPOD_SWEEP_ARRAY(name, quantity, columns) \
+  {#name, sweep_task::quantity, &sweep_task::Task::name##_, columns},
+    FLEXAPOD_SWEEP_ARRAYS(FLEXAPOD_SWEEP_ARRAY)};
 /// The array of truth values: its name, and what to ask for.
 inline constexpr std::pair<const char*, sweep_task::Quantity> within_limits{"within_limits", sweep_task::within_limits};
 

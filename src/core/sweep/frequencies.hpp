@@ -68,8 +68,6 @@ template <class T> class Sweep {
 
  private:
   static constexpr unsigned modal = Quantity::omega_1 | Quantity::omega;
-  static constexpr unsigned geometric =
-      Quantity::leg_length | Quantity::joint_angle | Quantity::leg_distance | Quantity::within_limits;
 
   void work_through(size_t first, size_t count) {
     for (size_t done = 0; done < count; done += Part::lanes) {
@@ -104,11 +102,7 @@ template <class T> class Sweep {
     else if (asked & Quantity::cond_H) part.set_legs(machine, at);
     else part.fault = at.fault;
     const SweepQuantities<Part> quantities{machine, task, {first, static_cast<int>(count)}, at};
-    const auto note = [&](const Part& fault) { part.fault = select(part.fault > 0.0, part.fault, fault); };
-    if (asked & geometric) quantities.geometry();
-    if (asked & Quantity::leg_force) note(quantities.static_force());
-    if (asked & Quantity::lowest_stiffness) note(quantities.stiffness());
-    if (asked & Quantity::omega_1_gradient) note(quantities.gradient());
+    quantities.evaluate(part.fault);
   }
   FLEXAPOD_FLAT PosePack<Part> pose_pack() const { return PosePack<Part>(machine, rows, task.width); }
   FLEXAPOD_FLAT void assemble(const PosePack<Part>& at) { part.set(machine, at); }

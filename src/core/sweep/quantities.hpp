@@ -18,6 +18,18 @@ template <class T> struct SweepQuantities {
   const Rows rows;
   const PosePack<T>& at;
 
+  /// Everything that is asked for. A fault that is found is noted where there was none.
+  void evaluate(T& fault) const {
+    constexpr unsigned geometric =
+        Quantity::leg_length | Quantity::joint_angle | Quantity::leg_distance | Quantity::within_limits;
+    const unsigned asked = task.quantities;
+    const auto note = [&](const T& found) { fault = select(fault > 0.0, fault, found); };
+    if (asked & geometric) geometry();
+    if (asked & Quantity::leg_force) note(static_force());
+    if (asked & Quantity::lowest_stiffness) note(stiffness());
+    if (asked & Quantity::omega_1_gradient) note(gradient());
+  }
+
   void geometry() const {
     const unsigned asked = task.quantities;
     const sweep_task::Limits& limits = *task.limits;

@@ -9,18 +9,36 @@
 
 namespace sweep_task {
 
-enum Quantity : unsigned {
-  omega_1 = 1,
-  omega = 2,
-  cond_H = 4,
-  leg_length = 8,
-  leg_distance = 16,
-  leg_force = 32,
-  lowest_stiffness = 64,
-  joint_angle = 128,
-  within_limits = 256,
-  omega_1_gradient = 512
-};
+// QUANTITY(name): what a sweep can be asked for.
+#define FLEXAPOD_SWEEP_QUANTITIES(QUANTITY) \
+  QUANTITY(omega_1)                         \
+  QUANTITY(omega)                           \
+  QUANTITY(cond_H)                          \
+  QUANTITY(leg_length)                      \
+  QUANTITY(leg_distance)                    \
+  QUANTITY(leg_force)                       \
+  QUANTITY(lowest_stiffness)                \
+  QUANTITY(joint_angle)                     \
+  QUANTITY(within_limits)                   \
+  QUANTITY(omega_1_gradient)
+
+// ARRAY(name, quantity, columns): the arrays of numbers that come back, and what to ask for to get them.
+#define FLEXAPOD_SWEEP_ARRAYS(ARRAY)           \
+  ARRAY(omega_1, omega_1, 1)                   \
+  ARRAY(omega, omega, 6)                       \
+  ARRAY(cond_H, cond_H, 1)                     \
+  ARRAY(leg_length, leg_length, 6)             \
+  ARRAY(leg_distance, leg_distance, 1)         \
+  ARRAY(leg_force, leg_force, 1)               \
+  ARRAY(lowest_stiffness, lowest_stiffness, 1) \
+  ARRAY(universal_angle, joint_angle, 6)       \
+  ARRAY(spherical_angle, joint_angle, 6)       \
+  ARRAY(omega_1_gradient, omega_1_gradient, 6)
+
+#define FLEXAPOD_NUMBERED(name) name,
+enum class QuantityNumber : unsigned { FLEXAPOD_SWEEP_QUANTITIES(FLEXAPOD_NUMBERED) };
+#define FLEXAPOD_BIT(name) name = 1u << static_cast<unsigned>(QuantityNumber::name),
+enum Quantity : unsigned { FLEXAPOD_SWEEP_QUANTITIES(FLEXAPOD_BIT) };
 
 enum Status : std::uint8_t {
   ok = 0,
@@ -45,8 +63,8 @@ struct Task {
   unsigned quantities;
   const Limits* limits;
   // Results, n rows of one or of six numbers; those not asked for may be null.
-  double *omega_1_, *omega_, *cond_H_, *leg_length_, *leg_distance_, *leg_force_, *lowest_stiffness_;
-  double *universal_angle_, *spherical_angle_, *omega_1_gradient_;
+#define FLEXAPOD_RESULT(name, quantity, columns) double* name##_;
+  FLEXAPOD_SWEEP_ARRAYS(FLEXAPOD_RESULT)
   bool* within_limits_;
   std::uint8_t* status_;
 };
