@@ -16,11 +16,11 @@ def second_moments(inertia: Array) -> Array:
 
 def inertia_flaw(inertia: Array, *, solid: bool = False) -> str:
     """Why no rigid body has this inertia; "" where one has. `solid`: nor may it be flat or a line."""
-    moments = np.linalg.eigvalsh(second_moments(inertia))
-    slack = ROUNDING * np.abs(moments).max()
-    if moments[0] > slack or (not solid and moments[0] >= -slack):
-        return ""
     principal = np.linalg.eigvalsh(inertia)
+    moments = principal.sum() / 2 - principal  # the eigenvalues of second_moments, descending
+    slack = ROUNDING * np.abs(moments).max()
+    if moments[2] > slack or (not solid and moments[2] >= -slack):
+        return ""
     if principal[0] < -ROUNDING * np.abs(principal).max():
         return f"its smallest principal moment is {principal[0]:.3g} kg m2, below zero"
     largest, others = principal[2], principal[0] + principal[1]
