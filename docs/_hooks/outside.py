@@ -30,7 +30,7 @@ def in_site(path: str) -> str:
     if path.startswith("examples/") and path.endswith(".py"):
         return f"examples.md#{Path(path).stem}"
     if path.startswith("src/core/"):
-        return f"core/{Path(path).name}.md"
+        return f"{path.removeprefix('src/')}.md"
     return "index.md" if path == "README.md" else path
 
 

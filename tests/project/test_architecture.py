@@ -111,6 +111,16 @@ def test_imports_only_point_down(path):
     assert not above, f"{here} imports {sorted(above)}, which do not lie below it"
 
 
+@pytest.mark.parametrize("name", [name for name in ORDER if (SOURCE / name).is_dir()])
+def test_a_package_says_what_it_imports(name):
+    files = sorted((SOURCE / name).rglob("*.py"))
+    used = set().union(*(imported(ast.parse(path.read_text())) for path in files)) - {name}
+    packages = [other for other in ORDER if other in used and (SOURCE / other).is_dir()]
+    doc = ast.get_docstring(ast.parse((SOURCE / name / "__init__.py").read_text()))
+    said = " ".join(doc.partition("May import: ")[2].split())
+    assert said == f"{', '.join(packages) or 'no other package'}."
+
+
 def test_the_rule_sees_a_wrong_import():
     code = (
         "from flexapod import cli, errors\nimport flexapod.report.page\nfrom flexapod.pose import Pose\n"

@@ -1,4 +1,8 @@
-"""The command line. Each command lives in a module of this package and is imported only when it is called."""
+"""The command line. Each command lives in a module of this package and is imported only when it is called.
+
+May import: design, mechanics, workspace, excitation, simulation, vibration, paths, optimisation, control,
+interchange, plots, paper, report, web.
+"""
 
 from __future__ import annotations
 

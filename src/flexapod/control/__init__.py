@@ -1,6 +1,6 @@
 """Controllers on the linearised machine and on the complete one.
 
-May import: paths and what lies below it.
+May import: design, mechanics, workspace, excitation, simulation, vibration, paths.
 """
 
 from flexapod._suggestions import attach

@@ -1,6 +1,6 @@
 """Designs of hexapods: read from files and tables, checked, changed, and written.
 
-May import: errors, conventions, pose.
+May import: no other package.
 """
 
 from flexapod._suggestions import attach

@@ -1,6 +1,6 @@
 """What drives a machine in time: base motions, loads, leg commands, recordings, and random spectra.
 
-May import: pose and what lies below it.
+May import: design.
 """
 
 from flexapod._suggestions import attach

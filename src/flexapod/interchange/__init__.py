@@ -1,6 +1,6 @@
 """The machine in the formats of other tools: MuJoCo, URDF, SDF, MATLAB.
 
-May import: mechanics and what lies below it.
+May import: design, mechanics.
 """
 
 from flexapod._suggestions import attach

@@ -1,6 +1,6 @@
 """The machine at a pose: kinematics, dynamics, statics, natural modes, and the linearised dynamics.
 
-May import: design and what lies below it.
+May import: design.
 """
 
 from flexapod._suggestions import attach

@@ -1,6 +1,6 @@
 """Better designs, trade-offs between wishes, and the robustness of a design.
 
-May import: paths and what lies below it.
+May import: design, mechanics, workspace.
 """
 
 from flexapod._suggestions import attach

@@ -3,6 +3,9 @@ platform", Journal of Sound and Vibration (2007), done anew: its figures, its fr
 
 Each part of it is a module here with `draw(name, settings)`, which gives a `Part`: a figure, the numbers behind it, and
 what the paper says beside what is found.
+
+May import: design, mechanics, workspace, excitation, simulation, vibration, optimisation, control, interchange,
+plots.
 """
 
 from __future__ import annotations

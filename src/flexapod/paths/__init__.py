@@ -1,6 +1,6 @@
 """Trajectories through the workspace: their stability, their loads, and how to plan them.
 
-May import: workspace and what lies below it.
+May import: design, mechanics, workspace.
 """
 
 from flexapod._suggestions import attach

@@ -3,7 +3,9 @@
     fx.plots.machine(hexapod, pose)
     fx.plots.mode(hexapod, pose, fx.natural_modes(hexapod, pose), 1).figure.savefig("mode-1.png")
 
-Without `ax` a new figure is made. May import: all subject packages.
+Without `ax` a new figure is made.
+
+May import: design, mechanics, workspace, paths, optimisation.
 """
 
 from flexapod._suggestions import attach

@@ -1,6 +1,6 @@
 """The complete machine in time, on a moving base.
 
-May import: mechanics, excitation and what lies below them.
+May import: design, mechanics, excitation.
 """
 
 from flexapod._suggestions import attach

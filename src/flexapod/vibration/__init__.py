@@ -1,6 +1,6 @@
 """Vibration in the frequency domain: transmissibility, random response, and the stepped sine.
 
-May import: simulation and what lies below it.
+May import: design, mechanics, excitation, simulation.
 """
 
 from flexapod._suggestions import attach

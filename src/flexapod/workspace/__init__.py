@@ -1,6 +1,6 @@
 """Many poses: sets of poses, sweeps in memory, on disk and on clusters, summaries, and the worst pose.
 
-May import: mechanics and what lies below it.
+May import: design, mechanics.
 """
 
 from flexapod._suggestions import attach
