@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.web.asked import ASKED, BOX, MACHINE, POSE, TEXT
 
 import flexapod as fx
 
@@ -20,12 +21,6 @@ from flexapod.design import design_file
 from flexapod.web import designs
 from flexapod.web.app import STATIC, application
 from flexapod.web.security import MAX_BODY
-
-TEXT = design_file.find("mukherjee-ii").read_text(encoding="utf-8")
-MACHINE = fx.load("mukherjee-ii")
-ASKED = {"design": TEXT, "pose": [0.001, 0.0, 0.086, 1.0, 2.0, 3.0]}
-POSE = fx.Pose.from_rpy(0.001, 0.0, 0.086, *np.radians([1.0, 2.0, 3.0]))
-BOX = {"low": [-0.01, -0.01, 0.08, -5, -5, -5], "high": [0.01, 0.01, 0.09, 5, 5, 5]}
 
 
 @pytest.fixture(scope="module")

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.web.asked import ASKED, BOX, MACHINE, POSE
 
 import flexapod as fx
 
@@ -23,12 +24,6 @@ from flexapod.web import worker as work
 from flexapod.web.encode import as_json
 from flexapod.web.jobs import Jobs
 from flexapod.web.security import Guard
-
-TEXT = design_file.find("mukherjee-ii").read_text(encoding="utf-8")
-MACHINE = fx.load("mukherjee-ii")
-ASKED = {"design": TEXT, "pose": [0.001, 0.0, 0.086, 1.0, 2.0, 3.0]}
-POSE = fx.Pose.from_rpy(0.001, 0.0, 0.086, *np.radians([1.0, 2.0, 3.0]))
-BOX = {"low": [-0.01, -0.01, 0.08, -5, -5, -5], "high": [0.01, 0.01, 0.09, 5, 5, 5]}
 
 
 def apart(task: Coroutine[Any, Any, Any]) -> Any:

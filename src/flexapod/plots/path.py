@@ -5,8 +5,6 @@ Each function draws a result of a study on a new matplotlib Figure and returns i
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -27,9 +25,6 @@ from flexapod.plots.style import (
     entitle,
     new_figure,
 )
-
-if TYPE_CHECKING:
-    pass
 
 STYLES = ("-", "-", "-", (0, (5, 1.5)), (0, (5, 1.5)), (0, (5, 1.5)))
 
