@@ -61,7 +61,7 @@ def index_along(found: PathIndex, beside: PathIndex | None = None) -> Figure:
     for result, color, style, label in paths:
         x = _x(result, shared)
         above.plot(x, result.samples["index"], color=color, ls=style, lw=1.9, label=label)
-        below.semilogy(x, result.samples.condition_number, color=color, ls=style, lw=1.5)
+        below.plot(x, result.samples.condition_number, color=color, ls=style, lw=1.5)
     where = np.interp(found.minimum_time, found.samples.time.values, _x(found, shared))
     above.plot(where, found.minimum, "o", ms=6, color=BLUE, mec="white", mew=0.9)
     above.annotate(
@@ -78,6 +78,9 @@ def index_along(found: PathIndex, beside: PathIndex | None = None) -> Figure:
     above.set(ylabel=r"lowest natural frequency $\omega_1$, rad/s")
     above.set_ylim(bottom=0)
     above.legend(**LEGEND)
+    conditions = np.concatenate([result.samples.condition_number.values for result, *_ in paths])
+    largest, least = np.nanmax(conditions), np.nanmin(conditions)
+    below.set_yscale("log" if largest > 10 * least else "linear")  # a part of a decade has no round numbers
     below.set(ylabel="cond(H)", xlabel="share of the path's time" if shared else "time, s")
     for ax in (above, below):
         dress(ax)
