@@ -17,21 +17,12 @@ if TYPE_CHECKING:
     from mkdocs.config.defaults import MkDocsConfig
     from mkdocs.structure.files import Files
 
-#: Packages in the order of the navigation. What is at the top and in none of them stands on the page `top`.
-PACKAGES = (
-    "design",
-    "mechanics",
-    "workspace",
-    "excitation",
-    "simulation",
-    "vibration",
-    "paths",
-    "optimisation",
-    "control",
-    "interchange",
-    "plots",
-    "errors",
-)
+
+def packages() -> list[str]:
+    """The packages of subjects, those that import fewest others first, and the errors."""
+    names = [name for name in flexapod.__all__ if hasattr(getattr(flexapod, name), "__path__")]
+    others = {name: (import_module(f"flexapod.{name}").__doc__ or "").partition("May import: ")[2] for name in names}
+    return [*sorted(names, key=lambda name: (others[name].count(","), name)), "errors"]
 
 
 def _package(name: str) -> ModuleType:
@@ -96,7 +87,7 @@ def _modules() -> list[str]:
 def index() -> str:
     """All names by package, with the first line of what each says."""
     lines = ["# Python", "", "`import flexapod as fx` gives all of these. SI units and rad/s throughout.", ""]
-    for package in ("top", *PACKAGES):
+    for package in ("top", *packages()):
         lines += [
             f"## [{title(package)}]({file(package)[4:]})",
             "",
@@ -117,7 +108,7 @@ def _first_line(name: str) -> str:
 
 def pages() -> Iterator[tuple[str, str]]:
     yield "api/index.md", index()
-    for package in ("top", *PACKAGES):
+    for package in ("top", *packages()):
         yield file(package), page(package)
 
 
