@@ -17,7 +17,8 @@ import numpy as np
 import flexapod as fx
 
 CASES = json.loads((Path(__file__).parents[1] / "data" / "golden.json").read_text(encoding="utf-8"))["cases"]
-FILES = ["py.typed", "_core.pyi", "designs/template.toml", "report/page.css", "web/static/index.html"]
+FILES = ["py.typed", "_core.pyi", "__init__.pyi", "mechanics/__init__.pyi", "design/machines/template.toml"]
+FILES += ["report/page.css", "web/static/index.html"]
 
 
 def check_natural_frequencies() -> None:
