@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection
-from difflib import get_close_matches
 from typing import Any
 
 import numpy as np
@@ -48,6 +47,8 @@ def one_of(value: Any, name: str, choices: Collection[str]) -> str:
     """One of some words; the message names the nearest of them."""
     if isinstance(value, str) and value in choices:
         return value
+    from difflib import get_close_matches  # needed for errors only
+
     near = get_close_matches(str(value).lower(), choices, n=1)
     hint = f" Did you mean {near[0]!r}?" if near else ""
     raise ArgumentError(f"{name} is {shown(value)}; it must be one of {', '.join(map(repr, choices))}.{hint}")

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from flexapod.conventions import TWO_PI, Array
-from flexapod.design.joint_table import read_joints
 from flexapod.design.schema import KEYS, Key
 from flexapod.design.value_checks import check_value
 from flexapod.errors import DesignError
@@ -136,6 +135,8 @@ def _expand_table(values: Values, directory: Path | None) -> None:
     home = None
     if "home.position" in values:
         home = Pose(values["home.position"], rpy_matrix(values.get("home.orientation", np.zeros(3))))
+    from flexapod.design.joint_table import read_joints  # the reader of tables is needed for designs with a table only
+
     for key, value in read_joints(directory / given, home).items():
         if value is not None:
             _refuse_both(values, "joints", key)
