@@ -48,7 +48,7 @@ def contests(plan: Plan) -> list[Contest]:
     ]
     if plan.has("pin"):
         contenders.append(_pinocchio(hexapod, pose, calls))
-    if plan.has("mujoco"):
+    if plan.has("mujoco-core"):
         contenders.append(_mujoco(hexapod, pose, calls))
     return [Contest("Equations of motion", "state", "acceleration of the platform, relative", contenders)]
 
@@ -80,7 +80,7 @@ def _mujoco(hexapod: fx.Hexapod, pose: fx.Pose, calls: int) -> Contender:
     at = run.model.joint("platform").dofadr[0]
     error = float(np.linalg.norm(run.data.qacc[at : at + 6] - ours) / np.linalg.norm(ours))
     call = cpu_seconds(lambda: mujoco.mj_forward(run.model, run.data), repeats=calls)
-    return Contender("MuJoCo", "mujoco", "mj_forward, a call, soft closures", call, error, 0.01)
+    return Contender("MuJoCo", "mujoco-core", "mj_forward, a call, soft closures", call, error, 0.01)
 
 
 def microseconds(call, times: int = 1) -> float:

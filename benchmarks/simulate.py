@@ -83,7 +83,7 @@ def _against_simulators(plan: Plan) -> Contest:
     timed = cpu_seconds(lambda: integrate([run], [v.duration], options=options, motions=False), v.duration)
     error, how = abs(omega / trial.omega - 1), f"rtol {rtol:g}, {_lost(own / amplitude)}"
     contenders = [Contender(OURS, "flexapod", how, timed, error, WANTED)]
-    if plan.has("mujoco"):
+    if plan.has("mujoco-core"):
         contenders.append(_mujoco(v, trial, amplitude))
     if plan.has("exudyn"):
         contenders.append(_exudyn(v, trial, amplitude))
@@ -107,7 +107,7 @@ def _mujoco(v: Vibration, trial: Vibration, amplitude: float) -> Contender:
                 runs.append((run.cpu_seconds(), run, how, abs(omega / v.omega - 1)))
                 break
     _, run, how, error = min(runs, key=lambda r: r[0])
-    return Contender("MuJoCo", "mujoco", how, lambda: run.cpu_seconds() / v.duration, error, WANTED)
+    return Contender("MuJoCo", "mujoco-core", how, lambda: run.cpu_seconds() / v.duration, error, WANTED)
 
 
 def _exudyn(v: Vibration, trial: Vibration, amplitude: float) -> Contender:
@@ -137,7 +137,7 @@ def main() -> None:
     print("mukherjee-ii with damped legs")
     _damped()
     _many()
-    if not missing("mujoco"):
+    if not missing("mujoco-core"):
         from benchmarks import _mujoco
 
         _mujoco.main()

@@ -35,7 +35,7 @@ def seconds(command: list[str]) -> float:
 OTHERS = {  # what a script of each must import to begin
     "SciPy": ("scipy", "numpy, scipy.linalg"),
     "Pinocchio": ("pin", "pinocchio"),
-    "MuJoCo": ("mujoco", "mujoco"),
+    "MuJoCo": ("mujoco-core", "mujoco"),
     "Exudyn": ("exudyn", "exudyn, exudyn.utilities"),
     "JAX": ("jax", "jax, jax.numpy"),
 }
