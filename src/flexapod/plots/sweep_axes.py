@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from flexapod.conventions import AXES, Array
+from flexapod.conventions import AXES, ROTATIONS, Array
 from flexapod.errors import ArgumentError
 from flexapod.workspace.quantities import QUANTITIES
 
@@ -34,7 +34,7 @@ def grid_values(sweep: xr.Dataset, quantity: str, varied: int) -> xr.DataArray:
 def axis_of(values: xr.DataArray, name: str) -> tuple[Array, str]:
     """Positions along a coordinate as people read them, and its label."""
     positions = np.asarray(values[name].values, dtype=float)
-    if name in AXES[3:]:
+    if name in ROTATIONS:
         return np.degrees(positions), f"{name} (°)"
     if np.abs(positions).max() <= 1:
         return 1000 * positions, f"{name} (mm)"
@@ -47,7 +47,7 @@ def held(values: xr.DataArray) -> str:
     for name in AXES:
         if name in values.coords and name not in values.dims:
             number = float(values[name])
-            words.append(f"{name} {np.degrees(number):.4g}°" if name in AXES[3:] else f"{name} {1000 * number:.4g} mm")
+            words.append(f"{name} {np.degrees(number):.4g}°" if name in ROTATIONS else f"{name} {1000 * number:.4g} mm")
     return ", ".join(words)
 
 

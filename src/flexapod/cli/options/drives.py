@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from flexapod.cli.options import common
-from flexapod.conventions import AXES, TWO_PI
+from flexapod.conventions import AXES, LEGS, TRANSLATIONS, TWO_PI
 
 if TYPE_CHECKING:
     from flexapod.excitation.excitation import Excitation
@@ -130,7 +130,7 @@ def _channel(text: str) -> tuple[str, str]:
     """`z` and `base:z` move the base; `force:z`, `moment:z` and `leg:3` load the platform and command a leg."""
     use, _, own = text.rpartition(":")
     use = use or "base"
-    allowed = {"base": AXES, "leg": ("1", "2", "3", "4", "5", "6")}.get(use, AXES[:3])
+    allowed = {"base": AXES, "leg": LEGS}.get(use, TRANSLATIONS)
     if use not in USES or own not in allowed:
         raise click.UsageError(
             f"channel {text!r} is unknown: give {', '.join(AXES)} for the base, force:x to force:z, moment:x to "

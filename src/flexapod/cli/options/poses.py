@@ -103,7 +103,7 @@ def _number(option: str, name: str, text: str) -> float:
         number = float(text)
     except ValueError:
         raise click.UsageError(f"{option} {name}: {text!r} is no number.") from None
-    return math.radians(number) if name in ("roll", "pitch", "yaw") else number
+    return math.radians(number) if name in ROTATIONS else number
 
 
 def _with_home(hexapod: Hexapod, option: str, given: dict[str, Any]) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from flexapod import plots
-from flexapod.conventions import AXES, unit_of
+from flexapod.conventions import AXES, TRANSLATIONS, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
 from flexapod.pose import Pose
@@ -83,7 +83,7 @@ def _csv(dataset: xr.Dataset) -> str:
     columns = [dataset.time.values[:, None]]
     for variable, unit in (("displacement", "m"), ("relative_displacement", "m")):
         columns.append(dataset[variable].values)
-        names += [f"{variable}_{axis}_{unit if axis in AXES[:3] else 'rad'}" for axis in AXES]
+        names += [f"{variable}_{axis}_{unit if axis in TRANSLATIONS else 'rad'}" for axis in AXES]
     for variable, unit in (("leg_length", "m"), ("leg_force", "N")):
         columns.append(dataset[variable].values)
         names += [f"{variable}_{leg}_{unit}" for leg in dataset.leg.values]
