@@ -282,9 +282,10 @@ BAD_SHORT_FORMS = {
     "no radius": ("radius = 0.5", "", ["base.circle.radius is missing", "Add radius"]),
     "radius of zero": ("radius = 0.5", "radius_mm = 0", ["base.circle.radius_mm is 0 mm", "> 0"]),
     "one angle twice": ("[0, 60,", "[0, 0,", ["base.joints[0] and base.joints[1] coincide"]),
-    "a joint above the centroid": (
-        CIRCLE,
-        "[base]\njoints = [[0, 0, 1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 0.5]]\n",
+    "a joint above the centroid, and no home": (
+        SHORT,
+        "[base]\njoints = [[0, 0, 1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 0.5]]\n"
+        + GOOD[GOOD.index("[platform]") : GOOD.index("[home]")],
         ["base.universal_axes is left out", "base.joints[0] is at [0.0, 0.0, 1.0] m", "Give base.universal_axes"],
     ),
     "rod and mass": (

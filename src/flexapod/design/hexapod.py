@@ -21,8 +21,9 @@ from flexapod.design.geometry_checks import check_apart, platform_warnings, unit
 from flexapod.design.home import Home
 from flexapod.design.packing import packed
 from flexapod.design.parts import Damping, LegPart, Legs, Limits, Value, bytes_of, more_keys
-from flexapod.design.shorthands import circle_table, expand, tangent_axes
+from flexapod.design.shorthands import circle_table, expand
 from flexapod.design.tables import DEFAULT_GRAVITY, complete, flatten
+from flexapod.design.universal_axes import default_axes
 from flexapod.errors import DesignError, shown
 from flexapod.pose import Pose
 
@@ -59,7 +60,8 @@ class Hexapod(Value, metaclass=Suggesting):
         Joints on the base, base frame, m, (6, 3).
     universal_axes : array_like, optional
         Axes of the universal joints that are fixed in the base, base frame, (6, 3), made unit vectors. Left out, they
-        are tangent to the circle of the base joints.
+        are tangent to the circle of the base joints; a leg that is within 15 degrees of its tangent at home gets the
+        axis across it that is nearest to z.
     platform_joints : array_like
         Joints on the platform, platform frame, m, (6, 3).
     platform_mass : float
@@ -114,7 +116,7 @@ class Hexapod(Value, metaclass=Suggesting):
     name: str = "hexapod"
     gravity: Array = field(default_factory=DEFAULT_GRAVITY.copy)
     base_joints: Array
-    universal_axes: Array = None  # type: ignore[assignment]  # a design without them gets tangent ones
+    universal_axes: Array = None  # type: ignore[assignment]  # a design without them gets the default
     platform_joints: Array
     platform_mass: float
     platform_mass_center: Array
@@ -127,16 +129,18 @@ class Hexapod(Value, metaclass=Suggesting):
     def __post_init__(self) -> None:
         flatten({"name": self.name})
         for name, key in _KEYS.items():
-            if name == "universal_axes" and self.universal_axes is None:
-                object.__setattr__(self, name, tangent_axes(self.base_joints))
-            self.set_checked(name, getattr(self, name), key)
+            if name != "universal_axes" or self.universal_axes is not None:
+                self.set_checked(name, getattr(self, name), key)
         object.__setattr__(self, "platform_mass", float(self.platform_mass))
-        object.__setattr__(self, "universal_axes", unit_axes(self.universal_axes))
         for part, kind in (("legs", Legs), ("limits", Limits)):
             if not isinstance(getattr(self, part), kind):
                 raise DesignError(f"{part} is {shown(getattr(self, part))}; it must be a {kind.__name__}.")
         if self.home is not None:
             object.__setattr__(self, "home", Home.of(self.home))
+        axes = self.universal_axes
+        if axes is None:
+            axes = default_axes(self.base_joints, self.platform_joints, self.home)
+        object.__setattr__(self, "universal_axes", unit_axes(axes))
         check_apart("base.joints", self.base_joints)
         check_apart("platform.joints", self.platform_joints)
         warnings = platform_warnings(self.platform_inertia)
@@ -311,8 +315,8 @@ class Hexapod(Value, metaclass=Suggesting):
         Returns
         -------
         Hexapod
-            The changed design. Universal joint axes stay as they are when joints are moved one by one, and become
-            tangent again with a new `base.circle` or `cubic`.
+            The changed design. Universal joint axes stay as they are when joints are moved one by one or the home pose
+            is another, and are the default again with a new `base.circle` or `cubic`.
 
         Raises
         ------

@@ -50,7 +50,7 @@ def read_joints(path: str | Path, home: PoseLike | None = None) -> dict[str, Arr
     -------
     dict
         Changes for `Hexapod.replace`: base.joints and platform.joints, (6, 3) m, and base.universal_axes, (6, 3), which
-        is None where the file has no axes: they then become tangent to the base circle.
+        is None where the file has no axes: they then become the default ones (see `Hexapod`).
 
     Raises
     ------

@@ -7,6 +7,7 @@ import numpy as np
 
 from flexapod.conventions import TWO_PI, Array
 from flexapod.design.schema import KEYS, Key
+from flexapod.design.universal_axes import default_axes
 from flexapod.design.value_checks import check_value
 from flexapod.errors import DesignError
 from flexapod.pose import Pose, rpy_matrix
@@ -29,24 +30,10 @@ def expand(values: Values, directory: Path | None = None) -> Values:
     _expand_cubic(values)
     for part, side in (("lower", 1.0), ("upper", -1.0)):
         _expand_rod(values, f"legs.{part}", side)
-    if "base.joints" in values and "base.universal_axes" not in values:
-        values["base.universal_axes"] = tangent_axes(values["base.joints"])
+    if {"base.joints", "platform.joints"} <= values.keys() and "base.universal_axes" not in values:
+        joints = values["base.joints"], values["platform.joints"]
+        values["base.universal_axes"] = default_axes(*joints, _home(values))
     return values
-
-
-def tangent_axes(base_joints: Array) -> Array:
-    """Unit vectors z x (b_i - centroid): the default axes of the universal joints, shape (6, 3)."""
-    out = base_joints - base_joints.mean(axis=0)
-    out = np.ldexp(out, -np.frexp(np.abs(out).max())[1])  # a power of two: exact, and squares do not vanish
-    axes = np.stack([-out[:, 1], out[:, 0], np.zeros(len(out))], axis=1)
-    length = np.linalg.norm(axes, axis=1, keepdims=True)
-    if (length < 1e-9).any():
-        leg = int(np.argmin(length))
-        raise DesignError(
-            f"base.universal_axes is left out, but base.joints[{leg}] is at {base_joints[leg].tolist()} m, straight "
-            "above or below the centroid of the base joints, where no tangent exists. Give base.universal_axes."
-        )
-    return np.asarray(axes / length + 0.0)
 
 
 def circle(radius: float, angles: Array, height: float) -> Array:
@@ -96,6 +83,13 @@ def rod(mass: Array, length: Array, radius: Array, side: float) -> tuple[Array, 
     return np.stack([side * length / 2, np.zeros(6), np.zeros(6)], axis=1), inertia
 
 
+def _home(values: Values) -> Pose | None:
+    """The home pose, where the values have one."""
+    if "home.position" not in values:
+        return None
+    return Pose(values["home.position"], rpy_matrix(values.get("home.orientation", np.zeros(3))))
+
+
 def _take(values: Values, table: str) -> Values:
     """Remove and return the keys of one table."""
     start = f"{table}."
@@ -132,12 +126,9 @@ def _expand_table(values: Values, directory: Path | None) -> None:
         if any(key.startswith(f"{short}.") for key in values):
             raise DesignError(f"[{short}] and [joints] are both given, and both set joints. Leave one of them out.")
     _refuse_both(values, "joints", "base.joints", "platform.joints")
-    home = None
-    if "home.position" in values:
-        home = Pose(values["home.position"], rpy_matrix(values.get("home.orientation", np.zeros(3))))
     from flexapod.design.joint_table import read_joints  # the reader of tables is needed for designs with a table only
 
-    for key, value in read_joints(directory / given, home).items():
+    for key, value in read_joints(directory / given, _home(values)).items():
         if value is not None:
             _refuse_both(values, "joints", key)
             values[key] = check_value(key, value, KEYS[key])

@@ -76,13 +76,16 @@ class AffineMap:
 
 @dataclass(frozen=True)
 class CircleMap:
-    """The map of a `JointCircle`: radius, half angle, turn and height, each a parameter or a number."""
+    """The map of a `JointCircle`: radius, half angle, turn and height, each a parameter or a number.
+
+    tangent: the legs whose axes follow the circle, (6,); which they are does not change within a search.
+    """
 
     plate: str
     four: list[Parameter | float]
     third: Array
     side: Array
-    tangent: bool
+    tangent: NDArray[np.bool_]
 
     @property
     def parameters(self) -> list[Parameter]:
@@ -91,7 +94,7 @@ class CircleMap:
     @property
     def touched(self) -> NDArray[np.int64]:
         joints = layout.PLACES[f"{self.plate}.joints"].ravel()
-        axes = layout.PLACES["base.universal_axes"].ravel() if self.tangent else joints[:0]
+        axes = layout.PLACES["base.universal_axes"][self.tangent].ravel()
         return np.concatenate([joints, axes])
 
     def start(self) -> list[float]:
@@ -104,9 +107,8 @@ class CircleMap:
         place = layout.PLACES[f"{self.plate}.joints"]
         cosine, sine = np.cos(angle), np.sin(angle)
         numbers[place[:, 0]], numbers[place[:, 1]], numbers[place[:, 2]] = radius * cosine, radius * sine, height
-        if self.tangent:
-            axes = layout.PLACES["base.universal_axes"]
-            numbers[axes[:, 0]], numbers[axes[:, 1]], numbers[axes[:, 2]] = -sine, cosine, 0.0
+        axes = layout.PLACES["base.universal_axes"][self.tangent].T
+        numbers[axes[0]], numbers[axes[1]], numbers[axes[2]] = -sine[self.tangent], cosine[self.tangent], 0.0
 
 
 Part = AffineMap | CircleMap

@@ -13,6 +13,7 @@ from flexapod.conventions import TWO_PI, Array
 from flexapod.design import layout
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.schema import Key
+from flexapod.design.universal_axes import keeps_tangents
 from flexapod.errors import ArgumentError
 from flexapod.optimisation.parameters import AffineMap, CircleMap, Kind, Parameter, Part
 
@@ -141,7 +142,8 @@ class JointCircle:
     height : float or tuple of float, optional
         Height of the joints, m, in the same way.
     axes : {"tangent", "keep"}, optional
-        Whether the axes of the base's universal joints become tangents of the circle, or stay as they are.
+        Whether the axes of the base's universal joints become tangents of the circle, or stay as they are. Those of
+        legs that the design has within 15 degrees of the tangent at home stay in any case.
 
     Notes
     -----
@@ -196,7 +198,9 @@ class JointCircle:
                 parameters[-1].check()  # type: ignore[union-attr]
         if isinstance(parameters[0], Parameter) and parameters[0].low <= 0:
             raise ArgumentError(f"{self.plate}.radius may go down to {parameters[0].low:.6g} m; it must be > 0.")
-        return [CircleMap(self.plate, parameters, third, side, self.plate == "base" and self.axes == "tangent")]
+        tangent = keeps_tangents(hexapod.base_joints, hexapod.platform_joints, hexapod.home)
+        follow = tangent & (self.plate == "base" and self.axes == "tangent")
+        return [CircleMap(self.plate, parameters, third, side, follow)]
 
 
 def _pairs(joints: Array) -> tuple[Array, Array, dict[str, float]]:
