@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 if TYPE_CHECKING:
     import numpy as np
@@ -23,7 +23,32 @@ LEGS = ("1", "2", "3", "4", "5", "6")
 
 TWO_PI = 2 * math.pi
 
+#: A unit as the attribute `units` of Datasets spells it, so that Pint and the CF conventions read the same.
+Unit = Literal[
+    "1", "m", "rad", "s", "rad/s", "m/s", "m/s^2", "rad/s^2", "1/s", "1/s^2", "N", "N m", "N/m", "N s/m", "J", "W",
+    "N^2/(rad/s)"
+]  # fmt: skip
+UNITS: tuple[Unit, ...] = get_args(Unit)
 
-def unit_of(axis: str, linear: str = "m", angular: str = "rad") -> str:
+
+def in_unit(unit: Unit, meaning: str = "") -> dict[str, str]:
+    """Attributes of a variable of a Dataset, as the CF conventions name them."""
+    return {"units": unit, **({"long_name": meaning} if meaning else {})}
+
+
+def in_mixed_units(units: str, meaning: str = "") -> dict[str, str]:
+    """The same where translations and rotations stand side by side: the names of the coordinates that hold the units.
+
+    No one unit is right for such a variable, so it has no `units`.
+    """
+    return {"mixed_units": units, **({"long_name": meaning} if meaning else {})}
+
+
+def printed_unit(unit: str) -> str:
+    """A unit of a Dataset as people write it: `m/s^2` -> `m/s\u00b2`."""
+    return unit.replace("^2", "\u00b2")
+
+
+def unit_of(axis: str, linear: Unit = "m", angular: Unit = "rad") -> Unit:
     """The unit of one of `AXES`: `linear` for a translation, `angular` for a rotation."""
     return linear if axis in TRANSLATIONS else angular

@@ -59,7 +59,7 @@ def test_root_locus_of_one_leg_that_damps_nothing():
     ("law", "units"),
     [
         (fx.control.PID(), ("N/m", "N s/m")),
-        (fx.control.PID(space="task"), ("1/s2", "1/s")),
+        (fx.control.PID(space="task"), ("1/s²", "1/s")),
         (fx.control.PID(actuator="command"), ("1", "s")),
     ],
 )

@@ -58,7 +58,7 @@ def test_every_quantity_is_that_of_the_single_pose_function(name, joint):
 def test_dataset_tells_units_and_provenance():
     found = fx.sweep(I, fx.random_poses(BOX, 5, seed=3), quantities=("omega", "leg_force"), joint="spin_free")
     assert found.omega.dims == ("pose", "mode")
-    assert found.omega.attrs["units"] == "rad s-1"
+    assert found.omega.attrs["units"] == "rad/s"
     assert found.leg_force.attrs["units"] == "N"
     assert found.yaw.attrs["units"] == "rad"
     assert found.attrs["design_digest"] == I.digest
@@ -232,7 +232,7 @@ def test_files_hold_the_numbers_and_where_they_come_from(tmp_path, ending):
         again = xr.load_dataset(path)
         assert again.omega.equals(found.omega)
         assert again.attrs["design_digest"] == I.digest
-        assert again.omega.attrs["units"] == "rad s-1"
+        assert again.omega.attrs["units"] == "rad/s"
         return
     import pandas
 
@@ -244,7 +244,7 @@ def test_files_hold_the_numbers_and_where_they_come_from(tmp_path, ending):
     assert row.omega_mode_6.item() == pytest.approx(float(found.omega.sel(x=0.1, z=0.9, mode=6)), rel=1e-15)
     text = path.read_text(encoding="utf-8") if ending == ".csv" else str(_metadata(path))
     assert I.digest in text
-    assert "omega rad s-1" in text
+    assert "omega rad/s" in text
 
 
 def _metadata(path):

@@ -72,7 +72,7 @@ def test_other_tools_can_read_it(tmp_path):
     assert group.metadata.zarr_format == 3
     assert group["omega_1"].chunks == (3000,)
     assert group["omega_1"].metadata.dimension_names == ("pose",)
-    assert group["omega_1"].attrs["units"] == "rad s-1"
+    assert group["omega_1"].attrs["units"] == "rad/s"
 
 
 def test_poses_can_be_left_out_and_made_again(tmp_path):

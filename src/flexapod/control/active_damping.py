@@ -16,7 +16,7 @@ from flexapod.control.closed_loop_poles import least_damping
 from flexapod.control.controllers import ALL_LEGS, GAIN_UNIT, Feedback, check_legs, damping_law
 from flexapod.control.gain_search import ascending_gains, best_gain, default_gains
 from flexapod.control.plant import Plant, damping_ratios, poles
-from flexapod.conventions import Array, Complex, JointModel
+from flexapod.conventions import Array, Complex, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import Linearisation, linearise
@@ -155,13 +155,13 @@ def root_locus(
     zeros = open_zeros(plant.linear, feedback, legs)
     return xr.Dataset(
         {
-            "pole": (("gain", "branch"), pole, {"units": "rad/s"}),
-            "damping_ratio": (("gain", "branch"), damping_ratios(pole)),
-            "least_damping": ("gain", least, {"long_name": "least damping ratio"}),
-            "zero": ("zero_number", zeros, {"units": "rad/s", "long_name": "frequencies at infinite gain"}),
-            "omega": ("mode", plant.omega, {"units": "rad/s", "long_name": "natural frequencies without control"}),
+            "pole": (("gain", "branch"), pole, in_unit("rad/s")),
+            "damping_ratio": (("gain", "branch"), damping_ratios(pole), in_unit("1", "damping ratio")),
+            "least_damping": ("gain", least, in_unit("1", "least damping ratio")),
+            "zero": ("zero_number", zeros, in_unit("rad/s", "frequencies at infinite gain")),
+            "omega": ("mode", plant.omega, in_unit("rad/s", "natural frequencies without control")),
         },
-        {"gain": ("gain", row, {"units": GAIN_UNIT[feedback]})},
+        {"gain": ("gain", row, in_unit(GAIN_UNIT[feedback], "gain"))},
         {
             "design": hexapod.name,
             "digest": hexapod.digest,

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.control.linear_controller import ControlLaw, Controller, controller_for
 from flexapod.control.plant import Plant
-from flexapod.conventions import AXES, Array, Complex, JointModel
+from flexapod.conventions import AXES, Array, Complex, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import ZERO
@@ -95,14 +95,25 @@ def controlled_transmissibility(
         )
     controlled, force = _response(plant, w, law)
     passive, _ = _response(plant, w, None)
-    grid = ("omega", "output", "base")
+    grid, ratio = ("omega", "output", "base"), "output_unit/base_unit"
+    units = [unit_of(axis) for axis in AXES]
     return xr.Dataset(
         {
-            "controlled": (grid, controlled, {"long_name": "transmissibility with control"}),
-            "passive": (grid, passive, {"long_name": "transmissibility without control"}),
-            "leg_force": (("omega", "leg", "base"), force, {"long_name": "leg force per base displacement"}),
+            "controlled": (grid, controlled, in_mixed_units(ratio, "transmissibility with control")),
+            "passive": (grid, passive, in_mixed_units(ratio, "transmissibility without control")),
+            "leg_force": (
+                ("omega", "leg", "base"),
+                force,
+                in_mixed_units("N/base_unit", "leg force per base displacement"),
+            ),
         },
-        {"omega": ("omega", w, {"units": "rad/s"}), "output": list(AXES), "base": list(AXES)},
+        {
+            "omega": ("omega", w, in_unit("rad/s")),
+            "output": list(AXES),
+            "base": list(AXES),
+            "output_unit": ("output", units),
+            "base_unit": ("base", units),
+        },
         {"design": hexapod.name, "digest": hexapod.digest, "controller": law.name},
     )
 

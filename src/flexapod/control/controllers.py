@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.checks import not_negative, one_of, positive
 from flexapod.control.linear_controller import Controller, Measurement, static
-from flexapod.conventions import Array
+from flexapod.conventions import Array, Unit
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.linearisation import Linearisation
 
@@ -19,7 +19,7 @@ Space = Literal["joint", "task"]
 Actuator = Literal["force", "command"]
 Feedback = Literal["force", "velocity"]
 ALL_LEGS = (1, 2, 3, 4, 5, 6)
-GAIN_UNIT = {"force": "rad/s", "velocity": "N s/m"}  # of active damping, by feedback
+GAIN_UNIT: dict[str, Unit] = {"force": "rad/s", "velocity": "N s/m"}  # of active damping, by feedback
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from flexapod.control.closed_loop_poles import ClosedLoop, assess, distances, in
 from flexapod.control.controllers import PID
 from flexapod.control.linear_controller import ControlLaw, controller_for
 from flexapod.control.plant import Plant, damping_ratios, is_stable, poles
-from flexapod.conventions import Array, Complex, JointModel
+from flexapod.conventions import Array, Complex, JointModel, Unit, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, UnstableError
 from flexapod.mechanics.inputs import ZERO
@@ -220,15 +220,15 @@ def _map(rows: dict[str, Array], pole: Complex, plant: Plant, controller: PID, n
     grid = ("kp", "kd")
     return xr.Dataset(
         {
-            "distance": (grid, distance, {"long_name": "least distance of poles to natural frequencies, relative"}),
-            "worst_damping": (grid, damping_ratios(pole).min(axis=-1), {"long_name": "least damping ratio"}),
+            "distance": (grid, distance, in_unit("1", "least distance of poles to natural frequencies, relative")),
+            "worst_damping": (grid, damping_ratios(pole).min(axis=-1), in_unit("1", "least damping ratio")),
             "stable": (grid, is_stable(pole, plant)),
             "near": (grid, distance < nearness),
-            "pole": ((*grid, "pole_number"), pole, {"units": "rad/s"}),
+            "pole": ((*grid, "pole_number"), pole, in_unit("rad/s")),
         },
         {
-            "kp": ("kp", rows["kp"], {"long_name": "proportional gain", "units": _unit(controller, 0)}),
-            "kd": ("kd", rows["kd"], {"long_name": "derivative gain", "units": _unit(controller, 1)}),
+            "kp": ("kp", rows["kp"], in_unit(_unit(controller, 0), "proportional gain")),
+            "kd": ("kd", rows["kd"], in_unit(_unit(controller, 1), "derivative gain")),
         },
         {
             "space": controller.space,
@@ -246,8 +246,7 @@ def _different(value: ArrayLike, name: str) -> Array:
     return row
 
 
-def _unit(controller: PID, rates: int) -> str:
+def _unit(controller: PID, rates: int) -> Unit:
     """Unit of a single gain, for a position (0) or a rate (1)."""
-    if controller.actuator == "command":
-        return ("1", "s")[rates]
-    return ("N/m", "N s/m")[rates] if controller.space == "joint" else ("1/s2", "1/s")[rates]
+    units: tuple[Unit, Unit] = ("N/m", "N s/m") if controller.space == "joint" else ("1/s^2", "1/s")
+    return (("1", "s") if controller.actuator == "command" else units)[rates]

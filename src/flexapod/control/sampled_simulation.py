@@ -16,7 +16,7 @@ from flexapod.control.closed_loop_poles import assess, instability_message
 from flexapod.control.linear_controller import MEASUREMENTS, Controller, signals, static
 from flexapod.control.plant import Plant
 from flexapod.control.sampled_prediction import Clock, Recording, predict
-from flexapod.conventions import AXES, LEGS, Array, JointModel, unit_of
+from flexapod.conventions import AXES, LEGS, Array, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, SimulationError, UnstableError, shown
 from flexapod.excitation.excitation import Excitation
@@ -210,27 +210,29 @@ def _dataset(
     }
     variables: dict[str, Any] = {}
     for name, (take, words) in parts.items():
+        unit = "acceleration_unit" if name == "acceleration" else "displacement_unit"
         values = np.stack([take(found[case]) for case in CASES])
-        variables[name] = (("case", "time", "axis"), values, {"long_name": words})
+        variables[name] = (("case", "time", "axis"), values, in_mixed_units(unit, words))
         if name == "relative":
             continue
+        about = in_mixed_units(unit, f"root mean square {words}")
         for prefix, source in (("", found), ("predicted_", predicted)):
             rms = np.stack([np.sqrt((take(source[case])[kept] ** 2).mean(axis=0)) for case in CASES])
-            variables[f"{prefix}rms_{name}"] = (("case", "axis"), rms, {"long_name": f"root mean square {words}"})
+            variables[f"{prefix}rms_{name}"] = (("case", "axis"), rms, about)
     variables["force"] = (
         ("sample_time", "leg"),
         found["controlled"].force,
-        {"units": "N", "long_name": "leg force of the controller"},
+        in_unit("N", "leg force of the controller"),
     )
     return xr.Dataset(
         variables,
         {
             "case": list(CASES),
-            "time": ("time", times, {"units": "s"}),
-            "sample_time": ("sample_time", times[:: clock.steps][:-1], {"units": "s"}),
+            "time": ("time", times, in_unit("s")),
+            "sample_time": ("sample_time", times[:: clock.steps][:-1], in_unit("s")),
             "axis": list(AXES),
             "leg": list(LEGS),
-            "acceleration_unit": ("axis", [unit_of(axis, "m/s2", "rad/s2") for axis in AXES]),
+            "acceleration_unit": ("axis", [unit_of(axis, "m/s^2", "rad/s^2") for axis in AXES]),
             "displacement_unit": ("axis", [unit_of(axis) for axis in AXES]),
         },
         {"position_m": pose.position.tolist(), "rpy_rad": pose.rpy.tolist()},

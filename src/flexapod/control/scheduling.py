@@ -16,7 +16,7 @@ from flexapod.control.controllers import GAIN_UNIT, Feedback, damping_law
 from flexapod.control.gain_search import ascending_gains, best_gain, default_gains
 from flexapod.control.linear_controller import ControlLaw
 from flexapod.control.plant import Plant, poles
-from flexapod.conventions import Array, JointModel
+from flexapod.conventions import Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError, SingularPoseError
 from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, single_pose, wrench
@@ -138,7 +138,7 @@ def gain_schedule(
             with_fixed[i] = _damping(plant, law, fixed)
     dataset = _dataset(poses, rows, {"gain": gain, "least_damping": achieved, "fixed_damping": with_fixed}, status)
     if not callable(feedback):
-        dataset.gain.attrs["units"] = GAIN_UNIT[feedback]
+        dataset.gain.attrs |= in_unit(GAIN_UNIT[feedback])
     return dataset.assign_attrs(
         design=hexapod.name,
         digest=hexapod.digest,
@@ -179,13 +179,13 @@ def _choose(plant: Plant, law: Law, gains: Array, damping: float | None) -> tupl
 
 
 def _dataset(poses: PoseSet, rows: Array, values: dict[str, Array], status: np.ndarray) -> xr.Dataset:
-    names = {
-        "gain": "gain",
-        "least_damping": "least damping ratio with it",
-        "fixed_damping": "least damping ratio with one gain for all poses",
+    about = {
+        "gain": {"long_name": "gain"},  # of an own law: in its unit
+        "least_damping": in_unit("1", "least damping ratio with it"),
+        "fixed_damping": in_unit("1", "least damping ratio with one gain for all poses"),
     }
     variables: dict[str, Any] = {
-        name: (poses.dims, values[name].reshape(poses.shape), {"long_name": text}) for name, text in names.items()
+        name: (poses.dims, values[name].reshape(poses.shape), attrs) for name, attrs in about.items()
     }
     variables["status"] = (poses.dims, status.reshape(poses.shape))
     return xr.Dataset(variables, coordinates(poses, rows))

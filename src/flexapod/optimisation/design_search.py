@@ -286,7 +286,7 @@ def history(problem: Problem, found: Sequence[Trial]) -> xr.Dataset:
     data["index"] = (
         "trial",
         [t.values[0] for t in found],
-        {"units": aim.unit, "label": aim.label, "long_name": repr(aim)},
+        {"units": aim.unit or "1", "label": aim.label, "long_name": repr(aim)},
     )
     if found and len(found[0].values) > 1:
         data["against"] = ("trial", [t.values[1] for t in found])

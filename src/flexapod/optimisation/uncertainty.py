@@ -10,7 +10,7 @@ import numpy as np
 
 from flexapod import _core
 from flexapod.checks import thread_count, whole
-from flexapod.conventions import Array, JointModel
+from flexapod.conventions import Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_joint
@@ -213,10 +213,10 @@ def _sensitivity(ensemble: Ensemble, index: _Index, base: int, seed: int, progre
     axis = ("parameter",)
     return xr.Dataset(
         {
-            "first": (axis, result["S1"], {"long_name": "share of the variance of the index"}),
-            "total": (axis, result["ST"], {"long_name": "share with interactions"}),
-            "first_confidence": (axis, result["S1_conf"]),
-            "total_confidence": (axis, result["ST_conf"]),
+            "first": (axis, result["S1"], in_unit("1", "share of the variance of the index")),
+            "total": (axis, result["ST"], in_unit("1", "share with interactions")),
+            "first_confidence": (axis, result["S1_conf"], in_unit("1")),
+            "total_confidence": (axis, result["ST_conf"], in_unit("1")),
         },
         {"parameter": list(ensemble.names)},
         {"designs": len(u)},
@@ -227,5 +227,5 @@ def _samples(ensemble: Ensemble, u: Array, values: Array, hexapod: Hexapod, abou
     import xarray as xr
 
     data: dict[str, Any] = {name: ("sample", ensemble.value(k, u[:, k])) for k, name in enumerate(ensemble.names)}
-    data["index"] = ("sample", values, {"units": "rad s-1", "long_name": "dynamic stability index"})
+    data["index"] = ("sample", values, in_unit("rad/s", "dynamic stability index"))
     return xr.Dataset(data, attrs={"design": hexapod.name, "digest": hexapod.digest, **about})

@@ -13,7 +13,7 @@ from scipy.integrate import cumulative_simpson
 from scipy.optimize import brentq, minimize_scalar
 
 from flexapod.checks import one_of, positive, whole
-from flexapod.conventions import TRANSLATIONS, Array, JointModel
+from flexapod.conventions import TRANSLATIONS, Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError, SingularPoseError
 from flexapod.mechanics.inputs import as_hexapod
@@ -224,13 +224,13 @@ def _samples(hexapod: Hexapod, path: Trajectory, times: Array, values: Array, jo
     weight = np.interp(times, path.times, path.weights)
     cumulative = cumulative_simpson(weight * values, x=times, initial=0.0)
     variables: dict[str, Any] = {
-        "index": ("time", values, {"units": "rad/s", "long_name": "dynamic stability index"}),
-        "condition_number": ("time", condition_number(hexapod, pose), {"long_name": "condition number of H (metres)"}),
+        "index": ("time", values, in_unit("rad/s", "dynamic stability index")),
+        "condition_number": ("time", condition_number(hexapod, pose), in_unit("1", "condition number of H (metres)")),
         "within_limits": ("time", check_limits(hexapod, pose).ok),
-        "weight": ("time", weight),
-        "cumulative_index": ("time", cumulative, {"units": "rad", "long_name": "integral of weight times index"}),
-        "position": (("time", "axis"), pose.position, {"units": "m"}),
-        "rpy": (("time", "axis"), pose.rpy, {"units": "rad"}),
+        "weight": ("time", weight, in_unit("1")),
+        "cumulative_index": ("time", cumulative, in_unit("rad", "integral of weight times index")),
+        "position": (("time", "axis"), pose.position, in_unit("m")),
+        "rpy": (("time", "axis"), pose.rpy, in_unit("rad")),
     }
-    coordinates = {"time": ("time", times, {"units": "s"}), "axis": list(TRANSLATIONS)}
+    coordinates = {"time": ("time", times, in_unit("s")), "axis": list(TRANSLATIONS)}
     return xr.Dataset(variables, coordinates, {"design": hexapod.name, "digest": hexapod.digest, "joint": joint})

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from flexapod.conventions import LEGS, JointModel
+from flexapod.conventions import LEGS, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
 from flexapod.mechanics.dynamics import inverse_dynamics
@@ -92,16 +92,16 @@ def path_loads(
     grid = ("time", "leg")
     dataset = xr.Dataset(
         {
-            "leg_force": (grid, leg_force, {"units": "N", "long_name": "leg force"}),
-            "static_force": (grid, static, {"units": "N", "long_name": "leg force at rest"}),
-            "leg_length": (grid, legs.length, {"units": "m", "long_name": "leg length"}),
-            "leg_rate": (grid, legs.rate, {"units": "m/s", "long_name": "leg rate"}),
-            "leg_acceleration": (grid, legs.acceleration, {"units": "m/s2", "long_name": "leg acceleration"}),
-            "power": (grid, leg_force * legs.rate, {"units": "W", "long_name": "actuator power"}),
-            "stroke": ("leg", np.ptp(legs.length, axis=0), {"units": "m", "long_name": "leg travel"}),
-            "peak_force": ("leg", np.abs(leg_force).max(axis=0), {"units": "N", "long_name": "peak leg force"}),
+            "leg_force": (grid, leg_force, in_unit("N", "leg force")),
+            "static_force": (grid, static, in_unit("N", "leg force at rest")),
+            "leg_length": (grid, legs.length, in_unit("m", "leg length")),
+            "leg_rate": (grid, legs.rate, in_unit("m/s", "leg rate")),
+            "leg_acceleration": (grid, legs.acceleration, in_unit("m/s^2", "leg acceleration")),
+            "power": (grid, leg_force * legs.rate, in_unit("W", "actuator power")),
+            "stroke": ("leg", np.ptp(legs.length, axis=0), in_unit("m", "leg travel")),
+            "peak_force": ("leg", np.abs(leg_force).max(axis=0), in_unit("N", "peak leg force")),
             "within_limits": ("time", check_limits(hexapod, motion.pose).ok),
         },
-        {"time": ("time", times, {"units": "s"}), "leg": list(LEGS)},
+        {"time": ("time", times, in_unit("s")), "leg": list(LEGS)},
     )
     return dataset.assign_attrs(design=hexapod.name, digest=hexapod.digest)

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from flexapod.checks import whole
+from flexapod.conventions import in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PathError, shown
 from flexapod.mechanics.inputs import as_hexapod
@@ -133,11 +134,11 @@ def plan_slice(hexapod: Hexapod, plan: Plan, *, samples: int = 81) -> xr.Dataset
     index = margins.frequencies(poses)[:, 0]
     return xr.Dataset(
         {
-            "index": (("aside", "along"), index.reshape(samples, samples), {"units": "rad/s"}),
+            "index": (("aside", "along"), index.reshape(samples, samples), in_unit("rad/s")),
             "met": (("aside", "along"), margins.met(poses).reshape(samples, samples)),
-            "path_along": ("step", place[:, 0], {"units": "m"}),
-            "path_aside": ("step", place[:, 1], {"units": "m"}),
+            "path_along": ("step", place[:, 0], in_unit("m")),
+            "path_aside": ("step", place[:, 1], in_unit("m")),
         },
-        {"along": ("along", axes[0], {"units": "m"}), "aside": ("aside", axes[1], {"units": "m"})},
+        {"along": ("along", axes[0], in_unit("m")), "aside": ("aside", axes[1], in_unit("m"))},
         {"design": hexapod.name, "digest": hexapod.digest, "bound": plan.requirements.index, "straight": length},
     )

@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
-from flexapod.conventions import TWO_PI, Array
+from flexapod.conventions import TWO_PI, Array, printed_unit
 from flexapod.plots.style import (
     BLUE,
     DASHED,
@@ -76,10 +76,10 @@ def gain_map(dataset: xr.Dataset) -> Figure:
             ax.contour(kd, kp, near, levels=[0.5], colors=[ORANGE], linewidths=1.8)
         rows, columns = np.nonzero(unstable)
         ax.plot(kd[columns], kp[rows], ls="none", marker="x", ms=3, mew=0.8, color=INK)
-        ax.set_xlabel(f"derivative gain kd, {dataset.kd.attrs['units']}")
+        ax.set_xlabel(f"derivative gain kd, {printed_unit(dataset.kd.attrs['units'])}")
         dress(ax)
         _spread(ax, kd, kp)
-    left.set_ylabel(f"proportional gain kp, {dataset.kp.attrs['units']}")
+    left.set_ylabel(f"proportional gain kp, {printed_unit(dataset.kp.attrs['units'])}")
     words = f"{dataset.attrs['design']}: {dataset.attrs['space']} space, {dataset.attrs['actuator']}"
     note = f"   (orange: a pole within {nearness:.0%} of a natural frequency; ×: unstable; white: no vibration)"
     entitle(figure, words + note)
@@ -224,7 +224,7 @@ def controlled_run(dataset: xr.Dataset, axis: str = "z") -> Figure:
     """
     figure = new_figure(10.5, 4.4)
     left, right = figure.subplots(1, 2, width_ratios=[1.7, 1])
-    unit = str(dataset.acceleration_unit.sel(axis=axis).values).replace("2", "²")
+    unit = printed_unit(str(dataset.acceleration_unit.sel(axis=axis).values))
     for case, color, width in (("passive", FAINT, 0.9), ("controlled", BLUE, 1.1)):
         left.plot(
             dataset.time, dataset.acceleration.sel(case=case, axis=axis), color=color, lw=width, label=_WORDS[case]

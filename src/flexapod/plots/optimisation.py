@@ -69,7 +69,7 @@ def search(found: OptimalDesign) -> Figure:
     if not trial.size:
         ax.set_xticks([])
     told = found.history["index"].attrs
-    ax.set(xlabel="trial", ylabel=told["label"] + (f", {told['units']}" if told["units"] else ""))
+    ax.set(xlabel="trial", ylabel=told["label"] + (f", {told['units']}" if told["units"] != "1" else ""))
     ax.set_ylim(bottom=0, top=1.08 * max(found.index, found.start_index, *index[np.isfinite(index)]))
     figure.legend(ncols=3, **OUTSIDE)
     entitle(figure, f"{found.start.name}: search")

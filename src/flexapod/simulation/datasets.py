@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from flexapod.conventions import AXES, LEGS, TRANSLATIONS, Array, JointModel
+from flexapod.conventions import AXES, LEGS, TRANSLATIONS, Array, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.excitation.excitation import Excitation
 from flexapod.mechanics.energies import energy
@@ -31,19 +31,19 @@ def one_run(
     force = found.leg_force[i, :reached]
     three, turned = ("time", "axis"), ("time", "axis", "body_axis")
     variables: dict[str, tuple[tuple[str, ...], Any, dict[str, str]]] = {
-        "displacement": (("time", "output"), found.displacement[i, :reached], {"units": "m, rad"}),
-        "relative_displacement": (("time", "output"), found.relative[i, :reached], {"units": "m, rad"}),
-        "position": (three, platform.pose.position, {"units": "m"}),
-        "rotation": (turned, platform.pose.matrix, {"units": "1"}),
-        "velocity": (three, platform.velocity, {"units": "m/s"}),
-        "angular_velocity": (three, platform.angular_velocity, {"units": "rad/s"}),
-        "acceleration": (three, platform.acceleration, {"units": "m/s2"}),
-        "angular_acceleration": (three, platform.angular_acceleration, {"units": "rad/s2"}),
-        "base_position": (three, base.pose.position, {"units": "m"}),
-        "base_rotation": (turned, base.pose.matrix, {"units": "1"}),
-        "leg_length": (("time", "leg"), length, {"units": "m"}),
-        "unstretched_length": (("time", "leg"), unstretched, {"units": "m"}),
-        "leg_force": (("time", "leg"), force, {"units": "N"}),
+        "displacement": (("time", "output"), found.displacement[i, :reached], in_mixed_units("output_unit")),
+        "relative_displacement": (("time", "output"), found.relative[i, :reached], in_mixed_units("output_unit")),
+        "position": (three, platform.pose.position, in_unit("m")),
+        "rotation": (turned, platform.pose.matrix, in_unit("1")),
+        "velocity": (three, platform.velocity, in_unit("m/s")),
+        "angular_velocity": (three, platform.angular_velocity, in_unit("rad/s")),
+        "acceleration": (three, platform.acceleration, in_unit("m/s^2")),
+        "angular_acceleration": (three, platform.angular_acceleration, in_unit("rad/s^2")),
+        "base_position": (three, base.pose.position, in_unit("m")),
+        "base_rotation": (turned, base.pose.matrix, in_unit("1")),
+        "leg_length": (("time", "leg"), length, in_unit("m")),
+        "unstretched_length": (("time", "leg"), unstretched, in_unit("m")),
+        "leg_force": (("time", "leg"), force, in_unit("N")),
     }
     state = _State(run.hexapod, platform, base, unstretched, force)
     if energies:
@@ -52,13 +52,14 @@ def one_run(
         variables |= _reactions(state, joint)
     variables |= {
         "status": ((), str(found.status[i]), {}),
-        "end_time": ((), found.end_time[i], {"units": "s"}),
+        "end_time": ((), found.end_time[i], in_unit("s")),
         "steps": ((), int(found.steps[i, 0]), {}),
         "evaluations": ((), int(found.steps[i, 2]), {}),
     }
     coordinates = {
-        "time": ("time", times, {"units": "s"}),
+        "time": ("time", times, in_unit("s")),
         "output": list(AXES),
+        "output_unit": ("output", [unit_of(axis) for axis in AXES]),
         "axis": list(TRANSLATIONS),
         "body_axis": list(TRANSLATIONS),
         "leg": list(LEGS),
@@ -81,14 +82,14 @@ def _energies(state: _State, work: Array, joint: JointModel) -> dict[str, Any]:
     total = kinetic + gravitational + elastic
     error = total - total[0] - work.sum(axis=1)
     scale = max(np.nanmax(kinetic), np.nanmax(np.abs(work)))
-    joules = {"units": "J"}
+    joules = in_unit("J")
     return {
         "kinetic_energy": (("time",), kinetic, joules),
         "gravitational_energy": (("time",), gravitational, joules),
         "elastic_energy": (("time",), elastic, joules),
         "work": (("time", "source"), work, joules),
         "energy_error": (("time",), error, joules),
-        "energy_error_relative": ((), np.nanmax(np.abs(error)) / scale if scale > 0 else 0.0, {}),
+        "energy_error_relative": ((), np.nanmax(np.abs(error)) / scale if scale > 0 else 0.0, in_unit("1")),
     }
 
 
@@ -98,7 +99,7 @@ def _reactions(state: _State, joint: JointModel) -> dict[str, Any]:
         name: (
             ("time", "axis") if name.startswith("base") else ("time", "leg", "axis"),
             value,
-            {"units": "N" if name.endswith("force") else "N m"},
+            in_unit("N" if name.endswith("force") else "N m"),
         )
         for name, value in found._asdict().items()
     }

@@ -7,7 +7,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from flexapod.checks import numbers
-from flexapod.conventions import AXES, LEGS, Array, Complex, JointModel, unit_of
+from flexapod.conventions import AXES, LEGS, Array, Complex, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import ZERO, single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
@@ -116,7 +116,7 @@ def transmissibility(
         "leg_force": leg_forces(linear, steady, eta),
     }
     variables = {name: (RESPONSES[name][0], array, RESPONSES[name][1]) for name, array in arrays.items()}
-    coordinates = {"omega": ("omega", w, {"units": "rad/s", "long_name": "frequency"}), **COORDINATES}
+    coordinates = {"omega": ("omega", w, in_unit("rad/s", "frequency")), **COORDINATES}
     return xr.Dataset(variables, coordinates, attributes(hexapod, pose, point, eta))
 
 
@@ -130,15 +130,15 @@ COORDINATES = {
 RESPONSES: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {
     "absolute": (
         ("omega", "output", "base"),
-        {"units": "output_unit/base_unit", "long_name": "absolute transmissibility"},
+        in_mixed_units("output_unit/base_unit", "absolute transmissibility"),
     ),
     "relative": (
         ("omega", "output", "base"),
-        {"units": "output_unit/base_unit", "long_name": "motion relative to the base per base motion"},
+        in_mixed_units("output_unit/base_unit", "motion relative to the base per base motion"),
     ),
-    "compliance": (("omega", "output", "wrench"), {"units": "output_unit/wrench_unit", "long_name": "compliance"}),
-    "command": (("omega", "output", "leg"), {"units": "output_unit/m", "long_name": "motion per leg command"}),
-    "leg_force": (("omega", "leg", "base"), {"units": "N/base_unit", "long_name": "leg force per base motion"}),
+    "compliance": (("omega", "output", "wrench"), in_mixed_units("output_unit/wrench_unit", "compliance")),
+    "command": (("omega", "output", "leg"), in_mixed_units("output_unit/m", "motion per leg command")),
+    "leg_force": (("omega", "leg", "base"), in_mixed_units("N/base_unit", "leg force per base motion")),
 }
 
 

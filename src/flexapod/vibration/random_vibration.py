@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from flexapod.conventions import AXES, LEGS, Array, Complex, JointModel
+from flexapod.conventions import AXES, LEGS, Array, Complex, JointModel, in_mixed_units, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.excitation.spectra import Quantity, Spectrum
@@ -25,7 +25,7 @@ from flexapod.vibration.quadrature import Panels, graded
 QUANTITIES = {
     "displacement": ("output", "output_unit"),
     "relative": ("output", "output_unit"),
-    "acceleration": ("output", "output_unit/s2"),
+    "acceleration": ("output", "output_unit/s^2"),
     "leg_force": ("leg", "N"),
 }
 _LEAST_DAMPING = 1e-13  # damping ratio that rounding of the poles may hide
@@ -149,7 +149,7 @@ def random_response(
 
 def _dataset(panels: Panels, densities: dict[str, Array]) -> xr.Dataset:
     coordinates = {
-        "omega": ("omega", panels.omega, {"units": "rad/s", "long_name": "frequency"}),
+        "omega": ("omega", panels.omega, in_unit("rad/s", "frequency")),
         "output": list(AXES),
         "output_unit": ("output", MOTION_UNITS),
         "leg": list(LEGS),
@@ -158,10 +158,18 @@ def _dataset(panels: Panels, densities: dict[str, Array]) -> xr.Dataset:
     dataset.attrs["convention"] = "one-sided spectral density per rad/s: mean square = integral over omega > 0"
     for name, (along, unit) in QUANTITIES.items():
         cumulative = np.sqrt(panels.cumulated(densities[name]))
-        dataset[f"psd_{name}"] = (("omega", along), densities[name], {"units": f"({unit})2/(rad/s)"})
-        dataset[f"cumulative_{name}"] = (("omega", along), cumulative, {"units": unit})
-        dataset[f"rms_{name}"] = ((along,), cumulative[-1], {"units": unit})
+        amount, density = _units(unit)
+        dataset[f"psd_{name}"] = (("omega", along), densities[name], density)
+        dataset[f"cumulative_{name}"] = (("omega", along), cumulative, amount)
+        dataset[f"rms_{name}"] = ((along,), cumulative[-1], amount)
     return dataset
+
+
+def _units(unit: str) -> tuple[dict[str, str], dict[str, str]]:
+    """Attributes of an amount and of its spectral density."""
+    if unit == "N":
+        return in_unit("N"), in_unit("N^2/(rad/s)")
+    return in_mixed_units(unit), in_mixed_units(f"({unit})^2/(rad/s)")
 
 
 class _Filters(NamedTuple):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from scipy.linalg import eigh, expm
 from scipy.spatial.transform import Rotation
 
 from flexapod.checks import one_of, positive
-from flexapod.conventions import AXES, TWO_PI, Array, Complex, JointModel, unit_of
+from flexapod.conventions import AXES, TWO_PI, Array, Complex, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.excitation.sines import harmonic
@@ -252,19 +253,20 @@ def _dataset(shaker: _Shaker, omega: Array, linear: Complex, found: _Found) -> x
     spectrum = 2.0 / _SAMPLES * np.fft.rfft(samples, axis=1) / shaker.amplitude
     response = 1j * spectrum[:, 1]  # the base moves as a sine
     along = ("omega", "output")
-    dataset = xr.Dataset(
+    per = partial(in_mixed_units, f"output_unit/{unit_of(shaker.axis)}")
+    return xr.Dataset(
         {
-            "response": (along, response, {"long_name": "response per base amplitude"}),
-            "ratio": (along, np.abs(response), {"long_name": "ratio of response amplitude to base amplitude"}),
-            "linear": (along, linear, {"long_name": "tangent's response per base amplitude"}),
-            "peak": (along, np.abs(samples).max(axis=1) / shaker.amplitude, {"long_name": "peak per base amplitude"}),
-            "harmonics": (("omega", "harmonic", "output"), np.abs(spectrum[:, 1 : _HARMONICS + 1])),
+            "response": (along, response, per("response per base amplitude")),
+            "ratio": (along, np.abs(response), per("ratio of response amplitude to base amplitude")),
+            "linear": (along, linear, per("tangent's response per base amplitude")),
+            "peak": (along, np.abs(samples).max(axis=1) / shaker.amplitude, per("peak per base amplitude")),
+            "harmonics": (("omega", "harmonic", "output"), np.abs(spectrum[:, 1 : _HARMONICS + 1]), per("")),
             "status": ("omega", found.status),
-            "closing_error": ("omega", found.closing, {"long_name": "last correction relative to the motion"}),
-            "periods": ("omega", found.periods, {"long_name": "periods integrated"}),
+            "closing_error": ("omega", found.closing, in_unit("1", "last correction relative to the motion")),
+            "periods": ("omega", found.periods, in_unit("1", "periods integrated")),
         },
         {
-            "omega": ("omega", omega, {"units": "rad/s", "long_name": "base frequency"}),
+            "omega": ("omega", omega, in_unit("rad/s", "base frequency")),
             "output": list(AXES),
             "output_unit": ("output", [unit_of(axis) for axis in AXES]),
             "harmonic": np.arange(1, _HARMONICS + 1),
@@ -280,6 +282,3 @@ def _dataset(shaker: _Shaker, omega: Array, linear: Complex, found: _Found) -> x
             "rpy_rad": shaker.pose.rpy.tolist(),
         },
     )
-    for name in ("response", "ratio", "linear", "peak", "harmonics"):
-        dataset[name].attrs["units"] = f"output_unit/{dataset.attrs['amplitude_unit']}"
-    return dataset

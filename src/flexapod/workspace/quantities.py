@@ -11,7 +11,7 @@ import numpy as np
 
 from flexapod import _core
 from flexapod.checks import one_of
-from flexapod.conventions import AXES, Array, JointModel, unit_of
+from flexapod.conventions import AXES, Array, JointModel, Unit, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_joint
@@ -21,23 +21,23 @@ from flexapod.mechanics.joint_limits import neutral_directions
 class Quantity(NamedTuple):
     """`trailing`: name of a last axis of six, or ""."""
 
-    unit: str
+    unit: Unit
     meaning: str
     trailing: str = ""
     dtype: str = "float64"
 
 
 QUANTITIES: dict[str, Quantity] = {
-    "omega_1": Quantity("rad s-1", "lowest natural frequency (dynamic stability index)"),
-    "omega": Quantity("rad s-1", "natural frequencies", "mode"),
+    "omega_1": Quantity("rad/s", "lowest natural frequency (dynamic stability index)"),
+    "omega": Quantity("rad/s", "natural frequencies", "mode"),
     "cond_H": Quantity("1", "condition number of the force transformation H"),
     "leg_length": Quantity("m", "leg length", "leg"),
     "universal_angle": Quantity("rad", "universal joint angle from neutral", "leg"),
     "spherical_angle": Quantity("rad", "spherical joint angle from neutral", "leg"),
     "leg_distance": Quantity("m", "least distance between two leg axes"),
     "leg_force": Quantity("N", "largest static leg force under gravity"),
-    "lowest_stiffness": Quantity("N m-1", "lowest stiffness against displacement of the reference point"),
-    "within_limits": Quantity("", "whether legs and joints are within the design's limits", dtype="bool"),
+    "lowest_stiffness": Quantity("N/m", "lowest stiffness against displacement of the reference point"),
+    "within_limits": Quantity("1", "whether legs and joints are within the design's limits", dtype="bool"),
 }
 DEFAULT = ("omega_1", "cond_H")
 #: What else a quantity is called -> its name here.
@@ -149,9 +149,9 @@ def attributes(name: str) -> dict[str, Any]:
     if name in AXES:
         k = AXES.index(name)
         turn = f"about the fixed axis {AXES[k - 3]}" if k > 2 else "of the reference point, base frame"
-        return {"units": unit_of(name), "long_name": f"{name} {turn}"}
+        return in_unit(unit_of(name), f"{name} {turn}")
     quantity = QUANTITIES[name]
-    return {"units": quantity.unit or "1", "long_name": quantity.meaning}
+    return in_unit(quantity.unit, quantity.meaning)
 
 
 def provenance(hexapod: Hexapod, joint: JointModel) -> dict[str, Any]:

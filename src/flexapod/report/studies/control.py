@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 
 from flexapod import plots
 from flexapod.control.closed_loop_poles import ClosedLoop
-from flexapod.conventions import TWO_PI
+from flexapod.conventions import TWO_PI, printed_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
 from flexapod.pose import Pose
@@ -151,7 +151,7 @@ def _poles(f: ControlFindings) -> Table:
 def _run_table(f: ControlFindings, name: str) -> list[Table]:
     if name != "run" or f.run is None:
         return []
-    units = [str(unit).replace("2", "\u00b2") for unit in f.run.acceleration_unit.values]
+    units = [printed_unit(str(unit)) for unit in f.run.acceleration_unit.values]
 
     def rms(variable: str, case: str) -> list[str]:
         values = f.run[variable].sel(case=case).values  # type: ignore[index]
