@@ -1,8 +1,9 @@
 """Tables in CSV files, as loggers, spreadsheets and CAD programs write them.
 
 Commas, semicolons or tabs separate; with the last two, numbers may have decimal commas. Titles are read without regard
-to case, and may end in a unit: `z_um`, `Base X [mm]`, `Frequency (Hz)`. Lines that begin with # and empty ones are left
-out, and columns that are titled name, note, comment, part or remark.
+to case, and may end in a unit: `z_um`, `Base X [mm]`, `Frequency (Hz)`; or the units stand in a line of their own below
+the titles: `s;mm;deg`. Lines that begin with # and empty ones are left out, and columns that are titled name, note,
+comment, part or remark.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +25,10 @@ from flexapod.errors import ArgumentError, FlexapodError
 LEFT_OUT = ("name", "note", "comment", "part", "remark")
 #: Unit -> (multiply by, divide by), to SI. Two numbers, because x / 1000 is rounded once and x * 0.001 is not.
 Units = Mapping[str, tuple[float, float]]
-TIMES: Units = {"s": (1, 1), "ms": (1, 1e3), "us": (1, 1e6), "min": (60, 1)}
+#: A unit below a title, as [mm] or m/s\u00b2, or nothing.
+_UNIT = re.compile(
+    r"[\[(]?[a-zA-Z\u00b5\u03bc\u00b0][\w\u00b2\u00b0\u00b7/^*. -]{0,11}[\])]?|", re.ASCII
+)  # as m/s\u00b2, [mm] or nothing
 
 
 @dataclass(frozen=True)
@@ -49,10 +53,13 @@ class Table:
         """The column that stands for a name, if there is one."""
         return next((column for column in self.columns if column.name == name), None)
 
-    def numbers(self, column: Column, units: Units | None = None, default: str = "", finite: bool = True) -> Array:
+    def numbers(
+        self, column: Column, units: Units | None = None, default: str | None = "", finite: bool = True
+    ) -> Array:
         """The numbers of a column in SI units; those of a column without a unit are in the unit `default`.
 
-        finite: NaN, infinity and empty cells are refused; else they are NaN.
+        default: where it is None, the column must name its unit. finite: NaN, infinity and empty cells are refused;
+        else they are NaN.
         """
         multiply, divide = self._factor(column, units or {}, default)
         values = [_number(cell or "nan") for cell in column.cells]
@@ -65,17 +72,36 @@ class Table:
         with np.errstate(over="ignore"):  # an infinite result is refused with the value as it was given
             return np.array(values, dtype=np.float64) * multiply / divide
 
-    def _factor(self, column: Column, units: Units, default: str) -> tuple[float, float]:
+    def _factor(self, column: Column, units: Units, default: str | None) -> tuple[float, float]:
         unit = column.unit or default
-        if unit in units:
-            return units[unit]
-        alike = [known for known in units if _bare(known) == _bare(unit)]
-        if len(alike) == 1 and alike[0].islower():  # MM is mm, but MN is not mN, nor Nm nm
-            return units[alike[0]]
+        if unit is None:
+            raise self.error(
+                f"column {column.title!r} names no unit, and its numbers alone do not tell it. Write it in the title: "
+                f"{', '.join(f'{column.title}_{known}' for known in list(units)[:3])} or the like."
+            )
+        found = unit_named(unit, units)
+        if found is not None:
+            return units[found]
         if not unit:
             return 1.0, 1.0
         allowed = f"it may be {', '.join(units)}" if units else "this column has none"
         raise self.error(f"column {column.title!r} has the unit {column.unit!r}; {allowed}. Correct the header.")
+
+
+def unit_named(word: str, units: Iterable[str]) -> str | None:
+    """The unit that is meant, however it is written: `Nm` is N_m, `m/s^2` is m_per_s2, `MM` is mm; None if none is."""
+    bare = normal_unit(word).replace("_", "")
+    exact = [known for known in units if known.replace("_", "") == bare]
+    alike = [known for known in units if known.islower() and known.replace("_", "") == bare.lower()]
+    return next(iter([*exact, *alike]), None)  # MM is mm, but MN is not mN, nor Nm nm
+
+
+def normal_unit(word: str) -> str:
+    """A unit as units are named in keys: `m/s²` is m_per_s2."""
+    for sign, plain in {"\u00b5": "u", "\u03bc": "u", "\u00b2": "2", "\u00b0": "deg", "\u00b7": "_"}.items():
+        word = word.replace(sign, plain)
+    word = re.sub(r"[\[\](){}^]", "", word.strip(" _-.,:[](){}/")).replace("/", "_per_")
+    return re.sub(r"[\s_*\-]+", "_", word)
 
 
 def read_text(file: Path, error: type[FlexapodError] = ArgumentError) -> str:
@@ -127,11 +153,13 @@ def parse_table(
         else rows.pop(0)[1]
     )
     _trim(head, rows, error)
+    units = _units_line(rows)
     columns: list[Column] = []
     for place, title in enumerate(head):
         if title.lower() in LEFT_OUT:
             continue
         name, unit = _meaning(title, names)
+        unit = unit or units.get(place, "")
         if name is None:
             raise error(f"column {title!r} is unknown. {form}")
         same = next((column for column in columns if column.name == name), None)
@@ -153,25 +181,26 @@ def _trim(head: list[str], rows: list[tuple[int, list[str]]], error: type[Flexap
             raise error(f"line {line} has {len(row)} entries; the header names {len(head)} columns.")
 
 
+def _units_line(rows: list[tuple[int, list[str]]]) -> dict[int, str]:
+    """The units of a line below the titles that has nothing else, which is taken away."""
+    cells = rows[0][1] if rows else []
+    if not any(cells) or not all(_UNIT.fullmatch(cell) and _number(cell) is None for cell in cells):
+        return {}
+    return {place: normal_unit(cell) for place, cell in enumerate(rows.pop(0)[1])}
+
+
 def _number(cell: str) -> float | None:
     try:
-        return float(cell)
+        return None if "_" in cell else float(cell)  # Python reads 1_0 as 10
     except ValueError:
         return None
 
 
 def _meaning(title: str, names: Mapping[str, Any]) -> tuple[Any, str]:
     """What a title stands for, or None, and its unit: "Base X [mm]" with the name base_x, unit mm."""
-    text = title.replace("\u00b5", "u").replace("\u03bc", "u").replace("\u00b2", "2").replace("\u00b0", "deg")
     for alias in sorted(names, key=len, reverse=True):
         pattern = r"[\s_.\-]*".join(map(re.escape, alias.split("_"))) + r"(?![A-Za-z0-9])"
-        match = re.match(pattern, text, re.IGNORECASE)
+        match = re.match(pattern, title, re.IGNORECASE)
         if match:
-            unit = text[match.end() :].strip(" _-.,:[](){}/")
-            unit = re.sub(r"[\[\](){}^]", "", unit).replace("/", "_per_")
-            return names[alias], re.sub(r"[\s_*\-]+", "_", unit)
+            return names[alias], normal_unit(title[match.end() :])
     return None, ""
-
-
-def _bare(unit: str) -> str:
-    return unit.replace("_", "").lower()

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.helpers.cases import case
 from tests.helpers.support import relative
 
 import flexapod as fx
@@ -61,6 +62,45 @@ WAYS = {
     "with remarks and empty lines": "# from CAD\n\n" + table().replace("\n3,", "\n\n# the third\n3,"),
     "with a column of notes": "note," + table().replace("\n", '\n"left, rear",').removesuffix('"left, rear",'),
 }
+
+
+def points(letters="BP", order=range(12), header="Point,X [mm],Y [mm],Z [mm]"):
+    """A file's text: a line for each of the twelve joints."""
+    rows = [f"{letter}{i + 1}" for letter in letters for i in range(6)]
+    numbers = 1000 * np.concatenate([BASE, PLATFORM])
+    lines = [",".join([rows[i], *(repr(float(x)) for x in numbers[i])]) for i in order]
+    return "\n".join([header, *lines]) + "\n"
+
+
+@pytest.mark.parametrize("order", [range(12), range(11, -1, -1)], ids=["in order", "backwards"])
+def test_joints_point_by_point(write, order):
+    read = fx.design.read_joints(write(points(order=order)))
+    assert read["base.joints"] == pytest.approx(BASE, rel=1e-15)
+    assert read["platform.joints"] == pytest.approx(PLATFORM, rel=1e-15)
+    home = fx.Pose([0.1, 0, 0.4])
+    moved = fx.design.read_joints(write(points("BH", order)), home)
+    assert moved["platform.joints"] == pytest.approx(PLATFORM - [0.1, 0, 0.4], rel=1e-14)
+
+
+def test_a_published_table_of_points():
+    found = fx.load(case("recordings", "pts.toml"))
+    np.testing.assert_array_equal(found.base_joints[:, 0], [100, 200, 300, 400, 500, 600])
+    np.testing.assert_array_equal(found.platform_joints[0], [50, 0, 300])
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (points().replace("B2", "C2"), "line 3, column Point: 'C2' is no point"),
+        (points().replace("B2", "B1"), "lines 2 and 3 are both point B1"),
+        (points(order=range(11)), "B1 to B6 and P1 to P6"),
+        (points(header="Point,X,Y,Base Z"), "columns point, x, y, z and no others"),
+        (points().replace("P3", "K3"), "'K3' is no point"),
+    ],
+)
+def test_a_wrong_table_of_points_is_told(write, text, words):
+    with pytest.raises(fx.DesignError, match=words):
+        fx.design.read_joints(write(text))
 
 
 @pytest.mark.parametrize("way", WAYS)

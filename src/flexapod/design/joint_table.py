@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -29,11 +30,14 @@ LEG = ("leg", "no", "number", "index")
 HEADER = "leg, base_x_mm, base_y_mm, base_z_mm, platform_x_mm, platform_y_mm, platform_z_mm"
 FORM = (
     "Columns are leg, base_x, platform_x or home_x, axis_x and the same with y and z, with a unit as in base_x_mm; "
-    f"{', '.join(LEFT_OUT)} are left out. A header is {HEADER}."
+    f"{', '.join(LEFT_OUT)} are left out. A header is {HEADER}. Or give twelve lines point, x, y, z with the points B1 "
+    "to B6 of the base and P1 to P6 of the platform."
 )
 #: What a title may be -> "leg", or a group of points and one of its axes.
 NAMES: dict[str, Any] = dict.fromkeys(LEG, "leg")
 NAMES |= {f"{word}_{axis}": (group, axis) for word, group in GROUPS.items() for axis in "xyz"}
+NAMES |= {"point": "point", **{axis: ("point", axis) for axis in "xyz"}}
+POINT = re.compile(r"([a-z]+)[\s_.-]*([1-6])", re.IGNORECASE)
 
 
 def read_joints(path: str | Path, home: PoseLike | None = None) -> dict[str, Array | None]:
@@ -62,7 +66,8 @@ def read_joints(path: str | Path, home: PoseLike | None = None) -> dict[str, Arr
     Columns: `leg` (1 to 6, may be left out), `base_x`, `base_y`, `base_z` (short: `bx`), and either `platform_x`, ...
     (`px`) in the platform frame, or `home_x`, ... (`hx`): the platform joints where they stand at home, in the base
     frame. `axis_x`, ... (`kx`) are the axes of the universal joints. Lengths are in m unless the column says otherwise:
-    `base_x_mm` or `Base X [mm]`. Semicolons and tabs separate as well, and then numbers may have decimal commas. Lines
+    `base_x_mm` or `Base X [mm]`. Or twelve lines `point`, `x`, `y`, `z` with the points B1 to B6 and P1 to P6 (H1 to H6
+    where they stand at home). Semicolons and tabs separate as well, and then numbers may have decimal commas. Lines
     that begin with `#` are left out, and columns name, note, comment, part, remark.
 
     Examples
@@ -77,7 +82,8 @@ def read_joints(path: str | Path, home: PoseLike | None = None) -> dict[str, Arr
     file = Path(path)
     text = read_text(file, DesignError)
     with naming(file, DesignError):
-        return _joints(_points(parse_table(text, NAMES, FORM, DesignError)), home)
+        table = parse_table(text, NAMES, FORM, DesignError)
+        return _joints(_points(table) if table.column("point") is None else _listed_points(table), home)
 
 
 def _joints(points: dict[str, Array], home: PoseLike | None) -> dict[str, Array | None]:
@@ -107,6 +113,37 @@ def _points(table: Table) -> dict[str, Array]:
             units = {} if group == "axis" else UNITS["length"]
             points[group][:, "xyz".index(axis)] = table.numbers(column, units)[order]
     return points
+
+
+def _listed_points(table: Table) -> dict[str, Array]:
+    """The same from twelve lines with a point each."""
+    given = {column.name for column in table.columns}
+    wanted = {"point", *(("point", axis) for axis in "xyz")}
+    if given != wanted:
+        raise DesignError("a table of points has the columns point, x, y, z and no others. Correct the header.")
+    column = table.column("point")
+    assert column is not None
+    places: dict[tuple[str, int], int] = {}
+    for row, (line, cell) in enumerate(zip(table.lines, column.cells, strict=True)):
+        match = POINT.fullmatch(cell)
+        group = GROUPS.get(match[1].lower()) if match else None
+        if match is None or group in (None, "axis"):
+            raise DesignError(
+                f"line {line}, column {column.title}: {cell!r} is no point; points are B1 to B6 of the base and P1 to "
+                "P6 of the platform, or H1 to H6 where these stand at home."
+            )
+        place = (str(group), int(match[2]) - 1)
+        if place in places:
+            raise DesignError(f"lines {table.lines[places[place]]} and {line} are both point {cell}. Give each once.")
+        places[place] = row
+    groups = {group for group, _ in places}
+    if groups not in ({"base", "platform"}, {"base", "home"}) or len(places) != 12:
+        raise DesignError(
+            f"it has the points {', '.join(column.cells)}; B1 to B6 and P1 to P6 (or H1 to H6) are needed, each once."
+        )
+    numbers = [table.numbers(c, UNITS["length"]) for axis in "xyz" for c in table.columns if c.name == ("point", axis)]
+    rows = np.column_stack(numbers)
+    return {group: rows[[places[group, leg] for leg in range(6)]] for group in groups}
 
 
 def _groups(table: Table) -> list[str]:

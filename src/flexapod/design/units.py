@@ -40,6 +40,24 @@ UNITS: dict[str, dict[str, tuple[float, float]]] = {
     "angle": {"rad": (1, 1), "mrad": (1, 1e3), "deg": (math.pi, 180)},
 }
 
+_LENGTHS = {**UNITS["length"], "nm": (1, 1e9)}
+_ANGLES = {**UNITS["angle"], "urad": (1, 1e6)}
+#: What tables and command lines name besides: more units, and dimensions that no key of a design has. SI first.
+QUANTITIES: dict[str, dict[str, tuple[float, float]]] = {
+    **UNITS,
+    "length": _LENGTHS,
+    "angle": _ANGLES,
+    "time": {"s": (1, 1), "ms": (1, 1e3), "us": (1, 1e6), "min": (60, 1), "h": (3600, 1)},
+    "frequency": {"rad_per_s": (1, 1), "Hz": (2 * math.pi, 1), "kHz": (2e3 * math.pi, 1), "rpm": (math.pi, 30)},
+    "force": {"N": (1, 1), "mN": (1, 1e3), "kN": (1e3, 1), "MN": (1e6, 1)},
+    "moment": {"N_m": (1, 1), "N_mm": (1, 1e3), "kN_m": (1e3, 1)},
+    "velocity": {f"{unit}_per_s": factor for unit, factor in _LENGTHS.items()},
+    "acceleration": {f"{unit}_per_s2": factor for unit, factor in _LENGTHS.items()}
+    | {"g": (9.80665, 1), "mg": (9.80665, 1e3)},
+    "angular velocity": {f"{unit}_per_s": factor for unit, factor in _ANGLES.items()} | {"rpm": (math.pi, 30)},
+    "angular acceleration": {f"{unit}_per_s2": factor for unit, factor in _ANGLES.items()},
+}
+
 ALL_UNITS = frozenset(unit for units in UNITS.values() for unit in units)
 
 

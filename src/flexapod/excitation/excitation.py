@@ -8,9 +8,9 @@ The functions of time are evaluated in the compiled core, with their first and s
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,27 +18,43 @@ from numpy.typing import ArrayLike
 from flexapod import _core
 from flexapod._core import TermKind
 from flexapod.checks import not_negative, positive
-from flexapod.conventions import AXES, LEGS, ROTATIONS, Array
+from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, Array
 from flexapod.errors import ArgumentError, shown
 from flexapod.pose import Motion, PoseLike, as_pose
 
 #: One of the pieces of a term of `TermKind.pieces`, behind a number that says whether they meet with corners.
 PIECE = np.dtype(_core.PIECE)
 
+Use = Literal["", "motion", "force", "moment"]
+#: What `simulate` takes: the channels of each argument, and what its terms may be.
+USES: dict[str, tuple[tuple[str, ...], Use]] = {
+    "base_motion": (AXES, "motion"),
+    "force": (TRANSLATIONS, "force"),
+    "moment": (TRANSLATIONS, "moment"),
+    "leg_command": (LEGS, "motion"),
+}
+
 
 @dataclass(frozen=True, eq=False)
 class Term:
-    """One function of time on one channel; it begins at `start`, may rise smoothly, and may end after `stop`."""
+    """One function of time on one channel; it begins at `start`, may rise smoothly, and may end after `stop`.
+
+    use: what it can drive, where its units or its spectrum say so. origin: where a recording is from, in words; remark:
+    what there is to say of it, in words that follow "the recording of force x".
+    """
 
     channel: str
     kind: TermKind
     numbers: Array
+    use: Use = ""
     start: float = 0.0
     rise: float = 0.0
     stop: float = np.inf
     fall: float = 0.0
     sampled: float = 0.0  # s between samples of a recording, 0 for a formula
     last: float = np.inf  # s, end of a recording
+    origin: str = ""
+    remark: str = ""
 
     def packed(self) -> Array:
         """As the core takes it: seven numbers, then those of the function."""
@@ -212,7 +228,7 @@ class Excitation:
         Motion
             With the batch axes of `times`.
         """
-        check_channels(self, "base_motion", AXES)
+        check_use(self, "base_motion")
         t = np.asarray(times, dtype=float)
         rest = Motion.fixed(None if base is None else as_pose(base, "base")).packed
         rows = _core.base_motion(self.packed, self.rotation == "rpy", rest, np.ascontiguousarray(t.ravel()))
@@ -222,15 +238,22 @@ class Excitation:
         return f"<Excitation of {', '.join(self.channels) or 'nothing'}, {len(self.terms)} terms>"
 
 
-def check_channels(excitation: Excitation, use: str, allowed: Sequence[str]) -> None:
-    """Raises ArgumentError for a channel that a use does not have."""
-    for channel in excitation.channels:
-        if channel not in allowed:
-            raise ArgumentError(f"{use} drives {channel!r}; its channels are {', '.join(allowed)}.")
+def check_use(excitation: Excitation, argument: str) -> None:
+    """Raises ArgumentError for a channel that an argument of `simulate` does not have, or a quantity that it is not."""
+    channels, use = USES[argument]
+    for term in excitation.terms:
+        if term.channel not in channels:
+            raise ArgumentError(f"{argument} drives {term.channel!r}; its channels are {', '.join(channels)}.")
+        if term.use not in ("", use):
+            where = f" ({term.origin})" if term.origin else ""
+            raise ArgumentError(
+                f"{argument} drives {term.channel!r} by what is a {term.use}{where}; it takes a {use}. Give it as the "
+                f"{term.use} of the {'base or a leg' if term.use == 'motion' else 'platform'}, or correct its unit."
+            )
 
 
-def one_term(axis: str, kind: TermKind, numbers: Array, **timing: float) -> Excitation:
-    """An excitation of one function of time. Raises ArgumentError for an unknown axis."""
+def one_term(axis: str, kind: TermKind, numbers: Array, **given: Any) -> Excitation:
+    """An excitation of one function of time; given: fields of `Term`. Raises ArgumentError for an unknown axis."""
     if axis not in AXES + LEGS:
         raise ArgumentError(f"axis is {shown(axis)}; it must be one of {', '.join(AXES)}, or a leg '1' to '6'.")
-    return Excitation((Term(axis, kind, numbers, **timing),))
+    return Excitation((Term(axis, kind, numbers, **given),))

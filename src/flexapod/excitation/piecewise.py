@@ -9,7 +9,7 @@ from flexapod._core import TermKind
 from flexapod.checks import number, positive
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError
-from flexapod.excitation.excitation import PIECE, Excitation, one_term
+from flexapod.excitation.excitation import PIECE, Excitation, Use, one_term
 
 
 def half_sine_shock(axis: str, acceleration: float, duration: float, *, recovery: float | None = None) -> Excitation:
@@ -58,7 +58,7 @@ def half_sine_shock(axis: str, acceleration: float, duration: float, *, recovery
         travel += speed * T_2 - peak * T * T_2 / np.pi
         T, speed = T + T_2, 0.0
     pieces.append(_piece(T, [travel, speed]))
-    return _pieces(axis, pieces)
+    return _pieces(axis, pieces, use="motion")
 
 
 def half_sine_pulse(axis: str, peak: float, duration: float) -> Excitation:
@@ -172,21 +172,23 @@ def smooth_step(axis: str, change: float, duration: float) -> Excitation:
     return _pieces(axis, [_piece(0.0, rise), _piece(T, [size])])
 
 
-def sampled_term(axis: str, knots: Array, coefficients: Array, spacing: float, end: float) -> Excitation:
+def sampled_term(
+    axis: str, knots: Array, coefficients: Array, spacing: float, end: float, *, use: Use, origin: str, remark: str
+) -> Excitation:
     """A recording as smoothly joined polynomials: coefficients (n, <= 8) of powers of the time since each knot (n,).
 
-    spacing: s between samples; end: s, the last one.
+    spacing: s between samples; end: s, the last one. use, origin, remark: as in `Term`.
     """
     pieces = np.zeros(knots.size, PIECE)
     pieces["start"] = knots
     pieces["coefficients"][:, : coefficients.shape[1]] = coefficients
     numbers = np.concatenate([[0.0], pieces.view(np.float64)])
-    return one_term(axis, TermKind.pieces, numbers, sampled=spacing, last=end)
+    return one_term(axis, TermKind.pieces, numbers, use=use, sampled=spacing, last=end, origin=origin, remark=remark)
 
 
-def _pieces(axis: str, pieces: list[NDArray[np.void]]) -> Excitation:
+def _pieces(axis: str, pieces: list[NDArray[np.void]], use: Use = "") -> Excitation:
     """Pieces joined with corners, which a simulation steps onto."""
-    return one_term(axis, TermKind.pieces, np.concatenate([[1.0], np.stack(pieces).view(np.float64)]))
+    return one_term(axis, TermKind.pieces, np.concatenate([[1.0], np.stack(pieces).view(np.float64)]), use=use)
 
 
 def _piece(start: float, coefficients: ArrayLike, sine: float = 0.0, omega: float = 0.0) -> NDArray[np.void]:

@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod.checks import number, numbers, one_of, thread_count
-from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, Array, JointModel
+from flexapod.conventions import ROTATIONS, TRANSLATIONS, Array, JointModel
 from flexapod.errors import ArgumentError, PoseError
-from flexapod.excitation.excitation import Excitation, check_channels
+from flexapod.excitation.excitation import Excitation, check_use
 from flexapod.mechanics.inputs import as_joint, single_pose
 from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.mechanics.statics import hold
@@ -147,9 +147,8 @@ def prepare(run: SimulationRun, until: float, joint: JointModel) -> Prepared:
         leg_force = run.hexapod.legs.stiffness * (lengths - inverse_kinematics(run.hexapod, pose, base=base))
     base_motion, command = run.base_motion or Excitation(), run.leg_command or Excitation()
     for use, history in run.histories().items():
+        check_use(history, use)
         _check_recordings(use, history, until)
-    check_channels(base_motion, "base_motion", AXES)
-    check_channels(command, "leg_command", LEGS)
     displacement, velocity = _start(run.start, pose)
     setup = _core.SimulationSetup(
         design=run.hexapod.packed,
@@ -184,7 +183,7 @@ def _split(load: Load, name: str) -> tuple[Array, Array]:
         return np.zeros(3), np.zeros(0)
     if not isinstance(load, Excitation):
         return numbers(load, name, (3,)), np.zeros(0)
-    check_channels(load, name, TRANSLATIONS)
+    check_use(load, name)
     if name == "force":
         return np.zeros(3), load.packed
     return np.zeros(3), load.on(dict(zip(TRANSLATIONS, ROTATIONS, strict=True))).packed

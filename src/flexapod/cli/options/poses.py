@@ -12,7 +12,7 @@ import numpy as np
 
 from flexapod.conventions import AXES, ROTATIONS, Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.units import UNITS
+from flexapod.design.units import QUANTITIES
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.kinematics import home_pose
 from flexapod.tables import naming, parse_table, read_text
@@ -76,7 +76,7 @@ def _read_csv(path: Path) -> Array:
         columns = {column.name: column for column in table.columns}
         if missing := [axis for axis in AXES if axis not in columns]:
             raise ArgumentError(f"there is no column {', '.join(missing)}. {_FORM}")
-        units = {axis: UNITS["angle" if axis in ROTATIONS else "length"] for axis in AXES}
+        units = {axis: QUANTITIES["angle" if axis in ROTATIONS else "length"] for axis in AXES}
         default = {axis: "deg" if axis in ROTATIONS else "m" for axis in AXES}
         return np.column_stack([table.numbers(columns[a], units[a], default[a], finite=False) for a in AXES])
 

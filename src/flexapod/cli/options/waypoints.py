@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 
 from flexapod.conventions import AXES, ROTATIONS, TRANSLATIONS
-from flexapod.design.units import UNITS
+from flexapod.design.units import QUANTITIES
 from flexapod.errors import ArgumentError
 from flexapod.paths.trajectory import Ends, Trajectory
 from flexapod.pose import Pose
-from flexapod.tables import TIMES, naming, parse_table, read_text
+from flexapod.tables import naming, parse_table, read_text
 
 COLUMNS = ("t", *AXES)
 NAMES = {"t": "t", "time": "t", "weight": "weight", **{axis: axis for axis in AXES}}
@@ -26,9 +26,9 @@ def read(file: Path, ends: Ends) -> Trajectory:
         columns = {column.name: column for column in table.columns}
         if missing := [name for name in COLUMNS if name not in columns]:
             raise ArgumentError(f"there is no column {', '.join(missing)}. {FORM}")
-        times = table.numbers(columns["t"], TIMES)
-        place = [table.numbers(columns[name], UNITS["length"]) for name in TRANSLATIONS]
-        turn = [table.numbers(columns[name], UNITS["angle"], "deg") for name in ROTATIONS]
+        times = table.numbers(columns["t"], QUANTITIES["time"])
+        place = [table.numbers(columns[name], QUANTITIES["length"]) for name in TRANSLATIONS]
+        turn = [table.numbers(columns[name], QUANTITIES["angle"], "deg") for name in ROTATIONS]
         weights = table.numbers(columns["weight"]) if "weight" in columns else None
         return Trajectory(Pose.from_rpy(*place, *turn), times, ends=ends, weights=weights)
 
