@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import combinations
 from typing import TYPE_CHECKING, Literal, TypeAlias, get_args
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ TRANSLATIONS = ("x", "y", "z")
 ROTATIONS = ("roll", "pitch", "yaw")
 AXES = (*TRANSLATIONS, *ROTATIONS)  #: of a displacement or a pose: m, then rad
 LEGS = ("1", "2", "3", "4", "5", "6")
+LEG_PAIRS = tuple(combinations(range(6), 2))  #: of leg numbers from 0, as the core orders them
 
 TWO_PI = 2 * math.pi
 

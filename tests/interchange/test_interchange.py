@@ -24,6 +24,7 @@ FORMATS = {
     "sdf": (".sdf", fx.interchange.write_sdf, loaded.sdf),
 }
 NO_FRICTION = {"legs.damping": None}
+CORNERS = {"base": [0, 120, 240], "platform": [60, 180, 300]}  # of an octahedron, degrees
 
 
 def opened(folder, kind, hexapod, pose, gravity=True):
@@ -74,6 +75,19 @@ def test_packaged_machines_agree_at_home(tmp_path, kind, name):
     hexapod = fx.interchange.nearest_physical(fx.load(name))
     found = tangent(opened(tmp_path, kind, hexapod, center(hexapod), gravity=False)).omega
     assert found == pytest.approx(fx.natural_modes(hexapod, center(hexapod)).omega, rel=1e-8)
+
+
+@pytest.mark.parametrize("kind", FORMATS)
+def test_legs_that_meet_at_common_joints(tmp_path, kind):
+    """An octahedron: every joint is shared by two legs."""
+    corners = {plate: np.repeat(np.radians(angles), 2) for plate, angles in CORNERS.items()}
+    angles = {"base.circle.angles": np.roll(corners["base"], -1), "platform.circle.angles": corners["platform"]}
+    hexapod = machine(3).replace({"base.circle.radius": 0.5, "platform.circle.radius": 0.3, **angles})
+    hexapod = hexapod.replace({"home.position": [0.02, 0.01, 0.6], "legs.damping": None})
+    assert "Joints coincide" in hexapod.warnings[0]
+    found = tangent(opened(tmp_path, kind, hexapod, hexapod.home)).omega
+    expected = fx.linearise(hexapod, hexapod.home).modes().omega
+    assert np.abs(found / expected - 1).max() < 1e-8
 
 
 def simulated(hexapod, displacement, periods):

@@ -15,6 +15,10 @@ template <auto function> auto of_states(const Input& design, Joint joint, const 
   return numpy(function(machine_of(design, joint), states_of(platform, base)));
 }
 
+auto shared_joints_(const Input& joints) {
+  return numpy(batch::shared_joints(reinterpret_cast<const EachLeg<Vec3<double>>&>(*rows(joints, 6, 3, "joints"))));
+}
+
 auto joint_angles_(const Input& design, const Input& platform, const Input& base, const Input& neutral) {
   const auto* directions = reinterpret_cast<const Vec3<double>(*)[6]>(rows(neutral, 2, 18, "neutral"));
   return numpy(batch::joint_angles(machine_of(design), states_of(platform, base), directions[0], directions[1]));
@@ -76,7 +80,8 @@ void bind_mechanics(nb::module_& m) {
   m.def("leg_rates", &of_geometry<batch::leg_rates>);
   m.def("leg_fit", &of_geometry<batch::leg_fit>);
   m.def("joint_angles", &joint_angles_);
-  m.def("leg_distance", &of_geometry<batch::leg_distance>);
+  m.def("leg_distances", &of_geometry<batch::leg_distances>);
+  m.def("shared_joints", &shared_joints_);
   m.def("forward_kinematics", &forward_kinematics_);
   m.def("force_transformation", &of_geometry<batch::force_transformation>);
   m.def("spring_matrix", &of_geometry<batch::spring_matrix>);

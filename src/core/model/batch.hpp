@@ -5,6 +5,7 @@
 
 #include "model/energy.hpp"
 #include "model/kinematics.hpp"
+#include "model/leg_distance.hpp"
 #include "model/modes.hpp"
 #include "model/reactions.hpp"
 #include "model/statics.hpp"
@@ -93,10 +94,27 @@ inline auto joint_angles(const Machine<double>& machine, const States& s, const 
   return std::tuple{std::move(first), std::move(second), std::move(universal), std::move(spherical)};
 }
 
-inline Rows leg_distance(const Machine<double>& machine, const States& s) {
-  Rows distance({s.n});
-  for_each_state(s, [&](std::size_t i, double*& to) { *to++ = least_leg_distance(geometry(machine, s, i)); }, distance);
+/// Of every pair of legs, (n, 15).
+inline Rows leg_distances(const Machine<double>& machine, const States& s) {
+  const SharedJoints shared(machine.design);
+  Rows distance({s.n, leg_pairs});
+  for_each_state(
+      s,
+      [&](std::size_t n, double*& to) {
+        const Geometry<double> g = geometry(machine, s, n);
+        for_leg_pairs([&](int pair, int i, int j) { *to++ = pair_distance(g, shared, pair, i, j); });
+      },
+      distance);
   return distance;
+}
+
+/// 1 for every pair of legs whose joints on a plate are at one point, else 0, (15,).
+inline Rows shared_joints(const EachLeg<Vec3<double>>& joints) {
+  bool shared[leg_pairs];
+  flexapod::shared_joints(joints, shared);
+  Rows found({leg_pairs});
+  std::copy_n(shared, leg_pairs, found.data());
+  return found;
 }
 
 /// Poses (n, 12) that have the lengths, and the errors left (n,), m.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/design_gradient.hpp"
+#include "model/leg_distance.hpp"
 #include "numbers/array.hpp"
 
 namespace flexapod {
@@ -89,13 +90,13 @@ class DesignDirections {
   }
 
   LegGradient legs() const {
-    LegGradient found{{n_, 6, m_}, {n_, 15, m_}, {n_, 12, m_}};
+    LegGradient found{{n_, 6, m_}, {n_, leg_pairs, m_}, {n_, 12, m_}};
+    const SharedJoints shared(machine_.design);
     for_each([&](const Block& block, const Machine<Seed>&, const Geometry<Seed>& g, const Pose<Seed>& pose, size_t i) {
       for (size_t a = 0; a < 6; ++a) found.length.put(i, a, norm(g.S[a]), block.first, block.count);
-      size_t pair = 0;
-      for (size_t a = 0; a < 5; ++a)
-        for (size_t b = a + 1; b < 6; ++b)
-          found.distance.put(i, pair++, segment_distance(g.q_b[a], g.S[a], g.q_b[b], g.S[b]), block.first, block.count);
+      for_leg_pairs([&](int pair, int a, int b) {
+        found.distance.put(i, pair, pair_distance(g, shared, pair, a, b), block.first, block.count);
+      });
       Seed angles[2][6];
       joint_cosines(block.seeded, pose, home_.empty() ? nullptr : &block.home, angles);
       for (size_t a = 0; a < 12; ++a) found.joint_cosine.put(i, a, angles[a / 6][a % 6], block.first, block.count);

@@ -32,27 +32,6 @@ struct LegFit {
   }
 };
 
-/// Least distance between the segments p + s a (0 <= s <= 1) and q + t b (0 <= t <= 1), without branches.
-template <class T> T segment_distance(const Vec3<T>& p, const Vec3<T>& a, const Vec3<T>& q, const Vec3<T>& b) {
-  const T zero(0.0), one(1.0);
-  const Vec3<T> r = p - q;
-  const T aa = dot(a, a), bb = dot(b, b), ab = dot(a, b), ar = dot(a, r), br = dot(b, r);
-  const T determinant = aa * bb - ab * ab;
-  const T parallel = T(1e-14) * aa * bb;  // parallel segments: any s will do, the clamps below find the rest
-  const T s0 = clamp((ab * br - bb * ar) / max(determinant, parallel), zero, one);
-  const T t = clamp((ab * s0 + br) / bb, zero, one);
-  const T s = clamp((ab * t - ar) / aa, zero, one);
-  return norm(r + s * a - t * b);
-}
-
-/// Least distance between any two leg axes (segments between their joints).
-template <class T, class P> T least_leg_distance(const Geometry<T, P>& g) {
-  T least = segment_distance(g.q_b[0], g.S[0], g.q_b[1], g.S[1]);
-  for (int i = 0; i < 5; ++i)
-    for (int j = i + 1; j < 6; ++j) least = min(least, segment_distance(g.q_b[i], g.S[i], g.q_b[j], g.S[j]));
-  return least;
-}
-
 /// Angles of the joints, rad. The neutral directions are those of the legs in the middle of their joints.
 struct JointAngles {
   double first[6], second[6];  // universal joint: turn about the base axis k, then tilt out of the plane normal to k

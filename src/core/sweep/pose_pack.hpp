@@ -2,6 +2,7 @@
 // and inertia are constants. The base's frame is the inertial one.
 #pragma once
 
+#include "model/leg_distance.hpp"
 #include "model/springs.hpp"
 #include "simd/elementary.hpp"
 #include "sweep/task.hpp"
@@ -14,6 +15,7 @@ struct SweptMachine {
   Machine<double> weightless;         // gravity enters as an acceleration of platform and base
   SpatialInertia<double> J_platform;  // platform axes
   RootStiffness<double> root_stiffness;
+  SharedJoints shared;
   double size;  // of the platform: makes rows of forces and of moments comparable
 
   explicit SweptMachine(const sweep_task::Task& task)
@@ -21,6 +23,7 @@ struct SweptMachine {
         weightless(machine),
         J_platform(platform_inertia(machine.design, Mat3<double>::identity())),
         root_stiffness(machine.design),
+        shared(machine.design),
         size(mean_radius(machine.design)) {
     weightless.design.gravity = Vec3<double>();
   }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "decomposition/least_squares.hpp"
-#include "model/kinematics.hpp"
 #include "model/modes.hpp"
 #include "sweep/pose_pack.hpp"
 
@@ -56,7 +55,7 @@ template <class T> struct SweepQuantities {
       }
     }
     if ((asked & Quantity::leg_distance) || (check && limits.leg_distance > -1e300)) {
-      const T distance = least_leg_distance(at.g);
+      const T distance = least_leg_distance(at.g, machine.shared);
       if (asked & Quantity::leg_distance) rows.put(task.leg_distance_, unless(bad, distance));
       if (check) bound(distance, limits.leg_distance, std::numeric_limits<double>::infinity());
     }

@@ -1,10 +1,12 @@
-"""Checks of a design as a whole: joints apart, axes with a direction, inertias of rigid bodies."""
+"""Checks of a design as a whole: joints that coincide, axes with a direction, inertias of rigid bodies."""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from flexapod.conventions import Array
+from flexapod import _core
+from flexapod.conventions import LEG_PAIRS, Array
 from flexapod.design.inertia import inertia_flaw
 from flexapod.errors import DesignError
 
@@ -25,16 +27,36 @@ def unit_axes(axes: Array) -> Array:
     return np.asarray(unit)
 
 
-def check_apart(key: str, joints: Array) -> None:
-    """Raises DesignError where two joints of a plate coincide."""
-    span = np.ptp(joints, axis=0).max()
-    for one in range(6):
-        for other in range(one + 1, 6):
-            if np.linalg.norm(joints[one] - joints[other]) <= 1e-9 * span:
-                raise DesignError(
-                    f"{key}[{one}] and {key}[{other}] coincide at {joints[one].tolist()} m; the six joints must be "
-                    "apart. Move one of them: a joint has a size, a millimetre is enough."
-                )
+def joint_warnings(base_joints: Array, platform_joints: Array) -> list[str]:
+    """Which legs meet at common joints; DesignError where all joints of a plate are at one point."""
+    joints = {"base": base_joints, "platform": platform_joints}
+    shared = {plate: _core.shared_joints(at) > 0 for plate, at in joints.items()}
+    for plate, at in joints.items():
+        extent = at - at[0]
+        if not (extent * extent).any():  # squares, which the mechanics takes, vanish before the numbers do
+            raise DesignError(
+                f"{plate}.joints[0] to {plate}.joints[5] coincide at {at[0].tolist()} m; such a plate can turn about "
+                "this point without stretching a leg. Move some of them: the joints must be at three places at least."
+            )
+    both = shared["base"] & shared["platform"]
+    found = []
+    if both.any():
+        found.append(
+            f"Legs {_pairs(both)} share both joints: they are one leg twice, and the machine is singular at every "
+            "pose. Move one of these joints."
+        )
+    words = [f"legs {_pairs(one & ~both)} on the {plate}" for plate, one in shared.items() if (one & ~both).any()]
+    if words:
+        found.append(
+            f"Joints coincide: {'; '.join(words)}. Such legs meet there, so the distance between two of them is that "
+            "of either's other joint from the other leg."
+        )
+    return found
+
+
+def _pairs(chosen: NDArray[np.bool_]) -> str:
+    """Pairs of legs in words: 1 and 6, 2 and 3."""
+    return ", ".join(f"{i + 1} and {j + 1}" for (i, j), yes in zip(LEG_PAIRS, chosen, strict=True) if yes)
 
 
 def platform_warnings(inertia: Array) -> list[str]:

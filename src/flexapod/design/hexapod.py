@@ -17,7 +17,7 @@ from flexapod._suggestions import Suggesting, suggests
 from flexapod.conventions import Array
 from flexapod.design import changes as design_changes
 from flexapod.design import design_file
-from flexapod.design.geometry_checks import check_apart, platform_warnings, unit_axes, warnings_of_part
+from flexapod.design.geometry_checks import joint_warnings, platform_warnings, unit_axes, warnings_of_part
 from flexapod.design.home import Home
 from flexapod.design.packing import packed
 from flexapod.design.parts import Damping, LegPart, Legs, Limits, Value, bytes_of, more_keys
@@ -141,9 +141,7 @@ class Hexapod(Value, metaclass=Suggesting):
         if axes is None:
             axes = default_axes(self.base_joints, self.platform_joints, self.home)
         object.__setattr__(self, "universal_axes", unit_axes(axes))
-        check_apart("base.joints", self.base_joints)
-        check_apart("platform.joints", self.platform_joints)
-        warnings = platform_warnings(self.platform_inertia)
+        warnings = joint_warnings(self.base_joints, self.platform_joints) + platform_warnings(self.platform_inertia)
         for side in ("lower", "upper"):
             warnings += warnings_of_part(f"legs.{side}", getattr(self.legs, side).inertia)
         object.__setattr__(self, "warnings", tuple(warnings))

@@ -189,7 +189,7 @@ KEYS: dict[str, Key] = {
         "share of each edge between its two joints",
         None,
         _ONE,
-        "Give a share between 0 and 1, such as 0.7; at 1 the joints of neighbouring legs would coincide.",
+        "Give a share between 0 and 1, such as 0.7; at 1 neighbouring legs meet at common joints.",
         least=0.0,
         most=1.0,
         open_=True,

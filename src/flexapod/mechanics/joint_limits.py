@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import _core
-from flexapod.conventions import Array
+from flexapod.conventions import LEG_PAIRS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import pose_or_home, states
+from flexapod.mechanics.inputs import States, pose_or_home, states
 from flexapod.mechanics.kinematics import force_transformation, home_pose, inverse_kinematics
 from flexapod.pose import PoseLike
 
@@ -122,7 +122,8 @@ def leg_distance(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLi
     Returns
     -------
     float or ndarray
-        The distance of the axes as segments between their joints, m, (...).
+        The distance of the axes as segments between their joints, m, (...). Two legs that meet at a common joint are as
+        far apart as the other joint of either is from the other leg; legs that share both joints have distance 0.
 
     Raises
     ------
@@ -131,7 +132,8 @@ def leg_distance(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLi
 
     Notes
     -----
-    The closest points of two segments, over all pairs of legs.
+    The closest points of two segments, over all pairs of legs. Joints that coincide but for a billionth of their
+    plate's size are one joint.
 
     Examples
     --------
@@ -139,7 +141,12 @@ def leg_distance(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLi
     0.2
     """
     s = states(hexapod, pose, base)
-    return _core.leg_distance(hexapod.packed, s.platform, s.base).reshape(s.shape)[()]
+    return leg_distances(hexapod, s).min(axis=-1)[()]
+
+
+def leg_distances(hexapod: Hexapod, at: States) -> Array:
+    """Distances of all pairs of legs, in the order of `LEG_PAIRS`, m, (..., 15)."""
+    return _core.leg_distances(hexapod.packed, at.platform, at.base).reshape(*at.shape, len(LEG_PAIRS))
 
 
 def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None) -> LimitsCheck:
