@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -19,12 +20,15 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, numbers
 from flexapod.errors import DesignError, PoseError
 from flexapod.optimisation.derivatives import DesignDerivatives
-from flexapod.optimisation.problem import Assessment, Problem
+from flexapod.optimisation.problem import FEASIBLE, Assessment, Problem
 from flexapod.optimisation.requirements import Requirement
 from flexapod.workspace.worst import worst_pose
 
 _SHARPNESS = (40.0, 400.0, 4000.0, 4000.0, 4000.0)
 _SLACK = 1e-7  # bounds are kept by this much more than asked, so that rounding does not break them
+_PINNED = -1e-9  # instead of it, where a bound can only just be kept: at the end of a variable's range, for one
+_STEEP = 1e-3  # slope over the whole range of the variables from which a margin has room for all of the slack
+_STILL = 1e-9  # slope over that range below which no step moves a margin
 _CLOSE = 1e-5  # relative gain of a round below which the finish ends
 _FAR = 5.0  # most that a margin counts: what is far from its bound decides nothing
 
@@ -148,20 +152,26 @@ class _Local:
         start = np.append(u, 0.0)
         toward = np.zeros(n + 1)
         toward[-1] = -1.0
-        end = minimize(
-            lambda z: -z[-1],
-            start,
-            jac=lambda z: toward,
-            method="SLSQP",
-            bounds=[(0.0, 1.0)] * n + [(-10.0, 10.0)],
-            constraints={"type": "ineq", "fun": self._margins, "jac": self._slopes},
-            options={"maxiter": 120, "ftol": 1e-9},
-        )
-        return np.clip(end.x[:-1], 0.0, 1.0) if np.isfinite(end.x).all() else u
+        for slack in (_SLACK, _PINNED):
+            end = minimize(
+                lambda z: -z[-1],
+                start,
+                jac=lambda z: toward,
+                method="SLSQP",
+                bounds=[(0.0, 1.0)] * n + [(-10.0, 10.0)],
+                constraints={"type": "ineq", "fun": partial(self._margins, slack=slack), "jac": self._slopes},
+                options={"maxiter": 120, "ftol": 1e-9},
+            )
+            found = np.clip(end.x[:-1], 0.0, 1.0) if np.isfinite(end.x).all() else u
+            self.message = "" if end.success else str(end.message)
+            if end.success or self._evaluate(found)[2].min(initial=0.0) >= -FEASIBLE:
+                break
+        return found
 
-    def _margins(self, z: Array) -> Array:
-        index, _, margin, _ = self._evaluate(z[:-1])
-        return np.concatenate([index - self._reference - z[-1], margin])
+    def _margins(self, z: Array, slack: float) -> Array:
+        index, _, margin, by_margin = self._evaluate(z[:-1])
+        room = slack * np.minimum(1.0, np.abs(by_margin).sum(axis=1) / _STEEP)
+        return np.concatenate([index - self._reference - z[-1], margin - room])
 
     def _slopes(self, z: Array) -> Array:
         _, by_index, _, by_margin = self._evaluate(z[:-1])
@@ -188,9 +198,16 @@ class _Local:
             if held.requirement is None:
                 index.append(self.problem.objective.derivatives(at, self.sharpness))
             else:
-                value, slope = held.requirement.margin_derivatives(at)
-                near = np.nan_to_num(value, nan=-_FAR, posinf=_FAR, neginf=-_FAR)
-                slope = np.where((np.abs(near) < _FAR)[:, None], slope, 0.0)
-                margin.append((np.clip(near, -_FAR, _FAR) - _SLACK, slope))
+                margin.append(_bounded(*held.requirement.margin_derivatives(at)))
         parts = [np.concatenate(part) for part in (*zip(*index, strict=True), *zip(*margin, strict=True))]
-        return parts[0], np.nan_to_num(parts[1]), parts[2], np.nan_to_num(parts[3])
+        return parts[0], np.nan_to_num(parts[1]), parts[2], parts[3]
+
+
+def _bounded(margin: Array, slope: Array) -> tuple[Array, Array]:
+    """Margins and slopes as the search takes them: cut off far away, and kept where they are kept and nothing moves
+    them here, lest rounding breaks a bound that no step can mend."""
+    near = np.clip(np.nan_to_num(margin, nan=-_FAR, posinf=_FAR, neginf=-_FAR), -_FAR, _FAR)
+    slope = np.where((np.abs(near) < _FAR)[:, None], np.nan_to_num(slope), 0.0)
+    still = np.abs(slope).sum(axis=1) < _STILL
+    near = np.where(still & (near >= -FEASIBLE), np.maximum(near, 0.0), near)
+    return near, np.where(still[:, None], 0.0, slope)
