@@ -17,10 +17,10 @@ from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
 from flexapod.workspace.box import Box
 from flexapod.workspace.box_minimum import smooth_minimum
+from flexapod.workspace.descents import SquaredFrequency
 from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.region import RegionLike, as_region, home_of
 from flexapod.workspace.sampling import low_discrepancy
-from flexapod.workspace.worst import SquaredFrequency
 
 _STARTS = 4
 

@@ -10,7 +10,7 @@ from flexapod import _core
 from flexapod.conventions import Array
 from flexapod.design.layout import HOME
 from flexapod.pose import Motion, Pose
-from flexapod.workspace.worst import twist_of_coordinates
+from flexapod.workspace.coordinates import twist_of_coordinates
 
 _NO_HOME = np.zeros((0, _core.motion_size)), np.zeros((0, 6))
 

@@ -245,7 +245,15 @@ def verify(problem: Problem, hexapod: Hexapod, samples: int) -> Verification:
     index, pose = found.index, None
     box = problem.box(hexapod)
     if box is not None and index > 0:
-        worst = worst_pose(hexapod, box, joint=problem.joint, samples=samples, seed=_SEED + 2, threads=problem.threads)
+        worst = worst_pose(
+            hexapod,
+            box,
+            joint=problem.joint,
+            samples=samples,
+            seed=_SEED + 2,
+            threads=problem.threads,
+            all_poses=True,
+        )
         index, pose = min(index, worst.omega_1), worst.pose
     elif not isinstance(problem.objective, MeanIndex):
         rows, swept = problem.sweep(hexapod, 0, samples, 0)

@@ -92,7 +92,9 @@ def least_index(problem: Problem, hexapod: Hexapod, index: float, samples: int, 
     box = problem.box(hexapod)
     if box is None:
         return index
-    worst = worst_pose(hexapod, box, joint=problem.joint, samples=samples, starts=6, seed=seed, threads=problem.threads)
+    worst = worst_pose(
+        hexapod, box, joint=problem.joint, samples=samples, starts=6, seed=seed, threads=problem.threads, all_poses=True
+    )
     return min(index, worst.omega_1)
 
 
@@ -112,7 +114,14 @@ def _hold(problem: Problem, x: Array, held: list[_Held], samples: int, seed: int
             if box is not None:
                 try:
                     worst = worst_pose(
-                        hexapod, box, joint=problem.joint, samples=samples, starts=6, seed=seed, threads=1
+                        hexapod,
+                        box,
+                        joint=problem.joint,
+                        samples=samples,
+                        starts=6,
+                        seed=seed,
+                        threads=1,
+                        all_poses=True,
                     )
                     chosen = np.concatenate([[pose for _, pose in worst.minima], chosen])
                 except PoseError:

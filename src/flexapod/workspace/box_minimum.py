@@ -1,4 +1,4 @@
-"""The least value of a function over a box from given starts: exactly, or quickly from many starts at once.
+"""The least value of a function over a box from given starts: exactly, within constraints, or quickly from many starts.
 
 Coordinates whose range is one number are held.
 """
@@ -12,31 +12,51 @@ import numpy as np
 from flexapod.conventions import Array
 
 _RESTARTS = 3
+_CONSTRAINED_RESTARTS = 8
+_INSIDE = 1e-9  # by which a search keeps within its constraints, so that rounding does not break them
 
 
-def smooth_minimum(function: Callable[[Array], tuple[float, Array]], start: Array, low: Array, high: Array) -> Array:
+Smooth = Callable[[Array], tuple[float, Array]]  # value and gradient
+
+
+class _FreeShares:
+    """The free coordinates of a box as shares of their ranges, from 0 to 1."""
+
+    def __init__(self, low: Array, high: Array) -> None:
+        self.low, self.high, self.width = low, high, high - low
+        self.free = high > low
+
+    def of(self, point: Array) -> Array:
+        return ((point - self.low) / np.where(self.free, self.width, 1.0))[self.free]
+
+    def place(self, u: Array) -> Array:
+        """The point at shares u, with both ends exact."""
+        spread = np.zeros(len(self.low))
+        spread[self.free] = u
+        point = self.low.copy()
+        point[self.free] = np.clip(self.low + spread * self.width, self.low, self.high)[self.free]
+        point[spread >= 1.0] = self.high[spread >= 1.0]
+        return point
+
+    def slope(self, slope: Array) -> Array:
+        """Derivatives by the shares, from those by the coordinates (..., n)."""
+        return (slope * self.width)[..., self.free]
+
+
+def smooth_minimum(function: Smooth, start: Array, low: Array, high: Array) -> Array:
     """Where a descent from `start` ends: L-BFGS-B on a smooth function that gives its value and gradient."""
     from scipy.optimize import minimize
 
-    free, width = high > low, high - low
-    if not free.any():
+    shares = _FreeShares(low, high)
+    if not shares.free.any():
         return low
     unit = max(abs(function(start)[0]), np.finfo(float).tiny)
 
-    def place(u: Array) -> Array:
-        """The point at shares u of the free ranges, with both ends exact."""
-        spread = np.zeros(len(low))
-        spread[free] = u
-        point = low.copy()
-        point[free] = np.clip(low + spread * width, low, high)[free]
-        point[spread >= 1.0] = high[spread >= 1.0]
-        return point
-
     def scaled(u: Array) -> tuple[float, Array]:
-        value, slope = function(place(u))
-        return value / unit, (slope * width)[free] / unit
+        value, slope = function(shares.place(u))
+        return value / unit, shares.slope(slope) / unit
 
-    u = ((start - low) / np.where(free, width, 1.0))[free]
+    u = shares.of(start)
     options = {"ftol": 0, "gtol": 1e-10, "maxiter": 500}
     for _ in range(_RESTARTS):  # anew where a ridge between two modes has spoilt the curvature it has learnt
         end = minimize(scaled, u, jac=True, method="L-BFGS-B", bounds=[(0.0, 1.0)] * len(u), options=options)
@@ -44,7 +64,57 @@ def smooth_minimum(function: Callable[[Array], tuple[float, Array]], start: Arra
         u = end.x
         if still:
             break
-    return place(u)
+    return shares.place(u)
+
+
+def constrained_minimum(
+    function: Smooth, margins: Callable[[Array], tuple[Array, Array]], start: Array, low: Array, high: Array
+) -> Array:
+    """The same where `margins`, (m,) with gradients (m, n), must not be negative: by SLSQP, the lowest point it meets.
+
+    start: a point that keeps them; nothing worse than it is returned.
+    """
+    from scipy.optimize import minimize
+
+    shares = _FreeShares(low, high)
+    best, least = start, function(start)[0]
+
+    def scaled(u: Array) -> tuple[float, Array]:
+        value, slope = function(shares.place(u))
+        return value / unit, shares.slope(slope) / unit
+
+    def kept(u: Array) -> Array:
+        return margins(shares.place(u))[0] - _INSIDE
+
+    def by_shares(u: Array) -> Array:
+        return shares.slope(margins(shares.place(u))[1])
+
+    def note(u: Array) -> None:
+        nonlocal best, least
+        point = shares.place(u)
+        value = function(point)[0]
+        if value < least and margins(point)[0].min(initial=0.0) >= 0:
+            best, least = point, value
+
+    constraint = {"type": "ineq", "fun": kept, "jac": by_shares}
+    for _ in range(_CONSTRAINED_RESTARTS):  # each measures values anew, so that one that goes to zero gets there
+        before, unit = least, max(abs(least), np.finfo(float).tiny)
+        u = shares.of(best)
+        end = minimize(
+            scaled,
+            u,
+            jac=True,
+            method="SLSQP",
+            bounds=[(0.0, 1.0)] * len(u),
+            constraints=constraint,
+            callback=note,
+            options={"ftol": 1e-14, "maxiter": 200},
+        )
+        if np.isfinite(end.x).all():
+            note(end.x)
+        if least > before - 1e-10 * unit:
+            break
+    return best
 
 
 def quick_minimum(

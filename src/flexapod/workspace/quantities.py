@@ -16,6 +16,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.mechanics.joint_limits import neutral_directions
+from flexapod.workspace.limit_margins import is_limited
 
 
 class Quantity(NamedTuple):
@@ -39,7 +40,7 @@ QUANTITIES: dict[str, Quantity] = {
     "lowest_stiffness": Quantity("N/m", "lowest stiffness against displacement of the reference point"),
     "within_limits": Quantity("1", "whether legs and joints are within the design's limits", dtype="bool"),
 }
-DEFAULT = ("omega_1", "cond_H")
+_DEFAULT = ("omega_1", "cond_H")
 #: What else a quantity is called -> its name here.
 COMMON_NAMES = {
     "frequency": "omega_1",
@@ -73,8 +74,13 @@ def statuses() -> dict[int, str]:
     return {**{status.value: status.name for status in _core.SweepStatus}, PENDING: "pending"}
 
 
-def chosen(quantities: str | Iterable[str]) -> tuple[str, ...]:
-    """Quantities by name, in the order of the table, each once. Raises ArgumentError for an unknown name or none."""
+def chosen(quantities: str | Iterable[str] | None, hexapod: Hexapod) -> tuple[str, ...]:
+    """Quantities by name, in the order of the table, each once. Raises ArgumentError for an unknown name or none.
+
+    None: the usual ones; of a design with limits, whether they are kept as well.
+    """
+    if quantities is None:
+        return (*_DEFAULT, *(("within_limits",) if is_limited(hexapod) else ()))
     names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
     for name in names:
         if name in COMMON_NAMES:

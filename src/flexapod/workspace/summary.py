@@ -14,6 +14,7 @@ import numpy as np
 from flexapod.conventions import AXES, Array
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.workspace.distribution import QUANTILES, binned, exactly
+from flexapod.workspace.limit_margins import none_within
 from flexapod.workspace.pose_sets import described
 from flexapod.workspace.quantities import PENDING, statuses
 from flexapod.workspace.store.blocks import Blocks, blocks
@@ -35,7 +36,10 @@ class At(NamedTuple):
 
 
 class Above(NamedTuple):
-    """Part of the poses whose index is at least `omega_1` (rad/s), and the volume of the box that this stands for."""
+    """Part of the poses that count whose index is at least `omega_1` (rad/s), and the volume of the box it stands for.
+
+    Poses that count are those within the design's limits, or all.
+    """
 
     omega_1: float
     fraction: float
@@ -53,6 +57,9 @@ class SweepSummary(NamedTuple):
         Number of poses. Those whose index is NaN count here and in `statuses` only.
     statuses : dict of str to int
         Number of poses by status.
+    within_limits : int or None
+        Number of poses within the design's limits; None if ``within_limits`` was not swept. Where it was, all that
+        follows is of these poses, unless all are asked for.
     worst, best : At
         The poses with the least and the largest omega_1: `number`, `pose` (6,), `omega_1` (rad/s), `cond_H`.
     best_conditioned, worst_conditioned : At or None
@@ -70,6 +77,7 @@ class SweepSummary(NamedTuple):
 
     poses: int
     statuses: dict[str, int]
+    within_limits: int | None
     worst: At
     best: At
     best_conditioned: At | None
@@ -80,7 +88,7 @@ class SweepSummary(NamedTuple):
     spread: float
 
 
-def summarise(sweep: xr.Dataset, at_least: float | None = None) -> SweepSummary:
+def summarise(sweep: xr.Dataset, at_least: float | None = None, *, all_poses: bool = False) -> SweepSummary:
     """Summarise a sweep: worst and best poses, quantiles, and the part that is good enough.
 
     Parameters
@@ -89,6 +97,9 @@ def summarise(sweep: xr.Dataset, at_least: float | None = None) -> SweepSummary:
         A sweep in memory, or of `open_sweep`; it must hold ``omega_1``.
     at_least : float, optional
         A wanted index, rad/s, for `SweepSummary.above`.
+    all_poses : bool, optional
+        If True, poses beyond the design's limits count as well. If False (default), they do not where
+        ``within_limits`` was swept.
 
     Returns
     -------
@@ -100,7 +111,7 @@ def summarise(sweep: xr.Dataset, at_least: float | None = None) -> SweepSummary:
     ArgumentError
         If the sweep does not hold ``omega_1``.
     PoseError
-        If no pose has an index.
+        If no pose has an index, or none of those that have one is within the limits.
 
     See Also
     --------
@@ -128,33 +139,52 @@ def summarise(sweep: xr.Dataset, at_least: float | None = None) -> SweepSummary:
     """
     if "omega_1" not in sweep:
         raise ArgumentError("sweep does not hold omega_1, which a summary needs. Sweep it.")
-    first = _extremes(sweep)
+    counted = _Counted(sweep, all_poses)
+    first = _extremes(counted)
     both = "cond_H" in sweep and first.usable > 1
     names = ("omega_1", "cond_H") if both else ("omega_1",)
 
     def usable() -> Iterator[list[Array]]:
-        return _finite(sweep, names)
+        return (values for _, values in counted.columns(names))
 
     ends = [(first.value[name, "least"], first.value[name, "most"]) for name in names]
     spread_out = exactly(usable()) if first.usable <= EXACT else binned(usable, ends)
     return SweepSummary(
         poses=first.poses,
         statuses=first.statuses,
+        within_limits=first.within_limits,
         worst=_at(sweep, first.place["omega_1", "least"]),
         best=_at(sweep, first.place["omega_1", "most"]),
         best_conditioned=_at(sweep, first.place["cond_H", "least"]) if both else None,
         worst_conditioned=_at(sweep, first.place["cond_H", "most"]) if both else None,
         quantiles=dict(zip(QUANTILES, spread_out.quantiles.tolist(), strict=True)),
-        above=None if at_least is None else _above(sweep, first, at_least),
+        above=None if at_least is None else _above(counted, first, at_least),
         correlation=spread_out.correlation,
         spread=spread_out.spread,
     )
+
+
+class _Counted:
+    """The poses of a sweep that count: those with an index, and unless all are asked for, those within the limits."""
+
+    def __init__(self, sweep: xr.Dataset, all_poses: bool) -> None:
+        self.sweep, self.within = sweep, "within_limits" in sweep and not all_poses
+
+    def columns(self, names: tuple[str, ...]) -> Iterator[tuple[np.ndarray, list[Array]]]:
+        """Numbers of poses that count, and their columns of quantities (the first omega_1), block by block."""
+        for start, found in columns(self.sweep, (*names, *(("within_limits",) if self.within else ()))):
+            good = np.isfinite(found[0])
+            if self.within:
+                good &= np.asarray(found.pop(), dtype=bool)
+            number = start + np.flatnonzero(good)
+            yield number, (found if number.size == good.size else [column[good] for column in found])
 
 
 class _Extremes(NamedTuple):
     poses: int
     usable: int
     statuses: dict[str, int]
+    within_limits: int | None
     value: Mapping[tuple[str, str], float]
     place: Mapping[tuple[str, str], int]
 
@@ -174,35 +204,40 @@ def columns(sweep: xr.Dataset, names: tuple[str, ...]) -> Iterator[tuple[int, li
         yield block.start, [np.asarray(part[name].values).ravel() for name in names]
 
 
-def _finite(sweep: xr.Dataset, names: tuple[str, ...]) -> Iterator[list[Array]]:
-    """Columns without the poses that have no index."""
-    for _, values in columns(sweep, names):
-        good = np.isfinite(values[0])
-        yield values if good.all() else [v[good] for v in values]
-
-
-def _extremes(sweep: xr.Dataset) -> _Extremes:
-    names = [name for name in ("omega_1", "cond_H") if name in sweep]
+def _extremes(counted: _Counted) -> _Extremes:
+    sweep = counted.sweep
+    poses, with_index, statuses, within = _counts(sweep)
+    names = tuple(name for name in ("omega_1", "cond_H") if name in sweep)
     value: dict[tuple[str, str], float] = {}
     place: dict[tuple[str, str], int] = {}
-    seen = np.zeros(256, dtype=np.int64)
-    count = usable = 0
-    for start, (status, *found) in columns(sweep, ("status", *names)):
-        seen += np.bincount(status, minlength=256)
-        count += status.size
-        good = np.isfinite(found[0])
-        usable += int(good.sum())
-        if not good.any():
+    usable = 0
+    for number, found in counted.columns(names):
+        usable += number.size
+        if not number.size:
             continue
-        for name, numbers in zip(names, found, strict=True):
+        for name, values in zip(names, found, strict=True):
             for end, sign in (("least", 1.0), ("most", -1.0)):
-                k = int(np.argmin(np.where(good, sign * numbers, np.inf)))
-                if sign * numbers[k] < sign * value.get((name, end), sign * np.inf) or (name, end) not in value:
-                    value[name, end], place[name, end] = float(numbers[k]), start + k
+                k = int(np.argmin(sign * values))
+                if (name, end) not in value or sign * values[k] < sign * value[name, end]:
+                    value[name, end], place[name, end] = float(values[k]), int(number[k])
     if not usable:
-        raise PoseError(f"none of the {count} poses has an index. See the variable `status` for the reasons.")
+        if with_index:
+            raise none_within(poses)
+        raise PoseError(f"none of the {poses} poses has an index. See the variable `status` for the reasons.")
+    return _Extremes(poses, usable, statuses, within, value, place)
+
+
+def _counts(sweep: xr.Dataset) -> tuple[int, int, dict[str, int], int | None]:
+    """How many poses there are, how many have an index, how many by status, and how many are within the limits."""
+    seen = np.zeros(256, dtype=np.int64)
+    with_index = within = 0
+    limited = ("within_limits",) if "within_limits" in sweep else ()
+    for _, (status, omega, *inside) in columns(sweep, ("status", "omega_1", *limited)):
+        seen += np.bincount(status, minlength=256)
+        with_index += int(np.isfinite(omega).sum())
+        within += sum(int(np.asarray(one, dtype=bool).sum()) for one in inside)
     words = statuses()
-    return _Extremes(count, usable, {words[k]: int(n) for k, n in enumerate(seen) if n}, value, place)
+    return int(seen.sum()), with_index, {words[k]: int(n) for k, n in enumerate(seen) if n}, within if limited else None
 
 
 def _at(sweep: xr.Dataset, number: int) -> At:
@@ -218,10 +253,12 @@ def _at(sweep: xr.Dataset, number: int) -> At:
     return At(number, pose, float(one["omega_1"]), cond)
 
 
-def _above(sweep: xr.Dataset, extremes: _Extremes, wanted: float) -> Above:
-    good = sum(int((values[0] >= wanted).sum()) for values in _finite(sweep, ("omega_1",)))
+def _above(counted: _Counted, extremes: _Extremes, wanted: float) -> Above:
+    attrs = counted.sweep.attrs
+    good = sum(int((values[0] >= wanted).sum()) for _, values in counted.columns(("omega_1",)))
     computed = extremes.poses - extremes.statuses.get(statuses()[PENDING], 0)
-    fraction = good / computed
-    error = float(np.sqrt(fraction * (1 - fraction) / computed))
-    volume = fraction * sweep.attrs.get("box_volume", np.nan)
-    return Above(wanted, fraction, error, volume, sweep.attrs.get("box_volume_unit", ""))
+    whole = extremes.within_limits if counted.within and extremes.within_limits is not None else computed
+    fraction = good / whole
+    error = float(np.sqrt(fraction * (1 - fraction) / whole))
+    volume = good / computed * attrs.get("box_volume", np.nan)
+    return Above(wanted, fraction, error, volume, attrs.get("box_volume_unit", ""))

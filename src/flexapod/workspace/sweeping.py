@@ -15,7 +15,6 @@ from flexapod.errors import PoseError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.workspace.pose_sets import GridPoses, PoseSet, six_numbers
 from flexapod.workspace.quantities import (
-    DEFAULT,
     QUANTITIES,
     attributes,
     chosen,
@@ -33,7 +32,7 @@ def sweep(
     hexapod: Hexapod,
     region: RegionLike = None,
     *,
-    quantities: str | Iterable[str] = DEFAULT,
+    quantities: str | Iterable[str] | None = None,
     samples: int = 2**14,
     seed: int = 0,
     joint: JointModel = "universal",
@@ -52,7 +51,8 @@ def sweep(
         the home pose.
     quantities : str or iterable of str, optional
         Which of ``omega_1``, ``omega``, ``cond_H``, ``leg_length``, ``universal_angle``, ``spherical_angle``,
-        ``leg_distance``, ``leg_force``, ``lowest_stiffness``, ``within_limits``.
+        ``leg_distance``, ``leg_force``, ``lowest_stiffness``, ``within_limits``. Default: ``omega_1`` and ``cond_H``,
+        and ``within_limits`` of a design that has limits.
     samples : int, optional
         Number of poses of a Box or a Workspace (a Sobol sequence), and least number along a Trajectory.
     seed : int, optional
@@ -108,9 +108,8 @@ def sweep(
     >>> round(float(found.omega_1.min()), 1), round(float(found.cond_H.max()), 2)
     (26.4, 3.68)
     """
-    wanted = chosen(quantities)
+    points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities, hexapod)
     as_joint(joint)
-    points = poses_of(hexapod, region, samples, seed)
     rows = points.rows(0, points.count)
     found = evaluate(hexapod, rows, wanted, joint, thread_count(threads))
     status = found["status"]

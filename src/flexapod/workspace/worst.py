@@ -6,23 +6,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexapod import _core
 from flexapod.checks import thread_count, whole
 from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import as_hexapod, as_joint, states
-from flexapod.pose import Pose
+from flexapod.mechanics.inputs import as_hexapod
 from flexapod.workspace.box import Box
-from flexapod.workspace.box_minimum import smooth_minimum
+from flexapod.workspace.descents import BoxSearch, SquaredFrequency, starts_of
+from flexapod.workspace.limit_margins import LimitMargins, is_limited, none_within
 from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.region import RegionLike, as_region, home_of
-from flexapod.workspace.sampling import low_discrepancy
 
 SINGULAR = 1e-9  # omega_1 / omega_6 below which the index is zero to rounding
 AGREE = 1e-6  # relative difference of indices that count as the same minimum
-_CANDIDATES = 2048
-_APART = 0.15  # least distance of two starts, in units of the box's diagonal
+_TOUCHES = 1e-6  # margin of a limit at which the pose is
 
 
 class WorstPose(NamedTuple):
@@ -36,17 +33,21 @@ class WorstPose(NamedTuple):
         The index there, rad/s; zero to rounding where the region holds a singular pose.
     gradient : ndarray, shape (6,)
         Derivatives of omega_1 by the six coordinates, rad/s per m and per rad. At the least index of a box they are
-        zero, except for coordinates in `at_bounds`, where they point out of the box.
+        zero, except for coordinates in `at_bounds`, where they point out of the box, and where limits hold the pose.
     at_bounds : tuple of str
         Coordinates that are at an end of their range.
     singular : bool
-        Whether the pose is singular.
+        Whether the pose is singular, or locks a universal joint: the index is zero.
     starts, agreed : int
         Number of descents, and how many of them ended at this index; zero for a list of poses.
     minima : list of (float, ndarray)
         Index (rad/s) and pose of every distinct local minimum found, least first.
     sampled : float
         Least index of the poses that were sampled, rad/s.
+    at_limits : tuple of str
+        Limits of the design that the pose is at, as "greatest length of leg 3".
+    share_within_limits : float
+        Part of the region's poses that is within the design's limits; NaN where all poses count.
     """
 
     pose: Array
@@ -58,6 +59,8 @@ class WorstPose(NamedTuple):
     agreed: int
     minima: list[tuple[float, Array]]
     sampled: float
+    at_limits: tuple[str, ...] = ()
+    share_within_limits: float = float("nan")
 
 
 def worst_pose(
@@ -69,6 +72,7 @@ def worst_pose(
     starts: int = 12,
     seed: int = 0,
     threads: int | None = None,
+    all_poses: bool = False,
 ) -> WorstPose:
     """Find the pose of a region with the least stability index.
 
@@ -85,11 +89,14 @@ def worst_pose(
     samples : int, optional
         Number of poses of the Sobol sequence that the descents start from.
     starts : int, optional
-        Number of descents in a box.
+        Number of descents from sampled poses of a box; corners of the box come to them.
     seed : int, optional
         Seed of the sequence's scrambling.
     threads : int, optional
         Number of threads, default one for each core.
+    all_poses : bool, optional
+        If True, poses beyond the design's limits count as well. If False (default), the worst of those within them is
+        found; a design without limits allows all.
 
     Returns
     -------
@@ -103,7 +110,7 @@ def worst_pose(
     ArgumentError
         If a number is invalid, or no coordinate of a Box varies.
     PoseError
-        If no pose of the region can be computed.
+        If no pose of the region can be computed, or none within the limits is found.
 
     See Also
     --------
@@ -112,10 +119,15 @@ def worst_pose(
 
     Notes
     -----
-    In a box, a Sobol sweep gives low poses apart from one another; from each, L-BFGS-B (Byrd, Lu, Nocedal and Zhu,
-    1995) descends on omega_1^2 with exact derivatives. The lowest of several frequencies that meet is never least where
-    they meet (it has a ridge there), so that the descent passes repeated frequencies; squared, it is smooth at a
-    singular pose.
+    In a box, a Sobol sweep gives low poses apart from one another; from each, and from every corner that no corner next
+    to it undercuts, L-BFGS-B (Byrd, Lu, Nocedal and Zhu, 1995) descends on omega_1^2 with exact derivatives. The lowest
+    of several frequencies that meet is never least where they meet (it has a ridge there), so that the descent passes
+    repeated frequencies; squared, it is smooth at a singular pose.
+
+    Where the design has limits, the descents begin at poses within them and keep to them by sequential quadratic
+    programming (SLSQP, Kraft, 1988) with exact derivatives of leg lengths, joint angles and leg distances: the worst
+    pose is mostly at several limits at once. Where few poses of the box are within the limits, more are sampled, and at
+    last one is sought by descents on what exceeds them.
 
     Examples
     --------
@@ -125,16 +137,15 @@ def worst_pose(
     """
     where = as_region(region)
     index = SquaredFrequency(as_hexapod(hexapod), joint, mode=1)
+    limits = None if all_poses or not is_limited(hexapod) else LimitMargins(hexapod)
     home = home_of(hexapod, where)
-    box = where.box(home)
-    threads = thread_count(threads)
+    box, threads = where.box(home), thread_count(threads)
     if box is None:
-        rows = where.rows(home, samples)
-        return _worst_of(index, rows, evaluate(hexapod, rows, ("omega_1",), joint, threads)["omega_1"])
-    rows = low_discrepancy(box, samples, seed=seed).rows(0, samples)
-    omega = evaluate(hexapod, rows, ("omega_1",), joint, threads)["omega_1"]
-    begin = _apart(rows, omega, box, whole(starts, "starts"))
-    ends = [smooth_minimum(index, rows[i], box.low, box.high) for i in begin]
+        return _worst_of(index, limits, where.rows(home, samples), threads)
+    count = whole(starts, "starts")
+    search = BoxSearch(index, box, limits, whole(samples, "samples"), seed, threads)
+    poses = search.sample()
+    ends = [search.descend(start) for start in starts_of(poses, box, count)]
     found = sorted(((index.root(end), end) for end in ends), key=lambda one: one[0])
     minima = _distinct(found, box)
     least, pose = minima[0]
@@ -148,78 +159,46 @@ def worst_pose(
         starts=len(found),
         agreed=sum(_same(value, least, index.scale) for value, _ in found),
         minima=minima,
-        sampled=float(np.nanmin(omega)),
+        sampled=poses.least,
+        at_limits=_at_limits(limits, pose),
+        share_within_limits=poses.share if limits is not None or not is_limited(hexapod) else float("nan"),
     )
 
 
-def _worst_of(index: SquaredFrequency, rows: Array, omega: Array) -> WorstPose:
+def _worst_of(index: SquaredFrequency, limits: LimitMargins | None, rows: Array, threads: int) -> WorstPose:
     """The worst of some poses."""
+    wanted = ("omega_1", "within_limits") if limits is not None else ("omega_1",)
+    found = evaluate(index.hexapod, rows, wanted, index.joint_name, threads)
+    omega, share = found["omega_1"], 1.0
     if not np.isfinite(omega).any():
         raise PoseError(f"none of the {len(rows)} poses can be computed. Look at the status of a sweep of them.")
+    if limits is not None:
+        share = float(found["within_limits"].mean())
+        omega = np.where(found["within_limits"], omega, np.nan)
+        if not np.isfinite(omega).any():
+            raise none_within(len(rows))
     pose = rows[int(np.nanargmin(omega))]
-    least, gradient = index.root(pose), index.gradient(pose)
-    singular = least <= SINGULAR * index.scale
-    return WorstPose(pose, least, gradient, (), singular, 0, 0, [(least, pose)], float(np.nanmin(omega)))
+    least = index.root(pose)
+    return WorstPose(
+        pose=pose,
+        omega_1=least,
+        gradient=index.gradient(pose),
+        at_bounds=(),
+        singular=least <= SINGULAR * index.scale,
+        starts=0,
+        agreed=0,
+        minima=[(least, pose)],
+        sampled=float(np.nanmin(omega)),
+        at_limits=_at_limits(limits, pose),
+        share_within_limits=share,
+    )
 
 
-class SquaredFrequency:
-    """The square of one of the six natural frequencies at x, y, z, roll, pitch, yaw, (6,), with exact derivatives."""
-
-    def __init__(self, hexapod: Hexapod, joint: JointModel, mode: int) -> None:
-        self.hexapod, self.joint, self.mode = hexapod, as_joint(joint), mode - 1
-        self.scale = 1.0  # largest omega_6 met, rad/s
-
-    def __call__(self, six: Array) -> tuple[float, Array]:
-        """omega^2 and its derivatives by the coordinates. A pose that no leg can take raises PoseError."""
-        s = states(self.hexapod, Pose.from_rpy(*six))
-        omega = _core.natural_modes(self.hexapod.packed, self.joint, s.platform, s.base)[0][0]
-        by_twist = _core.frequency_derivatives(self.hexapod.packed, self.joint, s.platform, s.base)[1]
-        self.scale = max(self.scale, float(omega[-1]))
-        return float(omega[self.mode] ** 2), by_twist[0, self.mode] @ twist_of_coordinates(six)
-
-    def root(self, six: Array) -> float:
-        """The frequency itself, rad/s."""
-        return float(np.sqrt(max(self(six)[0], 0.0)))
-
-    def gradient(self, six: Array) -> Array:
-        """Of the frequency by the six coordinates; NaN where it is zero."""
-        square, slope = self(six)
-        return slope / (2 * np.sqrt(square)) if square > 0 else np.full(6, np.nan)
-
-
-def twist_of_coordinates(six: Array) -> Array:
-    """(6, 6): translation and rotation vector (inertial axes) for each change of x, y, z, roll, pitch, yaw."""
-    pitch, yaw = six[4], six[5]
-    cp, sp, cy, sy = np.cos(pitch), np.sin(pitch), np.cos(yaw), np.sin(yaw)
-    jacobian = np.eye(6)
-    jacobian[3:, 3:] = [[cy * cp, -sy, 0.0], [sy * cp, cy, 0.0], [-sp, 0.0, 1.0]]
-    return jacobian
-
-
-def _apart(rows: Array, omega: Array, box: Box, starts: int) -> list[int]:
-    """The lowest poses that are apart from those before them; nearer ones where there are too few."""
-    usable = np.flatnonzero(np.isfinite(omega))
-    if not usable.size:
-        raise PoseError(f"no pose of {box!r} could be computed. Look at the status of a sweep of it.")
-    lowest = usable[np.argsort(omega[usable], kind="stable")][:_CANDIDATES]
-    free = box.high > box.low
-    unit = (rows[lowest] - box.low)[:, free] / (box.high - box.low)[free]
-    apart = _APART * np.sqrt(free.sum())
-    chosen: list[int] = []
-    left = np.ones(len(lowest), dtype=bool)
-    while len(chosen) < min(starts, len(lowest)):
-        if not left.any():
-            apart /= 2
-            left[:] = True
-            left[chosen] = False
-            for k in chosen:
-                left &= np.linalg.norm(unit - unit[k], axis=1) > apart
-            continue
-        k = int(np.argmax(left))
-        chosen.append(k)
-        left &= np.linalg.norm(unit - unit[k], axis=1) > apart
-        left[k] = False
-    return [int(lowest[k]) for k in chosen]
+def _at_limits(limits: LimitMargins | None, pose: Array) -> tuple[str, ...]:
+    if limits is None:
+        return ()
+    margin = limits(pose)[0]
+    return tuple(name for name, one in zip(limits.names, margin, strict=True) if one <= _TOUCHES)
 
 
 def _same(value: float, least: float, scale: float) -> bool:

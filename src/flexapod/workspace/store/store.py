@@ -25,7 +25,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import OutputError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.workspace.pose_sets import GivenPoses, GridPoses, PoseSet
-from flexapod.workspace.quantities import DEFAULT, QUANTITIES, chosen
+from flexapod.workspace.quantities import QUANTITIES, chosen
 from flexapod.workspace.region import RegionLike, poses_of
 from flexapod.workspace.store.block_job import Job, Workers, zarr_package
 from flexapod.workspace.store.blocks import Blocks, blocks
@@ -97,7 +97,7 @@ class SweepStore:
         hexapod: Hexapod,
         region: RegionLike = None,
         *,
-        quantities: str | Iterable[str] = DEFAULT,
+        quantities: str | Iterable[str] | None = None,
         samples: int = SAMPLES,
         seed: int = 0,
         joint: JointModel = "universal",
@@ -131,7 +131,7 @@ class SweepStore:
         ArgumentError, PoseError, DesignError
             As `fx.sweep`.
         """
-        points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities)
+        points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities, hexapod)
         as_joint(joint)
         keep = _streams_poses(points) and (keep_poses or isinstance(points, GivenPoses))
         most = _poses_per_block(wanted, keep) if chunk is None else whole(chunk, "chunk")
@@ -146,7 +146,7 @@ class SweepStore:
         hexapod: Hexapod,
         region: RegionLike = None,
         *,
-        quantities: str | Iterable[str] = DEFAULT,
+        quantities: str | Iterable[str] | None = None,
         samples: int = SAMPLES,
         seed: int = 0,
         joint: JointModel = "universal",
@@ -174,7 +174,7 @@ class SweepStore:
             If there is no store, or the design, the poses, the quantities, the joint model, the version or the
             processor's instructions are not those it was begun with.
         """
-        points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities)
+        points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities, hexapod)
         attrs = read_attributes(path)
         cut = Blocks(points.shape, tuple(map(int, attrs["chunk"].split())))
         job = _job(path, hexapod, points, wanted, joint, cut=cut, keep=bool(attrs["keeps_poses"]))

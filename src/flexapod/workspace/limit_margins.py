@@ -1,0 +1,102 @@
+"""By how much a pose is within the design's limits, with exact derivatives: the constraints of a search."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+
+from flexapod import _core
+from flexapod.conventions import AXES, LEGS, Array
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.layout import HOME, numbers
+from flexapod.errors import PoseError
+from flexapod.pose import Motion, Pose
+from flexapod.workspace.coordinates import twist_of_coordinates
+
+_TINY = np.finfo(float).eps
+
+
+def is_limited(hexapod: Hexapod) -> bool:
+    """Whether the design limits anything."""
+    limits = hexapod.limits
+    return any(
+        bound is not None
+        for bound in (limits.leg_length, limits.universal_angle, limits.spherical_angle, limits.leg_distance)
+    )
+
+
+def none_within(count: int) -> PoseError:
+    """What is told where poses can be computed and the design's limits allow none of them."""
+    return PoseError(
+        f"none of the {count} poses is within the design's limits. Choose other poses, or take all of them (all_poses)."
+    )
+
+
+class LimitMargins:
+    """Margins of every limit of a design at x, y, z, roll, pitch, yaw (6,), with exact derivatives.
+
+    A margin is a share of what it is taken from: of the greatest leg length, of 1 - cos of the largest angle, of the
+    least distance between legs. Those >= 0 are kept. Each is a smooth function of the pose: the least distance between
+    legs is that of every two legs which do not share a joint. `names` says what each margin limits.
+    """
+
+    def __init__(self, hexapod: Hexapod) -> None:
+        own = numbers(hexapod)
+        self._design, self._still = own[: HOME.start], np.zeros((len(AXES), HOME.start))
+        self._home = np.zeros((0, _core.motion_size))
+        if hexapod.home is not None:
+            self._home = Motion(Pose.from_rpy(*own[HOME])).packed[None]
+        bounds = list(_bounds(hexapod))
+        self.names = tuple(bound.name for bound in bounds)
+        self._columns = np.array([bound.column for bound in bounds], dtype=int)
+        self._bounds = np.array([bound.value for bound in bounds])
+        self._factor = np.array([bound.sign / bound.scale for bound in bounds])
+
+    def __call__(self, six: Array) -> tuple[Array, Array]:
+        """Margins (m,), and their derivatives by the six coordinates (m, 6)."""
+        at = _core.DesignDirections(
+            design=self._design,
+            joint=_core.Joint.universal,  # legs lie the same in both models
+            platform=Motion(Pose.from_rpy(*six)).packed.reshape(1, -1),
+            directions=self._still,
+            displacements=np.ascontiguousarray(twist_of_coordinates(six).T[None]),
+            home=self._home,
+            home_displacements=np.zeros((len(AXES) if len(self._home) else 0, 6)),
+        )
+        parts = at.legs()
+        value = np.concatenate([value[0] for value, _ in parts])[self._columns]
+        slope = np.concatenate([slope[0] for _, slope in parts])[self._columns]
+        return self._factor * (value - self._bounds), self._factor[:, None] * slope
+
+
+class _Bound(NamedTuple):
+    """sign (value of the column - value) / scale >= 0. Columns: 6 lengths, 15 distances, 12 cosines of angles."""
+
+    name: str
+    column: int
+    sign: int
+    value: float
+    scale: float
+
+
+def _bounds(hexapod: Hexapod) -> Iterator[_Bound]:
+    limits = hexapod.limits
+    if limits.leg_length is not None:
+        lengths = np.broadcast_to(np.asarray(limits.leg_length, dtype=float), (6, 2))
+        for i, (leg, (least, most)) in enumerate(zip(LEGS, lengths, strict=True)):
+            yield _Bound(f"least length of leg {leg}", i, 1, least, most)
+            yield _Bound(f"greatest length of leg {leg}", i, -1, most, most)
+    if limits.leg_distance:
+        for k, (i, j) in enumerate(combinations(range(6), 2)):
+            if not any(
+                np.array_equal(joints[i], joints[j]) for joints in (hexapod.base_joints, hexapod.platform_joints)
+            ):
+                words = f"distance of legs {LEGS[i]} and {LEGS[j]}"
+                yield _Bound(words, 6 + k, 1, limits.leg_distance, limits.leg_distance)
+    for kind, first, most in (("universal", 21, limits.universal_angle), ("spherical", 27, limits.spherical_angle)):
+        if most is not None and most < np.pi:
+            for i, leg in enumerate(LEGS):
+                yield _Bound(f"{kind} joint of leg {leg}", first + i, 1, np.cos(most), max(1 - np.cos(most), _TINY))
