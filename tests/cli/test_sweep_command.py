@@ -80,6 +80,42 @@ def test_poses_of_a_file(tmp_path, capsys):
     assert lowest == [pytest.approx(fx.stability_index(I, pose).min(), rel=1e-12)] * 2
 
 
+def test_poses_beyond_the_limits_do_not_count(tmp_path, capsys):
+    given = ("sweep", "motion-base", "--around", 0.67, 24, "--points", 2000, "--worst", "--quantities", "omega_1")
+    code, words, _ = run(capsys, *given)
+    assert code == 0
+    found = {}
+    for option in ((), ("--all-poses",)):
+        code, text, _ = run(
+            capsys, *given, *option, "--json", "--figure", tmp_path / "cloud.png", "--quantities", "all"
+        )
+        assert code == 0
+        found[option] = json.loads(text)
+    inside, everything = found.values()
+    share = f"within the design's limits: {inside['summary']['within_limits']} of 2000 poses"
+    assert share in " ".join(words.split())
+    assert "worst of the box within the limits" in words
+    assert inside["summary"]["within_limits"] == everything["summary"]["within_limits"] < 400
+    for part in ("summary", "worst_pose"):
+        least = [one[part]["worst"] if part == "summary" else one[part] for one in (inside, everything)]
+        assert 23.9 < least[0]["omega_1"] < 25.5
+        assert least[1]["omega_1"] < 22
+    assert inside["worst_pose"]["at_limits"]
+    code, _, said = run(capsys, "sweep", "motion-base", "--grid", "z=3.5:3.6:3", "--json")
+    assert code == 2
+    assert "none of the 3 poses is within the design's limits" in said
+    code, _, _ = run(capsys, "sweep", "motion-base", "--grid", "z=3.5:3.6:3", "--all-poses")
+    assert code == 0
+
+
+def test_a_store_of_a_design_with_limits_is_resumed_by_the_same_command(tmp_path, capsys):
+    given = ("sweep", "motion-base", *AROUND, "--points", 1000, "--out", tmp_path / "map.zarr")
+    for option in ((), ("--resume",), ("--resume", "--all-poses")):
+        code, _, said = run(capsys, *given, *option)
+        assert code == 0, said
+    assert "within_limits" in fx.open_sweep(tmp_path / "map.zarr")
+
+
 AROUND = ("--around", "0.05", "10")
 
 

@@ -16,8 +16,8 @@ def content(path):
     return {str(file.relative_to(path)): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
 
 
-def stored(path, poses=POSES, quantities=("omega_1", "cond_H"), **options):
+def stored(path, poses=POSES, quantities=("omega_1", "cond_H"), design=I, **options):
     """A complete store, computed by threads."""
-    store = fx.workspace.SweepStore.create(path, I, poses, quantities=quantities, **options)
+    store = fx.workspace.SweepStore.create(path, design, poses, quantities=quantities, **options)
     store.run()
     return store

@@ -108,3 +108,78 @@ def test_the_figure_follows_from_the_sweep(sweep, function, tmp_path):
 def test_what_cannot_be_drawn_is_told(draw, words):
     with pytest.raises(fx.FlexapodError, match=words):
         draw()
+
+
+BASE = fx.load("motion-base")
+WIDE = fx.pose_grid(x=np.linspace(-1.2, 1.2, 15), y=np.linspace(-1.2, 1.2, 13), z=np.linspace(2.0, 2.8, 11))
+VOLUME = fx.sweep(BASE, WIDE)
+
+
+def legend_of(ax):
+    return [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+def test_the_cross_of_a_map_is_within_the_limits_and_every_mark_is_named():
+    plane = VOLUME.isel(z=6)
+    assert 0 < int(plane.within_limits.sum()) < plane.within_limits.size
+    inside = np.where(plane.within_limits, plane.omega_1, np.inf)
+    for all_poses, values in ((False, inside), (True, plane.omega_1.values)):
+        ax = plots_sweep.index_map(plane, all_poses=all_poses)
+        worst = np.unravel_index(values.argmin(), values.shape)
+        x, y = ax.lines[0].get_data()
+        assert (x[0], y[0]) == (plane.x.values[worst[0]], plane.y.values[worst[1]])
+        assert f"{values.min():.5g}" in legend_of(ax)[0]
+        assert "beyond the limits" in legend_of(ax)
+    none = plane.copy(deep=True)
+    none["within_limits"][:] = False
+    assert legend_of(plots_sweep.index_map(none)) == ["beyond the limits"]
+    none.omega_1[3, 3] = np.nan
+    assert "no value" in legend_of(plots_sweep.index_map(none))
+
+
+def test_all_lengths_of_a_figure_have_one_unit():
+    ax = plots_sweep.index_map(VOLUME.isel(z=6))
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("x (m)", "y (m)")
+    assert "z 2.48 m" in ax.get_title()
+    near = plots_sweep.index_map(VOLUME.sel(x=slice(-0.9, 0.9), y=slice(-0.9, 0.9)).isel(z=6))
+    assert near.get_xlabel() == "x (m)"  # since z is held at 2.48 m
+
+
+def test_the_cloud_is_of_the_poses_within_the_limits():
+    found = fx.sweep(BASE, fx.random_poses(fx.Box.about(fx.home_pose(BASE), 0.67, 0.4), 3000))
+    inside = found.within_limits.values
+    _, y = plots_sweep.index_scatter(found).lines[0].get_data()
+    assert np.array_equal(y, found.omega_1.values[inside])
+    assert len(plots_sweep.index_scatter(found, all_poses=True).lines[0].get_data()[0]) == 3000
+    ax = plots_sweep.index_scatter(found)
+    assert f"{inside.sum()} poses within the limits of 3000" in ax.get_title()
+    assert ax.get_title().startswith("motion-base")
+    low, high = ax.get_ylim()  # the data fill the axis
+    assert np.ptp(y) > 0.85 * (high - low)
+    with pytest.raises(fx.ArgumentError, match="no pose of this sweep within the design's limits has an index"):
+        plots_sweep.index_scatter(found.assign(within_limits=found.within_limits & False))
+
+
+def test_few_poses_in_a_cell_are_dark_on_white():
+    assert plots_sweep.index_scatter(MANY).collections[0].get_cmap().name == "viridis"
+
+
+def test_a_surface_ends_at_the_limits():
+    level = 27.0
+    inside = np.where(VOLUME.within_limits, VOLUME.omega_1, np.nan)
+    axes = [VOLUME[name].values for name in "xyz"]
+    points, faces = sweep_surface._marching_cubes(inside, level, axes)
+    corners = points[np.unique(faces)]
+    assert fx.check_limits(BASE, np.pad(corners, ((0, 0), (0, 3)))).ok.mean() > 0.98  # limits bend between corners
+    there = fx.sweep(BASE, np.pad(corners, ((0, 0), (0, 3)))).omega_1.values
+    assert np.abs(there / level - 1).max() < 0.01  # linear between neighbours 17 cm apart
+    assert "within the limits" in plots_sweep.iso_surface(VOLUME, level).get_title()
+    assert "within" not in plots_sweep.iso_surface(VOLUME, level, all_poses=True).get_title()
+
+
+def test_a_line_is_dotted_beyond_the_limits():
+    ax = plots_sweep.index_line(VOLUME.isel(y=6, z=6))
+    beyond, within = ax.lines
+    assert legend_of(ax) == ["beyond the limits", "within the limits"]
+    assert np.isnan(within.get_ydata()).sum() == (~VOLUME.isel(y=6, z=6).within_limits.values).sum()
+    assert np.isfinite(beyond.get_ydata()).all()

@@ -78,6 +78,23 @@ def test_one_process_does_one_job_after_another(job: Work) -> None:
     np.testing.assert_array_equal(again, rows[:100])
 
 
+def test_a_cloud_and_the_worst_pose_are_within_the_limits(job: Work) -> None:
+    text = design_file.find("motion-base").read_text(encoding="utf-8")
+    machine, asked = fx.load("motion-base"), {"design": text, "pose": [0.0, 0.0, 2.39, 0.0, 0.0, 0.0]}
+    box = pose_ranges.box(machine)
+    for everywhere in (False, True):
+        cloud = job("cloud", box=box, points=60_000, seed=1, all_poses=everywhere, **asked)
+        rows = rows_of(cloud, 8)
+        ok = fx.check_limits(machine, fx.Pose.from_rpy(*rows[:, :3].T, *np.radians(rows[:, 3:6]).T)).ok
+        assert cloud[-2][0]["within"] == ok.sum()
+        np.testing.assert_array_equal(np.isfinite(rows[:, 6]), ok | everywhere)
+        worst = job("worst", box=box, all_poses=everywhere, **asked)[0][0]
+        assert worst["index"] < np.nanmin(rows[:, 6])
+        assert (worst["within"] is None) == everywhere
+        assert ("of the box is within the limits" in worst["words"]) != everywhere
+    assert "all_poses is 1; it must be true or false" in job.failure("cloud", box=box, all_poses=1)
+
+
 def test_a_slice_holds_the_other_coordinates(job: Work) -> None:
     found = rows_of(job("slice", box=BOX, across="x", up="pitch", side=3), 3).reshape(3, 3, 3)
     xs, pitch = np.linspace(-0.01, 0.01, 3), np.radians([-5, 0, 5])

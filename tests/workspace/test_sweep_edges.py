@@ -10,8 +10,8 @@ import pytest
 from tests.helpers.stores import BOX, I
 
 import flexapod as fx
-from flexapod.plots import sweep
-from flexapod.workspace import summary, worst
+from flexapod.plots import sweep, sweep_scatter
+from flexapod.workspace import summary
 from flexapod.workspace.pose_sets import described
 from flexapod.workspace.store import block_job, dask_cluster, file_formats
 
@@ -33,7 +33,7 @@ def test_a_sweep_without_an_index_is_not_summed_up():
     with pytest.raises(fx.ArgumentError, match="no pose of this sweep has an index"):
         sweep.index_scatter(found)
     with pytest.raises(fx.PoseError, match=r"no pose of Box.* could be computed\. Look at the status"):
-        worst._apart(np.zeros((4, 6)), np.full(4, np.nan), BOX, 2)
+        fx.worst_pose(nowhere()[0], fx.Box(yaw=(-1e-12, 1e-12)), samples=4)
 
 
 def test_bins_of_the_index_alone_and_over_decades(monkeypatch):
@@ -162,7 +162,8 @@ def test_scatter_reads_block_by_block_and_skips_those_without_an_index():
     found = fx.sweep(I, fx.random_poses(BOX, 400, seed=1))
     found["omega_1"][:200] = np.nan
     found["omega_1"].encoding["chunks"] = (100,)
-    low, high, count = sweep._ranges(found)
+    cloud = sweep_scatter._Cloud(summary.Counted(found, False))
+    low, high, count = cloud.low, cloud.high, cloud.count
     assert count == 200
     assert low[0] == found.omega_1.values[200:].min()
     assert high[1] == found.cond_H.values[200:].max()
@@ -183,7 +184,7 @@ def test_grids_that_no_map_can_show_are_scattered(monkeypatch):
     axes = {"x": [0.0, 0.05], "y": [0.0, 0.05], "z": [0.9, 1.0], "yaw": [0.0, 0.1]}
     found = fx.sweep(I, fx.pose_grid(**axes))
     assert sweep.auto(found).get_xlabel() == "cond(H)"
-    monkeypatch.setattr(sweep, "_DOTS", 10)
+    monkeypatch.setattr(sweep_scatter, "_DOTS", 10)
     bare = sweep.index_scatter(found, colorbar=False)
     assert len(bare.figure.axes) == 1
     assert len(sweep.index_scatter(found).figure.axes) == 2

@@ -83,6 +83,50 @@ def test_bad_poses_are_counted_and_left_out():
     assert summary.worst.omega_1 == np.delete(fx.sweep(I, POSES.rows(0, 100)).omega_1.values, 3).min()
 
 
+LIMITED = fx.load("motion-base")
+REGION = fx.random_poses(fx.Box.about(fx.home_pose(LIMITED), 0.67, 0.4), 5000, seed=2)
+
+
+def test_poses_beyond_the_limits_do_not_count(tmp_path, monkeypatch):
+    found = fx.sweep(LIMITED, REGION)
+    omega, cond, inside = (found[name].values for name in ("omega_1", "cond_H", "within_limits"))
+    assert np.array_equal(inside, fx.check_limits(LIMITED, fx.Pose.from_rpy(*REGION.rows(0, 5000).T)).ok)
+    stored(tmp_path / "map.zarr", REGION, None, chunk=700, design=LIMITED)
+    for sweep in (found, fx.open_sweep(tmp_path / "map.zarr")):
+        summary = fx.summarise(sweep, at_least=27.0)
+        assert summary.within_limits == inside.sum()
+        assert summary.worst.number == np.where(inside, omega, np.inf).argmin()
+        assert summary.best.number == np.where(inside, omega, -np.inf).argmax()
+        assert summary.worst_conditioned.cond_H == cond[inside].max()
+        assert list(summary.quantiles.values()) == np.quantile(omega[inside], list(summary.quantiles)).tolist()
+        assert summary.correlation == pytest.approx(spearmanr(omega[inside], cond[inside]).statistic, rel=1e-12)
+        assert summary.above.fraction == (omega[inside] >= 27).mean()
+        assert summary.above.volume == pytest.approx((inside & (omega >= 27)).mean() * found.attrs["box_volume"])
+        everything = fx.summarise(sweep, at_least=27.0, all_poses=True)
+        assert everything.within_limits == inside.sum()
+        assert everything.worst.omega_1 == omega.min() < summary.worst.omega_1
+        assert everything.above.fraction == (omega >= 27).mean()
+    monkeypatch.setattr(module, "EXACT", 10)
+    binned = fx.summarise(found)
+    assert binned.quantiles[0.5] == pytest.approx(np.median(omega[inside]), rel=1e-3)
+
+
+def test_what_was_not_swept_does_not_limit():
+    found = fx.sweep(LIMITED, REGION, quantities=["omega_1"])
+    assert "within_limits" not in found
+    assert fx.summarise(found).within_limits is None
+    assert fx.summarise(found).worst.omega_1 == found.omega_1.values.min()
+    assert "within_limits" not in FOUND  # a design without limits
+    assert "within_limits" in fx.sweep(LIMITED, REGION.rows(0, 3))
+
+
+def test_a_sweep_out_of_reach_is_told():
+    found = fx.sweep(LIMITED, fx.pose_grid(z=[3.5, 3.6]))
+    with pytest.raises(fx.PoseError, match="none of the 2 poses is within the design's limits"):
+        fx.summarise(found)
+    assert fx.summarise(found, all_poses=True).within_limits == 0
+
+
 def test_a_grid_names_its_worst_pose():
     found = fx.sweep(I, fx.pose_grid(x=[0.0, 0.1, 0.2], y=0.2, z=[0.7, 0.8]), quantities=("omega_1",))
     at = fx.summarise(found).worst

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import xarray as xr
 
-from flexapod.conventions import AXES, ROTATIONS, Array
+from flexapod.conventions import AXES, ROTATIONS, TRANSLATIONS, Array
 from flexapod.errors import ArgumentError
+from flexapod.plots.style import INK
 from flexapod.workspace.quantities import QUANTITIES
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 LABELS = {
     "omega_1": r"lowest natural frequency $\omega_1$ (rad/s)",
@@ -32,13 +38,18 @@ def grid_values(sweep: xr.Dataset, quantity: str, varied: int) -> xr.DataArray:
 
 
 def axis_of(values: xr.DataArray, name: str) -> tuple[Array, str]:
-    """Positions along a coordinate as people read them, and its label."""
+    """Positions along a coordinate as people read them, and its label; all lengths of a figure have one unit."""
     positions = np.asarray(values[name].values, dtype=float)
     if name in ROTATIONS:
         return np.degrees(positions), f"{name} (°)"
-    if np.abs(positions).max() <= 1:
-        return 1000 * positions, f"{name} (mm)"
-    return positions, f"{name} (m)"
+    factor, unit = _length_unit(values)
+    return factor * positions, f"{name} ({unit})"
+
+
+def _length_unit(values: xr.DataArray) -> tuple[float, str]:
+    """mm where no coordinate of a figure is beyond a metre, else m."""
+    reach = max(np.abs(values.coords[name]).max() for name in TRANSLATIONS if name in values.coords)
+    return (1000.0, "mm") if reach <= 1 else (1.0, "m")
 
 
 def held(values: xr.DataArray) -> str:
@@ -46,9 +57,41 @@ def held(values: xr.DataArray) -> str:
     words = []
     for name in AXES:
         if name in values.coords and name not in values.dims:
-            number = float(values[name])
-            words.append(f"{name} {np.degrees(number):.4g}°" if name in ROTATIONS else f"{name} {1000 * number:.4g} mm")
+            position, label = axis_of(values, name)
+            unit = label.split("(")[1][:-1]
+            words.append(f"{name} {float(position):.4g}{'' if unit == '°' else ' '}{unit}")
     return ", ".join(words)
+
+
+def entitle(ax: Axes, sweep: xr.Dataset, *lines: str) -> None:
+    """The design above the axes, and lines of words."""
+    design = str(sweep.attrs.get("design", ""))
+    ax.set_title("\n".join(filter(None, (design, *lines))), fontsize=10, color=INK)
+
+
+def data_range(ax: Axes, values: Array) -> None:
+    """The range of the values on the axis of the index: from zero where they go near it, else no empty strip below."""
+    good = values[np.isfinite(values)]
+    if not good.size:
+        return
+    low, high = float(good.min()), float(good.max())
+    room = 0.06 * (high - low) or 0.05 * high or 1.0
+    ax.set_ylim(0.0 if low < 0.35 * high else low - room, high + room)
+
+
+def new_axes() -> Axes:
+    from matplotlib.figure import Figure
+
+    ax: Axes = Figure(figsize=(6.4, 4.8), layout="constrained").add_subplot()
+    ax.spines[["top", "right"]].set_visible(False)
+    return ax
+
+
+def beyond_limits(sweep: xr.Dataset, dims: tuple[str, ...]) -> np.ndarray | None:
+    """Where poses of a grid are beyond the design's limits; None where that was not swept."""
+    if "within_limits" not in sweep:
+        return None
+    return ~np.asarray(sweep["within_limits"].transpose(*dims).values, dtype=bool)
 
 
 def spelled(quantity: str) -> str:

@@ -217,20 +217,22 @@ class JobStarted(TypedDict):
 
 
 class Progress(TypedDict):
-    """How far a job is. With `points` and `rows` come binary float32 numbers."""
+    """How far a job is; `points` and `rows` come with float32 numbers. `within`: points so far within the limits."""
 
     type: Literal["points", "rows", "progress"]
     done: float
     total: float
     seconds: float
+    within: int | None
 
 
 class WorstPose(TypedDict):
-    """The pose (m, degrees) of the lowest stability index (rad/s) in the box."""
+    """The pose (m, degrees) of the lowest index (rad/s) in the box. `within`: part of it that is within the limits."""
 
     type: Literal["found"]
     pose: list[float]
     index: OptionalNumber
+    within: float | None
     words: str
 
 

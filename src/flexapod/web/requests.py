@@ -99,6 +99,14 @@ def choice(asked: dict[str, Any], name: str, allowed: tuple[str, ...]) -> str:
     return str(value)
 
 
+def yes_or_no(asked: dict[str, Any], name: str, default: bool) -> bool:
+    """True or false."""
+    value = asked.get(name, default)
+    if not isinstance(value, bool):
+        raise RequestError(f"{name} is {value!r}; it must be true or false")
+    return value
+
+
 def _finite(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 

@@ -25,18 +25,23 @@ MOST_POINTS = 5_000_000  #: of a cloud, for the browser's memory: 32 bytes each
 def cloud(spec: dict[str, Any]) -> Iterator[Message]:
     """Random poses in a box: rows of x, y, z, roll, pitch, yaw (m, degrees), stability index and cond(H).
 
-    A pose is rounded to float32 before the computation, so that its numbers belong to the pose that the page gets.
+    Beyond the design's limits both are NaN, unless `all_poses` is asked for; `within` counts those within so far. A
+    pose is rounded to float32 before the computation, so that its numbers belong to the pose that the page gets.
     """
     question, count = requests.question(spec), int(requests.number(spec, "points", 100_000, 1, MOST_POINTS))
     poses = random_poses(_box(spec), count, seed=int(requests.number(spec, "seed", 0, 0, 2**31)))
-    began = time.perf_counter()
+    everywhere = requests.yes_or_no(spec, "all_poses", False)
+    began, within = time.perf_counter(), 0
     for start in range(0, count, CHUNK):
         stop = min(start + CHUNK, count)
         six = poses.rows(start, stop)
         six[:, 3:] = np.degrees(six[:, 3:])
         six = six.astype("f4").astype(float)
-        rows = np.concatenate([six, _quantities(question, six, ("omega_1", "cond_H"))], axis=1)
-        yield _progress("points", stop, count, began), float32(rows)
+        found = _quantities(question, six, ("omega_1", "cond_H", "within_limits"))
+        inside = found[:, 2] > 0
+        within += int(inside.sum())
+        values = found[:, :2] if everywhere else np.where(inside[:, None], found[:, :2], np.nan)
+        yield _progress("points", stop, count, began, within), float32(np.concatenate([six, values], axis=1))
 
 
 def slice_map(spec: dict[str, Any]) -> Iterator[Message]:
@@ -59,19 +64,24 @@ def slice_map(spec: dict[str, Any]) -> Iterator[Message]:
 
 
 def worst(spec: dict[str, Any]) -> Iterator[Message]:
-    """The pose of the lowest stability index in the box."""
+    """The pose of the lowest stability index in the box: of those within the limits, or by `all_poses` of all."""
     from flexapod.workspace.worst import worst_pose
 
     question = requests.question(spec)
-    found = worst_pose(question.hexapod, _box(spec), joint=question.joint)
+    everywhere = requests.yes_or_no(spec, "all_poses", False)
+    found = worst_pose(question.hexapod, _box(spec), joint=question.joint, all_poses=everywhere)
     what = "singular poses lie in the box; here the index is" if found.singular else "least index"
     edge = f"; on the box's edge in {', '.join(found.at_bounds)}" if found.at_bounds else ""
-    words = f"{what} {found.omega_1:.5g} rad/s, found by {found.agreed} of {found.starts} searches{edge}"
+    limits = f"; at limits: {', '.join(found.at_limits)}" if found.at_limits else ""
+    share = found.share_within_limits
+    part = f"; {share:.3g} of the box is within the limits" if share < 1 else ""
+    words = f"{what} {found.omega_1:.5g} rad/s, found by {found.agreed} of {found.starts} searches{edge}{limits}{part}"
     yield (
         {
             "type": "found",
             "pose": in_degrees(found.pose),
             "index": found.omega_1,
+            "within": None if np.isnan(share) else share,
             "words": words[0].upper() + words[1:],
         },
         b"",
@@ -90,5 +100,7 @@ def _quantities(question: requests.Question, six: Array, names: tuple[str, ...])
     return np.stack([np.asarray(found[name], dtype=float) for name in names], axis=1)
 
 
-def _progress(kind: Literal["points", "rows"], done: int, total: int, began: float) -> Progress:
-    return {"type": kind, "done": done, "total": total, "seconds": time.perf_counter() - began}
+def _progress(
+    kind: Literal["points", "rows"], done: int, total: int, began: float, within: int | None = None
+) -> Progress:
+    return {"type": kind, "done": done, "total": total, "seconds": time.perf_counter() - began, "within": within}

@@ -139,7 +139,7 @@ def summarise(sweep: xr.Dataset, at_least: float | None = None, *, all_poses: bo
     """
     if "omega_1" not in sweep:
         raise ArgumentError("sweep does not hold omega_1, which a summary needs. Sweep it.")
-    counted = _Counted(sweep, all_poses)
+    counted = Counted(sweep, all_poses)
     first = _extremes(counted)
     both = "cond_H" in sweep and first.usable > 1
     names = ("omega_1", "cond_H") if both else ("omega_1",)
@@ -164,7 +164,7 @@ def summarise(sweep: xr.Dataset, at_least: float | None = None, *, all_poses: bo
     )
 
 
-class _Counted:
+class Counted:
     """The poses of a sweep that count: those with an index, and unless all are asked for, those within the limits."""
 
     def __init__(self, sweep: xr.Dataset, all_poses: bool) -> None:
@@ -204,7 +204,7 @@ def columns(sweep: xr.Dataset, names: tuple[str, ...]) -> Iterator[tuple[int, li
         yield block.start, [np.asarray(part[name].values).ravel() for name in names]
 
 
-def _extremes(counted: _Counted) -> _Extremes:
+def _extremes(counted: Counted) -> _Extremes:
     sweep = counted.sweep
     poses, with_index, statuses, within = _counts(sweep)
     names = tuple(name for name in ("omega_1", "cond_H") if name in sweep)
@@ -253,7 +253,7 @@ def _at(sweep: xr.Dataset, number: int) -> At:
     return At(number, pose, float(one["omega_1"]), cond)
 
 
-def _above(counted: _Counted, extremes: _Extremes, wanted: float) -> Above:
+def _above(counted: Counted, extremes: _Extremes, wanted: float) -> Above:
     attrs = counted.sweep.attrs
     good = sum(int((values[0] >= wanted).sum()) for _, values in counted.columns(("omega_1",)))
     computed = extremes.poses - extremes.statuses.get(statuses()[PENDING], 0)

@@ -19,7 +19,7 @@ from flexapod.workspace.region import RegionLike, as_region, home_of
 
 SINGULAR = 1e-9  # omega_1 / omega_6 below which the index is zero to rounding
 AGREE = 1e-6  # relative difference of indices that count as the same minimum
-_TOUCHES = 1e-6  # margin of a limit at which the pose is
+_TOUCHES = 1e-6  # margin of a limit, and share of the box's width from its edge, at which the pose is
 
 
 class WorstPose(NamedTuple):
@@ -149,7 +149,8 @@ def worst_pose(
     found = sorted(((index.root(end), end) for end in ends), key=lambda one: one[0])
     minima = _distinct(found, box)
     least, pose = minima[0]
-    edge = (pose <= box.low) | (pose >= box.high)
+    touches = _TOUCHES * (box.high - box.low)
+    edge = (pose <= box.low + touches) | (pose >= box.high - touches)
     return WorstPose(
         pose=pose,
         omega_1=least,

@@ -184,19 +184,21 @@ export interface JobStarted {
   waiting: boolean
 }
 
-/** How far a job is. With `points` and `rows` come binary float32 numbers. */
+/** How far a job is; `points` and `rows` come with float32 numbers. `within`: points so far within the limits. */
 export interface Progress {
   type: 'points' | 'rows' | 'progress'
   done: number
   total: number
   seconds: number
+  within: number | null
 }
 
-/** The pose (m, degrees) of the lowest stability index (rad/s) in the box. */
+/** The pose (m, degrees) of the lowest index (rad/s) in the box. `within`: part of it that is within the limits. */
 export interface WorstPose {
   type: 'found'
   pose: number[]
   index: OptionalNumber
+  within: number | null
   words: string
 }
 

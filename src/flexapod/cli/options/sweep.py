@@ -41,6 +41,7 @@ class Options:
     scheduler: str | None
     at_least: float | None
     worst: bool
+    all_poses: bool
     figure: Path | None
     level: float | None
 
@@ -95,7 +96,8 @@ output_options = common.stack(
         default="omega_1,cond_H",
         show_default=True,
         metavar="NAMES",
-        help="What to compute, separated by commas; `all` for everything.",
+        help="What to compute, separated by commas; `all` for everything. Of a design with limits, within_limits comes "
+        "to it.",
     ),
     click.option(
         "--out",
@@ -138,6 +140,11 @@ reading_options = common.stack(
         help="A wanted stability index: what part of the workspace reaches it?",
     ),
     click.option("--worst", is_flag=True, help="Refine the worst pose of the box by descent from several starts."),
+    click.option(
+        "--all-poses",
+        is_flag=True,
+        help="Let poses beyond the design's limits count in the summary, the worst pose and the figure as well.",
+    ),
     click.option(
         "--figure",
         type=click.Path(path_type=Path, dir_okay=False),

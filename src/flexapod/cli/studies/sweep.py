@@ -20,6 +20,7 @@ from flexapod.plots import sweep as plots
 from flexapod.report.studies.sweep import study
 from flexapod.report.study import Study
 from flexapod.workspace.box import Box
+from flexapod.workspace.limit_margins import is_limited
 from flexapod.workspace.pose_sets import PoseSet, given_poses
 from flexapod.workspace.quantities import QUANTITIES, chosen
 from flexapod.workspace.sampling import low_discrepancy, random_poses
@@ -35,20 +36,24 @@ def compute(options: Options) -> Study:
     """The sweep that the options ask for, its summary, its worst pose and its figure."""
     hexapod = common.load_design(options.design, options.changes)
     points, box = _points(hexapod, options)
-    quantities = _quantities(options.quantities)
+    quantities = _quantities(hexapod, options.quantities)
     if options.worst and box is None:
         raise click.UsageError("--worst looks for the worst pose of a box. Give --box or --around.")
     if not options.streamed and (options.resume or options.scheduler):
         raise click.UsageError("--resume and --scheduler need a store to write to. Give --out NAME.zarr.")
     found = (_streamed if options.streamed else _in_memory)(hexapod, points, quantities, options)
-    summary = summarise(found, options.at_least) if options.summary and "omega_1" in found else None
-    worst = None
-    if options.worst and box is not None:
-        worst = worst_pose(hexapod, box, joint=options.joint, seed=options.seed, threads=options.threads)
+    everywhere = options.all_poses
     if options.figure is not None:
-        plots.save(plots.auto(found, options.level), options.figure)
+        plots.save(plots.auto(found, options.level, all_poses=everywhere), options.figure)
         click.echo(f"wrote {options.figure}", err=True)
-    return study(hexapod, found, options.out, summary, worst)
+    summary = worst = None
+    if options.summary and "omega_1" in found:
+        summary = summarise(found, options.at_least, all_poses=everywhere)
+    if options.worst and box is not None:
+        worst = worst_pose(
+            hexapod, box, joint=options.joint, seed=options.seed, threads=options.threads, all_poses=everywhere
+        )
+    return study(hexapod, found, options.out, summary, worst, all_poses=everywhere)
 
 
 def _points(hexapod: Hexapod, options: Options) -> tuple[PoseSet, Box | None]:
@@ -70,9 +75,11 @@ def _points(hexapod: Hexapod, options: Options) -> tuple[PoseSet, Box | None]:
     return make(box, options.points or DEFAULT_POINTS, seed=options.seed), box
 
 
-def _quantities(text: str) -> tuple[str, ...]:
+def _quantities(hexapod: Hexapod, text: str) -> tuple[str, ...]:
+    """What is asked for, and of a design with limits whether they are kept."""
     names = [name.strip() for name in text.split(",") if name.strip()]
-    return tuple(QUANTITIES) if names == ["all"] else chosen(names)
+    limits = ("within_limits",) if names and is_limited(hexapod) else ()
+    return tuple(QUANTITIES) if names == ["all"] else chosen((*names, *limits), hexapod)
 
 
 def _in_memory(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options) -> xr.Dataset:

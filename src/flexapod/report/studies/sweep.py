@@ -22,19 +22,26 @@ POSE_HEAD = ("x m", "y m", "z m", "roll°", "pitch°", "yaw°")
 
 
 def study(
-    hexapod: Hexapod, sweep: xr.Dataset, out: Path | None, summary: SweepSummary | None, worst: WorstPose | None
+    hexapod: Hexapod,
+    sweep: xr.Dataset,
+    out: Path | None,
+    summary: SweepSummary | None,
+    worst: WorstPose | None,
+    *,
+    all_poses: bool = False,
 ) -> Study:
-    """The study of a sweep. out: where it was written; summary, worst: where asked for."""
+    """The study of a sweep. out: where it was written; summary, worst: where asked for; all_poses: see `summarise`."""
     data: dict[str, Any] = {"attributes": dict(sweep.attrs), "out": None if out is None else str(out)}
     rows, tables = [], []
+    within = " within the limits" if "within_limits" in sweep and not all_poses else ""
     if summary is not None:
-        data["summary"] = _summary_data(summary)
-        rows += _summary_rows(summary)
-        tables += [_extremes(summary), _quantiles(summary)]
+        data["summary"] = {**_summary_data(summary), "all_poses": all_poses}
+        rows += _summary_rows(summary, within)
+        tables += [_extremes(summary, within), _quantiles(summary, within)]
     if worst is not None:
         data["worst_pose"] = _worst_data(worst)
-        rows += _worst_rows(worst)
-    drawing = Drawing("sweep", "The index over the poses", partial(_figure, sweep))
+        rows += _worst_rows(worst, within)
+    drawing = Drawing("sweep", f"The index over the poses{within}", partial(_figure, sweep, all_poses))
     return Study(
         hexapod=hexapod,
         subject="sweep",
@@ -46,8 +53,8 @@ def study(
     )
 
 
-def _figure(sweep: xr.Dataset) -> Figure:
-    figure = plots.sweep.auto(sweep).figure
+def _figure(sweep: xr.Dataset, all_poses: bool) -> Figure:
+    figure = plots.sweep.auto(sweep, all_poses=all_poses).figure
     assert isinstance(figure, Figure)
     return figure
 
@@ -58,34 +65,41 @@ def pose_text(pose: Array) -> str:
     return f"({x:.5g}, {y:.5g}, {z:.5g}) m, ({', '.join(f'{math.degrees(a):.4g}' for a in angles)})°"
 
 
-def _summary_rows(summary: SweepSummary) -> list[Row]:
+def _summary_rows(summary: SweepSummary, within: str) -> list[Row]:
+    """within: what the poses that count are called, after "poses"."""
     statuses = ", ".join(f"{count} {word}" for word, count in summary.statuses.items())
     rows = [Row(f"{summary.poses} poses:", statuses)]
+    if summary.within_limits is not None:
+        share = f"{summary.within_limits} of {summary.poses} poses ({summary.within_limits / summary.poses:.3%});"
+        rest = "what follows is of these" if within else "what follows is of all poses, also of those beyond the limits"
+        rows.append(Row("within the design's limits:", share, note=rest))
     if not math.isnan(summary.correlation):
         spread = f"at equal cond(H) the 95 % quantile of ω1 is {summary.spread:.3g} times the 5 % quantile"
         rows.append(Row("rank correlation of ω1 with cond(H):", f"{summary.correlation:.3f};", note=spread))
     if summary.above is not None:
         above = summary.above
         volume = "" if math.isnan(above.volume) else f", {above.volume:.5g} {above.volume_unit}"
-        share = f"{above.fraction:.3%} of the workspace (± {above.standard_error:.3%}){volume}"
+        whole = f"the poses{within}" if within else "the workspace"
+        share = f"{above.fraction:.3%} of {whole} (± {above.standard_error:.3%}){volume}"
         rows.append(Row(f"ω1 ≥ {above.omega_1:g} rad/s:", share))
     return rows
 
 
-def _worst_rows(worst: WorstPose) -> list[Row]:
-    where = f"at {pose_text(worst.pose)}"
+def _worst_rows(worst: WorstPose, within: str) -> list[Row]:
+    where, label = f"at {pose_text(worst.pose)}", f"worst of the box{within}:"
     if worst.singular:
-        first = Row("worst of the box:", f"singular, ω1 = 0, {where}")
+        first = Row(label, f"singular, ω1 = 0, {where}")
     else:
         edge = f", at the bounds of {', '.join(worst.at_bounds)}" if worst.at_bounds else ""
-        first = Row("worst of the box:", f"ω1 = {worst.omega_1:.8g}", "rad/s", note=where + edge)
+        limits = f", at limits: {', '.join(worst.at_limits)}" if worst.at_limits else ""
+        first = Row(label, f"ω1 = {worst.omega_1:.8g}", "rad/s", note=where + edge + limits)
     told = (
         f"descents ended there; {len(worst.minima)} local minima; least of the sweep before: {worst.sampled:.6g} rad/s"
     )
     return [first, Row(f"{worst.agreed} of {worst.starts}", told)]
 
 
-def _extremes(summary: SweepSummary) -> Table:
+def _extremes(summary: SweepSummary, within: str) -> Table:
     all_of_them = {
         "worst ω1": summary.worst,
         "best ω1": summary.best,
@@ -100,12 +114,12 @@ def _extremes(summary: SweepSummary) -> Table:
         Column("cond(H)", [f"{at.cond_H:.4g}" for at in found.values()]),
         *(Column(title, [pose[i] for pose in poses]) for i, title in enumerate(POSE_HEAD)),
     ]
-    return Table(columns, title="Extremes")
+    return Table(columns, title=f"Extremes{within}")
 
 
-def _quantiles(summary: SweepSummary) -> Table:
+def _quantiles(summary: SweepSummary, within: str) -> Table:
     columns = [Column(f"{q:.0%}", [f"{value:.5g}"]) for q, value in summary.quantiles.items()]
-    return Table(columns, title="Quantiles of ω1, rad/s")
+    return Table(columns, title=f"Quantiles of ω1{within}, rad/s")
 
 
 def _summary_data(summary: SweepSummary) -> dict[str, Any]:
