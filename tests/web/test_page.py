@@ -9,14 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.web.acts import number, saved, type_in, wait_for_index
 
 import flexapod as fx
 
 MACHINE = fx.load("mukherjee-ii")
-
-
-def number(text: str) -> float:
-    return float(text.replace("−", "-"))
 
 
 def shown_omega(page: Any) -> list[float]:
@@ -25,22 +22,6 @@ def shown_omega(page: Any) -> list[float]:
 
 def omega_at(x: float, y: float, z: float, *rpy_deg: float, machine: fx.Hexapod = MACHINE) -> np.ndarray:
     return fx.natural_modes(machine, fx.Pose.from_rpy(x, y, z, *np.radians(rpy_deg or (0, 0, 0)))).omega
-
-
-def wait_for_index(page: Any, expected: float) -> None:
-    page.locator("#index", has_text=re.compile(f"^{re.escape(f'{expected:#.5g}'.rstrip('.'))}$")).wait_for()
-
-
-def type_in(page: Any, label: str, text: str) -> None:
-    box = page.get_by_label(label, exact=True)
-    box.fill(text)
-    box.press("Enter")
-
-
-def saved(page: Any, click: Any) -> bytes:
-    with page.expect_download() as download:
-        click()
-    return Path(download.value.path()).read_bytes()
 
 
 def test_a_pose_by_number_gives_the_library_s_frequencies(opened: Any) -> None:
@@ -381,3 +362,49 @@ def test_a_design_of_one_s_own_is_shared_whole(opened: Any, tmp_path: Path) -> N
     wait_for_index(page, expected)
     page.wait_for_timeout(600)
     wait_for_index(opened(page.url.split("#")[1]), expected)
+
+
+def test_a_broken_draft_is_saved_as_it_is_written(opened: Any, tmp_path: Path) -> None:
+    """It was once saved as the machine before, and the draft was lost."""
+    text = MACHINE.to_toml().replace("mass = 4.0", "mass = -4.0")
+    file = tmp_path / "bad.toml"
+    file.write_text(text)
+    page = opened("design=motion-base&tab=modes")
+    page.set_input_files("#design-file", file)
+    page.locator(".errors li").wait_for()
+    assert saved(page, lambda: page.get_by_role("button", name="Save TOML").click()).decode() == text
+    page.locator("#design .hint", has_text="as it is written; it is not the machine shown").wait_for()
+    type_in(page, "Platform + payload kg", "500")  # changes the machine shown, and leaves the draft
+    page.locator(".readout[data-answer=current]").wait_for()
+    page.wait_for_timeout(400)
+    assert page.get_by_label("Design file (TOML)").input_value() == text
+    page.get_by_label("View of the design").select_option("form")
+    heavy = fx.load("motion-base").replace({"platform.mass": 500.0})
+    shown = saved(page, lambda: page.get_by_role("button", name="Save TOML").click()).decode()
+    assert fx.Hexapod.from_toml(shown) == heavy
+
+
+def test_a_simulation_tells_its_speed_ramp_and_rotation_vectors(opened: Any) -> None:
+    page = opened("design=motion-base&tab=time")
+    assert "rises over the first tenth of the duration" in page.locator("#time").text_content()
+    page.clock.install()
+    page.locator("#simulate").click()
+    page.locator("#time .progress-words", has_text="The motion rises over the first 0.1 s").wait_for()
+    now = page.locator("#time .now")
+    assert "8.00 times slower" in now.text_content()
+    page.get_by_role("button", name="Pause").click()
+    page.get_by_label("Speed").select_option("1")
+    assert "in real time" in now.text_content()
+    page.get_by_label("Speed").select_option("100")
+    assert "100 times slower" in now.text_content()
+    start = number(now.text_content().split(" s")[0])
+    page.get_by_role("button", name="Play").click()
+    page.clock.run_for(10_000)
+    gone = (number(now.text_content().split(" s")[0]) - start) % 1.0
+    assert gone == pytest.approx(0.1, abs=0.02)  # s in ten seconds
+    names = page.locator("#time .keys").first.text_content()
+    assert "about y" in names
+    assert "pitch" not in names
+    head = saved(page, lambda: page.get_by_role("button", name="Simulation as CSV").click()).decode().splitlines()[0]
+    assert "platform_rotation_vector_y_rad" in head
+    assert "pitch" not in head

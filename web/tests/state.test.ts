@@ -1,12 +1,45 @@
 import { expect, test } from 'vitest'
 import { allEqual, blank, put, shaped } from '../src/panels/nested'
 import { fromAddress, toAddress } from '../src/state/address'
+import { initialOptions, OPTION_KEYS, OPTIONS } from '../src/state/options'
+import { differences, listed } from '../src/state/question'
 import { type Page, store } from '../src/state/store'
 
 const PRESETS = { 'motion-base': 'name = "x"' }
 
+/** Options whose other values must be looked up: choices. */
+const OTHERS: Partial<Page> = {
+  tab: 'time',
+  joint: 'spin_free',
+  unit: 'm',
+  colour: 'strain',
+  view: '1,-2,3,0,0,0.5',
+  points: '10000',
+  scale: 'log',
+  map: 'condition',
+  across: 'yaw',
+  up: 'roll',
+  response: 'leg_force',
+  panels: 'phase',
+  output: '6',
+  frequency_unit: 'rad',
+  shake_axis: 'x',
+  motion: 'csv',
+  motion_axis: 'pitch',
+  speed: '1000',
+  design_view: 'toml',
+}
+
+function differentFrom(value: unknown): unknown {
+  if (typeof value === 'boolean') return !value
+  if (typeof value === 'number') return value === 1 ? 0.5 : 1
+  return ['base about x', 'y']
+}
+
 async function restored(patch: Partial<Page>): Promise<Partial<Page>> {
-  return fromAddress(`#${await toAddress({ ...store.page, ...patch })}`, PRESETS)
+  const { state, faults } = await fromAddress(`#${await toAddress({ ...store.page, ...patch })}`, PRESETS)
+  expect(faults).toEqual([])
+  return state
 }
 
 test('an address restores the state of a page', async () => {
@@ -21,7 +54,7 @@ test('an address restores the state of a page', async () => {
     unit: 'm',
     tab: 'legs',
   }
-  expect(await restored(state)).toEqual(state)
+  expect(await restored(state)).toEqual({ ...initialOptions(), ...state })
 })
 
 test('a design of its own is packed into the address', async () => {
@@ -31,11 +64,56 @@ test('a design of its own is packed into the address', async () => {
   expect((await toAddress({ ...store.page, text })).length).toBeLessThan(300)
 })
 
-test('what an address says wrongly is left out', async () => {
-  const wrong = 'design=none&pose=1,2,x,4,5,6&mode=7&joint=ball&colour=red&unit=inch&changes={"a":1&box=1,2'
-  expect(await fromAddress(wrong, PRESETS)).toEqual({})
-  expect(await fromAddress('mode=2.5', PRESETS)).toEqual({ changes: {} })
-  expect(await fromAddress('toml=%%%&tab=time', PRESETS)).toMatchObject({ preset: '', text: '', tab: 'time' })
+test('what an address leaves out is as at first', async () => {
+  const { state } = await fromAddress('design=motion-base', PRESETS)
+  expect(state).toEqual({ preset: 'motion-base', text: PRESETS['motion-base'], changes: {}, ...initialOptions() })
+})
+
+test('every option is in the address, and comes back as it was', async () => {
+  for (const key of OPTION_KEYS) {
+    const other = OTHERS[key] ?? differentFrom(OPTIONS[key].initial)
+    expect(await restored({ preset: 'motion-base', [key]: other }), key).toMatchObject({ [key]: other })
+  }
+})
+
+test('what an address says wrongly is told, and the rest is used', async () => {
+  const wrong =
+    'design=none&pose=1,2,x,4,5,6&mode=7&joint=ball&colour=red&unit=inch&changes={"a":1&box=1,2&seed=&what=1&labels=1'
+  const { state, faults } = await fromAddress(wrong, PRESETS)
+  expect(state).toEqual({ changes: {}, ...initialOptions() })
+  const told = [
+    '“none”',
+    'six numbers',
+    'mode',
+    'joint',
+    'colour',
+    'unit',
+    'changes',
+    'twelve',
+    'seed',
+    'what',
+    'labels',
+  ]
+  for (const word of told) expect(faults.join(), word).toContain(word)
+  expect(faults.length).toBe(told.length)
+  for (const name of ['constructor', 'toString', '__proto__'])
+    expect((await fromAddress(`design=${name}`, PRESETS)).faults[0]).toContain(`no design “${name}”`)
+  for (const toml of ['%%%', 'abc'])
+    expect((await fromAddress(`toml=${toml}&tab=time`, PRESETS)).faults).toEqual([
+      'the design in it is damaged, as when a link is cut short',
+    ])
+  expect((await fromAddress('mode=2.5', PRESETS)).faults.length).toBe(1)
+})
+
+test('questions differ in words', () => {
+  const asked = { ...store.question(), box: { low: [1] }, points: 3 }
+  expect(differences(asked, structuredClone(asked))).toEqual([])
+  expect(differences(asked, { ...asked, changes: { a: 1 }, design: 'x', points: 4, box: { low: [2] } })).toEqual([
+    'design',
+    'pose box',
+    'settings',
+  ])
+  expect([listed(['a']), listed(['a', 'b', 'c'])]).toEqual(['a', 'a, b and c'])
 })
 
 test('listeners hear of the keys that they named', () => {

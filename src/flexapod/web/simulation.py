@@ -27,6 +27,8 @@ KINDS = ("harmonic", "sweep", "shock", "step", "csv")
 ROWS = 4000  #: instants of one simulation that are sent
 MOST_PERIODS = 2e5  #: of the highest mode: about a minute of computing
 PLAYED = 8.0  #: duration of a playback, s
+RAMP = 0.1  #: share of the duration over which a sine rises
+RISING = "The motion rises over the first {:.4g} s: peaks there are smaller than asked."
 DRAWN = 0.12  #: greatest displacement drawn, as a share of the platform's size
 
 
@@ -60,8 +62,9 @@ def simulation(spec: dict[str, Any]) -> Iterator[Message]:
     if data is None or data.sizes["time"] < 2:
         raise requests.RequestError(" ".join(words) or "the simulation ended at once")
     rows = _rows(data)
-    steps = f"{rows[-1, 0]:.4g} s in {data.attrs['steps']} steps" if "steps" in data.attrs else ""
-    yield _run(question, rows, " ".join([*words, steps])), float32(rows)
+    steps = f"{rows[-1, 0]:.4g} s in {data.attrs['steps']} steps." if "steps" in data.attrs else ""
+    rise = RISING.format(RAMP * duration) if spec.get("kind", KINDS[0]) in ("harmonic", "sweep") else ""
+    yield _run(question, rows, " ".join(filter(None, [*words, steps, rise]))), float32(rows)
 
 
 def _with_progress(compute: Callable[[Callable[[float], object]], Any]) -> Generator[Message, None, Any]:
@@ -87,7 +90,7 @@ def _with_progress(compute: Callable[[Callable[[float], object]], Any]) -> Gener
 
 
 def _motion(spec: dict[str, Any], duration: float) -> Excitation:
-    """The base motion of a form. Sines, which do not start from rest, rise over a tenth of the duration."""
+    """The base motion of a form. Sines, which do not start from rest, rise over a share of the duration."""
     kind = requests.choice(spec, "kind", KINDS)
     if kind == "csv":
         text = spec.get("csv")
@@ -103,7 +106,7 @@ def _motion(spec: dict[str, Any], duration: float) -> Excitation:
     if kind == "step":
         return smooth_step(axis, amplitude, requests.number(spec, "pulse", 0.011, 1e-6, 1e3))
     omega = TWO_PI * requests.number(spec, "frequency", 5.0, 1e-6, 1e6)
-    ramp = 0.1 * duration
+    ramp = RAMP * duration
     if kind == "sweep":
         end = TWO_PI * requests.number(spec, "end", 50.0, 1e-6, 1e6)
         return sine_sweep(axis, amplitude, omega, end, duration).ramped(ramp)

@@ -8,19 +8,21 @@ import { page, store } from '../state/store'
 import { button, type Choice, h, select } from '../widgets/dom'
 import { spring } from '../widgets/layout'
 import { showKeys } from './keys'
+import type { Say } from './notices'
 
 const OWN = 'own design'
+const LATER = 'opens as soon as the server answers again.'
+const OUTCOMES = { shown: 'is open.', refused: 'is not a design; see the Design panel.', waiting: LATER }
 const OPEN_TITLE = 'Open a design file (TOML); dropping one on the page does the same'
 
-/** Says something for a few seconds. */
-export type Say = (words: string) => void
-
-function presetChoice({ presets }: Start): Choice<string> {
+function presetChoice({ presets }: Start, say: Say): Choice<string> {
   const options = [...Object.keys(presets).map((name) => [name, name] as const), ['', OWN] as const]
-  const choice = select('Design', options, page.preset, (name) => {
-    if (name) void open(presets[name], name)
-    else choice.set(page.preset)
+  const choice = select('Design', options, page.preset, async (name) => {
+    const outcome = name ? await open(presets[name], name) : ''
+    if (outcome === 'waiting') say(`${name} ${LATER}`)
+    choice.set(page.preset) // the machine that is shown
   })
+  choice.element.dataset.part = 'design'
   store.on(['design', 'text', 'preset'], () => {
     choice.set(page.preset)
     const own = choice.element.options[options.length - 1]
@@ -44,8 +46,12 @@ function fileInput(say: Say): HTMLInputElement {
     if (!chosen) return
     const { name, size } = chosen
     if (size > MOST_TEXT) return say(`${name} has ${size} bytes; a design has at most ${MOST_TEXT}.`)
-    const good = await open(await chosen.text(), '')
-    say(good ? `${name} is open` : `${name} is not a design; see the Design panel.`)
+    const text = await chosen.text()
+    const outcome = await open(text, '')
+    const lossy = text.includes('\ufffd')
+      ? ' It is not text in UTF-8: characters that could not be read are marked \ufffd.'
+      : ''
+    if (outcome !== 'superseded') say(`${name} ${OUTCOMES[outcome]}${lossy}`)
     file.value = ''
   }
   file.addEventListener('change', () => void take(file.files?.[0]))
@@ -74,7 +80,7 @@ export function header(start: Start, say: Say): HTMLElement {
     {},
     h('img', { src: './icon.svg', alt: '', width: 22, height: 22 }),
     h('h1', {}, 'Flexapod'),
-    presetChoice(start).element,
+    presetChoice(start, say).element,
     button('Open…', () => file.click(), { title: OPEN_TITLE }),
     file,
     spring(),

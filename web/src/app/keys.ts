@@ -1,6 +1,5 @@
 // Keys of the whole page, and the dialog that lists them.
 
-import type { Scene } from '../machine3d/scene'
 import { setPose } from '../panels/pose'
 import { page, store } from '../state/store'
 import { button, h } from '../widgets/dom'
@@ -30,7 +29,7 @@ function keysDialog(): HTMLDialogElement {
   return dialog
 }
 
-export function listenToKeys(scene: Scene): void {
+export function listenToKeys(): void {
   document.addEventListener('keydown', (event) => {
     const target = event.target as HTMLElement
     if (event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|TEXTAREA|SELECT)$/.test(target.tagName)) return
@@ -39,7 +38,7 @@ export function listenToKeys(scene: Scene): void {
     if (/^[1-6]$/.test(key)) store.set({ mode: page.mode === mode ? -1 : mode })
     else if (key === '0') store.set({ mode: -1 })
     else if (key === 'h' && page.design) setPose(page.design.home)
-    else if (key in VIEWS) scene.look(VIEWS[key as keyof typeof VIEWS])
+    else if (key in VIEWS) store.set({ view: VIEWS[key as keyof typeof VIEWS] })
     else if (key === '?') showKeys()
   })
 }

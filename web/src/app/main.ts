@@ -7,117 +7,128 @@ import { Scene } from '../machine3d/scene'
 import { type DesignPanel, designPanel } from '../panels/design'
 import { legsPanel } from '../panels/legs'
 import { modesPanel } from '../panels/modes'
-import { open } from '../panels/opening'
 import { type ParametersPanel, parametersPanel } from '../panels/parameters'
 import { posePanel } from '../panels/pose'
 import { responsePanel } from '../panels/response'
 import { timePanel } from '../panels/simulation'
 import { viewPanel } from '../panels/view'
 import { workspacePanel } from '../panels/workspace'
-import { fromAddress, toAddress } from '../state/address'
+import { toAddress } from '../state/address'
 import type { Design, Snapshot, Start } from '../state/answers'
-import { get, Live, type Refused } from '../state/api'
+import { answers, get, Live, type Refused } from '../state/api'
+import { watchConnection } from '../state/connection'
 import { page, sourceKey, store } from '../state/store'
-import { h, settled, status } from '../widgets/dom'
+import { h, settled } from '../widgets/dom'
+import { Result } from '../widgets/result'
 import { tabs } from '../widgets/tabs'
-import { header, type Say } from './header'
+import { header } from './header'
 import { listenToKeys } from './keys'
+import { awayLine, faultLine, toast } from './notices'
 import { readout } from './readout'
+import { restore, type Tell } from './restore'
 
-const FIRST = 'motion-base'
-
-/** A line that says something for a few seconds. */
-function toast(): { element: HTMLElement; say: Say } {
-  const element = status({ class: 'toast', hidden: true })
-  const hide = settled(4000, () => {
-    element.hidden = true
-  })
-  const say = (words: string) => {
-    element.textContent = words
-    element.hidden = false
-    hide()
-  }
-  return { element, say }
+/** What shows errors at their fields, and what shows the machine at its pose. */
+interface Built {
+  panels: [ParametersPanel, DesignPanel]
+  state: Result
+  tell: Tell
 }
 
-/** Builds the page. Returns the panels that show errors at their fields. */
-function build(start: Start): [ParametersPanel, DesignPanel] {
+/** Asks for the machine at its pose. */
+const state = new Live<Snapshot>(
+  'api/state',
+  () => store.question(),
+  (snapshot, asked) => {
+    built?.state.shows(asked)
+    store.set({ snapshot, error: '' })
+  },
+  (error) => failed(error),
+)
+let built: Built | null = null
+
+function failed(error: Refused): void {
+  store.set({ error: error.message })
+  for (const { key, message } of error.errors) for (const panel of built?.panels ?? []) panel.fail(key, message)
+}
+
+/** Builds the page. */
+function build(start: Start): Built {
   const { element, say } = toast()
+  const faults = faultLine()
   const scene = new Scene()
   const animation = new Animation(scene)
   const parameters = parametersPanel()
   const design = designPanel(start.fields, () => store.set({ tab: 'design' }))
   const refused = h('p', { class: 'refused', role: 'alert', hidden: true })
+  const [modes, legs, results] = [modesPanel(animation), legsPanel(), readout()]
   const panels = tabs([
-    ['modes', 'Modes', modesPanel(animation)],
-    ['legs', 'Legs', legsPanel()],
+    ['modes', 'Modes', modes],
+    ['legs', 'Legs', legs],
     ['workspace', 'Workspace', workspacePanel()],
     ['response', 'Response', responsePanel(animation)],
     ['time', 'Time', timePanel(animation)],
     ['design', 'Design', design.element],
   ])
   const side = h('div', { class: 'side' }, posePanel(), parameters.element)
-  const middle = h('div', { class: 'middle' }, readout(), viewPanel(scene), refused)
-  document.body.append(header(start, say), h('main', {}, side, middle, panels), element)
-  listenToKeys(scene)
+  const middle = h('div', { class: 'middle' }, results, viewPanel(scene), refused)
+  const head = h('div', { class: 'head' }, header(start, say), awayLine(say), faults.element)
+  document.body.append(head, h('main', {}, side, middle, panels), element)
+  listenToKeys()
   store.on(['error'], () => {
     refused.textContent = page.error
     refused.hidden = !page.error
-    scene.element.classList.toggle('stale', page.error !== '')
   })
-  return [parameters, design]
+  const question = () => store.question()
+  const state = new Result({ question, ask: () => undefined, live: false }, [results, scene.element, modes, legs])
+  return { panels: [parameters, design], state, tell: faults.tell }
 }
 
 /** Asks the server whenever the machine or its pose changes. */
-function askTheServer(panels: [ParametersPanel, DesignPanel]): void {
-  const failed = (error: Refused) => {
-    store.set({ error: error.message })
-    for (const { key, message } of error.errors) for (const panel of panels) panel.fail(key, message)
-  }
-  const state = new Live<Snapshot>(
-    'api/state',
-    () => store.question(),
-    (snapshot) => store.set({ snapshot, error: '' }),
-    failed,
-  )
+function askTheServer(): void {
   const describe = new Live<Design>(
     'api/design',
     () => ({ design: page.text, changes: page.changes }),
     (design) => store.set({ design, described: sourceKey(page.text, page.changes) }),
     failed,
   )
+  const undescribed = () => page.described !== sourceKey(page.text, page.changes)
   const changed = settled(120, describe.request)
   store.on(['pose', 'joint', 'text', 'changes'], state.request)
-  store.on(['changes'], () => page.described !== sourceKey(page.text, page.changes) && changed())
+  store.on(['changes'], () => undescribed() && changed())
+  store.on(['away'], () => {
+    if (page.away || !page.text) return
+    state.request()
+    if (undescribed()) changed()
+  })
 }
 
 /** Keeps the address of the page up to date. */
 function keepAddress(): void {
-  const write = async () => history.replaceState(null, '', `#${await toAddress(page)}`)
-  const address = settled(250, () => void write())
-  store.on(['pose', 'joint', 'text', 'changes', 'mode', 'tab', 'colour', 'unit', 'box', 'preset'], address)
+  const write = async () => page.text && history.replaceState(null, '', `#${await toAddress(page)}`)
+  store.onAny(settled(250, () => void write()))
 }
 
-/** Show what an address says, or what the server was started with. */
-async function restore({ presets, start }: Start, hash: string): Promise<void> {
-  const { text: said, preset: name, ...rest } = await fromAddress(hash, presets)
-  const first = start ?? { name: FIRST, text: presets[FIRST] }
-  const text = said ?? first.text
-  const preset = said === undefined ? (presets[first.name] === text ? first.name : '') : (name ?? '')
-  if (await open(text, preset, rest)) return
-  if (page.design) return
-  await open(presets[FIRST], FIRST)
-  await open(text, preset) // again, to show its errors beside that machine
+/** What a page starts with, as soon as the server answers. */
+async function startOf(): Promise<Start> {
+  for (;;) {
+    if (await answers()) return get<Start>('api/start')
+    document.body.textContent = 'The server does not answer; the page tries again by itself.'
+    await new Promise((resolve) => setTimeout(resolve, 1500))
+  }
 }
 
 async function begin(): Promise<void> {
   beginTheme()
-  const start = await get<Start>('api/start')
-  askTheServer(build(start))
+  const start = await startOf()
+  document.body.textContent = ''
+  built = build(start)
+  const { tell } = built
+  watchConnection()
+  askTheServer()
   keepAddress()
   onTheme(() => page.snapshot && store.set({ snapshot: page.snapshot }))
-  addEventListener('hashchange', () => void restore(start, location.hash))
-  await restore(start, location.hash)
+  addEventListener('hashchange', () => void restore(start, location.hash, tell))
+  await restore(start, location.hash, tell)
 }
 
 void begin()

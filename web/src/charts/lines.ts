@@ -14,8 +14,7 @@ export class LinePlot {
   private shown: Lines | null = null
   private hidden = new Set<string>()
   private head: HTMLElement | null = null
-
-  legend = true
+  private readonly tip = h('div', { class: 'tip', hidden: true })
 
   constructor(
     private readonly height: () => number,
@@ -46,7 +45,8 @@ export class LinePlot {
     this.element.setAttribute('aria-label', `${lines.title}: ${lines.y.label} over ${lines.x.label}`)
     this.plot = new uPlot(this.options(lines), this.data(lines), this.element)
     this.head = h('div', { class: 'playhead', hidden: true })
-    this.plot.over.append(this.head)
+    this.plot.over.append(this.head, this.tip)
+    this.tip.hidden = true
     if (this.clicked) {
       this.plot.over.classList.add('pickable')
       this.plot.over.addEventListener('click', () => {
@@ -72,7 +72,7 @@ export class LinePlot {
       height: this.height(),
       padding: [8, 24, 0, 0],
       cursor: { drag: { x: true, y: false }, points: { size: 6 }, ...(this.sync ? { sync: { key: this.sync } } : {}) },
-      legend: { show: this.legend },
+      legend: { show: false },
       scales: scales(lines),
       axes: [
         { ...axis(lines.x, Math.max(2, width / 90), t), size: 26 },
@@ -84,15 +84,24 @@ export class LinePlot {
       ],
       hooks: {
         draw: [(u) => this.marks(u, lines, t.muted)],
-        setSeries: [(u, i) => i !== null && this.remember(u.series[i])],
+        setCursor: [(u) => this.tell(u)],
       },
     }
   }
 
-  private remember(series: uPlot.Series): void {
-    const name = String(series.label)
-    if (series.show) this.hidden.delete(name)
-    else this.hidden.add(name)
+  /** The values at the cursor, beside it; only in the plot under the pointer. */
+  private tell({ cursor, data, series, over }: uPlot): void {
+    const lines = this.shown
+    const at = cursor.idx
+    this.tip.hidden = !lines || at === null || at === undefined || !over.matches(':hover')
+    if (this.tip.hidden || !lines) return
+    const rows = lines.series.filter((_, i) => series[i + 1].show)
+    const values = rows.map((line) => `${line.name}  ${sig(line.values[at!], 4)}`)
+    this.tip.textContent = [`${lines.x.label}  ${sig(data[0][at!], 5)}`, ...values].join('\n')
+    const [left, width] = [cursor.left ?? 0, over.clientWidth]
+    this.tip.style.left = left < width / 2 ? `${left + 14}px` : 'auto'
+    this.tip.style.right = left < width / 2 ? 'auto' : `${width - left + 14}px`
+    this.tip.style.top = '4px'
   }
 
   private marks(u: uPlot, lines: Lines, colour: string): void {

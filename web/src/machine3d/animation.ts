@@ -14,14 +14,32 @@ export class Animation {
 
   constructor(private readonly scene: Scene) {}
 
+  /** Whether this computer asks for reduced motion: nothing moves then unless a person starts it. */
+  get reduced(): boolean {
+    return this.still.matches
+  }
+
   /** Play a motion for a view; another view's motion ends. */
   play(owner: string, motion: Motion): void {
     const running = this.motion !== null
     if (this.owner !== owner) this.began = performance.now()
     this.owner = owner
     this.motion = motion
-    if (this.still.matches) this.stillPicture()
-    else if (!running) requestAnimationFrame(this.step)
+    if (!running) requestAnimationFrame(this.step)
+  }
+
+  /** Show one displacement, without motion. */
+  hold(owner: string, shown: [Twist, Twist]): void {
+    this.owner = owner
+    this.motion = null
+    this.scene.machine.place(...shown)
+    this.scene.draw()
+  }
+
+  /** Play a motion; where reduced motion is asked for, show its greatest displacement, a quarter of a swing. */
+  swing(owner: string, motion: Motion, swings: number): void {
+    if (this.reduced) this.hold(owner, motion(0.25 / swings))
+    else this.play(owner, motion)
   }
 
   stop(owner?: string): void {
@@ -37,12 +55,5 @@ export class Animation {
     this.scene.machine.place(...this.motion((performance.now() - this.began) / 1000))
     this.scene.draw()
     requestAnimationFrame(this.step)
-  }
-
-  /** For users who prefer reduced motion: the largest displacement, without motion. */
-  private stillPicture(): void {
-    this.scene.machine.place(...this.motion!(0.25))
-    this.motion = null
-    this.scene.draw()
   }
 }

@@ -78,6 +78,7 @@ export class Scene {
     this.controls = new OrbitControls(this.camera, canvas)
     this.controls.enableDamping = false
     this.controls.addEventListener('change', this.draw)
+    this.controls.addEventListener('end', () => this.tellView())
     canvas.addEventListener('keydown', (event) => this.key(event))
     canvas.addEventListener('webglcontextrestored', this.draw)
     new ResizeObserver(() => this.resize()).observe(this.element)
@@ -103,11 +104,26 @@ export class Scene {
     const back = new THREE.Vector3().setFromSpherical(round)
     this.camera.position.copy(this.controls!.target).add(new THREE.Vector3(back.x, -back.z, back.y))
     this.controls!.update()
+    this.tellView()
     this.draw()
   }
 
-  /** Look from a standard direction, with the whole machine in view. */
-  look(from: Standard): void {
+  /** Called with the new view when a person has turned the camera: where it stands and where it looks. */
+  turned: (view: string) => void = () => undefined
+
+  private tellView(): void {
+    const { position } = this.camera
+    const { target } = this.controls!
+    const six = [...position.toArray(), ...target.toArray()].map((v) => Number(v.toPrecision(5)))
+    this.turned(six.join(','))
+  }
+
+  /** Look from a standard direction, with the whole machine in view; or from a place to a place, as six numbers. */
+  look(view: string): void {
+    const places = view.split(',').map(Number)
+    const given = places.length === 6
+    if (given && this.seen(places)) return
+    const from = given ? 'iso' : (view as Standard)
     const points = this.machine.extent()
     const middle = new THREE.Box3().setFromPoints(points)
     const centre = middle.getCenter(new THREE.Vector3())
@@ -118,10 +134,23 @@ export class Scene {
     this.camera.position.copy(centre).addScaledVector(new THREE.Vector3(...DIRECTIONS[from]).normalize(), distance)
     this.camera.updateProjectionMatrix()
     this.controls?.target.copy(centre)
+    if (given) this.stand(places)
     this.controls?.update()
     this.light.position.copy(centre).add(new THREE.Vector3(0.6, -1, 1.6).multiplyScalar(4 * radius))
     this.light.target.position.copy(centre)
     this.draw()
+  }
+
+  /** Put the camera at the first three numbers, looking at the others. */
+  private stand(places: number[]): void {
+    this.camera.position.fromArray(places)
+    this.controls?.target.fromArray(places, 3)
+  }
+
+  /** Whether the camera stands there already, to five digits. */
+  private seen(places: number[]): boolean {
+    const off = this.camera.position.distanceTo(new THREE.Vector3(...places.slice(0, 3)))
+    return off < 1e-4 * this.camera.position.length()
   }
 
   /** How far away the camera must be to have all points in view. */

@@ -4,15 +4,17 @@ import { Scatter } from '../charts/scatter'
 import { onTheme } from '../charts/theme'
 import { floats } from '../state/api'
 import { page, store } from '../state/store'
-import { button, freshId, h, select } from '../widgets/dom'
+import { choose, numberBox } from '../widgets/bound'
+import { button, h } from '../widgets/dom'
 import { csvButton, figureButtons, saveCsv } from '../widgets/download'
-import { count, duration, parsed, sig } from '../widgets/format'
+import { count, duration, sig } from '../widgets/format'
 import { Runner } from '../widgets/job'
 import { dataTable, row, titleBar, toolBar } from '../widgets/layout'
+import { Result } from '../widgets/result'
 import { setPose } from './pose'
 
 const CSV_HEAD = ['x_m', 'y_m', 'z_m', 'roll_deg', 'pitch_deg', 'yaw_deg', 'index_rad_s', 'cond_h']
-const COUNTS = [10_000, 100_000, 300_000, 1_000_000].map((n) => [String(n), `${count(n)} poses`] as const)
+const COUNTS = (['10000', '100000', '300000', '1000000'] as const).map((n) => [n, `${count(Number(n))} poses`] as const)
 const SCALES = [
   ['linear', 'linear'],
   ['log', 'logarithmic'],
@@ -34,50 +36,51 @@ export class CloudPart {
   private readonly scatter = new Scatter((point) => setPose(rounded(point.six)))
   private readonly runner = new Runner()
   private readonly summary = h('div', { class: 'scroll' })
-  private readonly total = select('Number of poses', COUNTS, '100000', () => void this.run())
-  private readonly scale = select('Axis of the index', SCALES, 'linear', (kind) => {
-    this.scatter.logarithmic = kind === 'log'
-  })
-  private readonly seed = h('input', {
-    type: 'text',
-    class: 'number tiny',
-    value: '1',
-    inputmode: 'numeric',
-    id: freshId('seed'),
-  })
+  private readonly result: Result
 
   constructor() {
-    store.on(['snapshot'], () => this.scatter.mark(page.snapshot?.index ?? null, page.snapshot?.condition ?? null))
-    onTheme(this.scatter.draw)
-    this.seed.addEventListener('change', () => void this.run())
-    const worst = worstPose()
     const csv = csvButton('Cloud', () => saveCsv('workspace', CSV_HEAD, this.scatter.rows()))
     const figures = figureButtons(
       () => 'workspace',
       'Cloud',
       () => this.scatter.figure(),
     )
-    const seed = [h('label', { for: this.seed.id }, 'seed'), this.seed]
-    const run = button('Run', () => void this.run())
+    this.result = new Result(
+      { question: cloudQuestion, ask: () => void this.run(), live: true },
+      [this.scatter.element, this.summary],
+      [csv, figures],
+    )
+    store.on(['snapshot'], () => this.scatter.mark(page.snapshot?.index ?? null, page.snapshot?.condition ?? null))
+    store.on(['scale'], () => {
+      this.scatter.logarithmic = page.scale === 'log'
+    })
+    onTheme(this.scatter.draw)
+    const worst = worstPose()
     this.element = h(
       'section',
       { 'aria-label': 'Cloud of poses', class: 'card', id: 'cloud' },
       titleBar('h3', 'Index against cond(H)', csv, figures),
-      toolBar(this.total.element, ...seed, this.scale.element, run, worst.button),
+      this.tools(worst.button),
       this.runner.element,
       worst.element,
-      this.scatter.element,
-      this.summary,
+      this.result.framed(),
     )
   }
 
-  async run(): Promise<void> {
-    const points = Number(this.total.element.value)
-    const seed = Math.max(0, Math.round(parsed(this.seed.value)) || 0)
+  private tools(worst: HTMLElement): HTMLElement {
+    const total = choose('points', 'Number of poses', COUNTS)
+    const seed = numberBox('seed', 'Seed of the random poses', { class: 'number tiny', inputmode: 'numeric' })
+    const scale = choose('scale', 'Axis of the index', SCALES)
+    const run = button('Run', () => this.result.ask())
+    return toolBar(total, h('span', {}, 'seed'), seed.input, seed.wrong, scale, run, worst)
+  }
+
+  private async run(): Promise<void> {
+    const question = cloudQuestion()
     const began = performance.now()
-    this.scatter.begin(points)
-    const spec = { ...store.question(), box: page.box, points, seed }
-    const whole = await this.runner.run('cloud', spec, (message, data) => {
+    this.scatter.begin(question.points)
+    this.result.shows(question)
+    const whole = await this.runner.run('cloud', question, (message, data) => {
       if (message.type === 'points') this.scatter.add(floats(data))
     })
     const seconds = (performance.now() - began) / 1000
@@ -101,17 +104,29 @@ export class CloudPart {
   }
 }
 
+function cloudQuestion() {
+  return { ...store.machine(), box: page.box, points: Number(page.points), seed: Math.round(page.seed) }
+}
+
 /** Finds the least index in the box and moves the machine there. */
 function worstPose(): { button: HTMLElement; element: HTMLElement } {
   const runner = new Runner()
-  const element = h('div', { id: 'worst', hidden: true }, runner.element)
+  const question = () => ({ ...store.machine(), box: page.box })
   const find = () => {
+    const asked = question()
     element.hidden = false
-    void runner.run('worst', { ...store.question(), box: page.box }, (message) => {
+    void runner.run('worst', asked, (message) => {
       if (message.type !== 'found') return
       setPose(message.pose)
+      result.shows(asked)
       setTimeout(() => runner.say(message.words))
     })
   }
-  return { button: button('Worst pose', find, { title: 'Find the lowest index in the box and move there' }), element }
+  const again = 'find the worst pose again'
+  const result = new Result({ question, ask: find, live: false, again }, [runner.element])
+  const element = h('div', { id: 'worst', hidden: true }, result.framed())
+  return {
+    button: button('Worst pose', find, { title: 'Find the lowest index in the box and move there' }),
+    element,
+  }
 }

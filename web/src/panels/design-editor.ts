@@ -10,7 +10,12 @@ const LINE = 18 // px
 
 export class DesignEditor {
   readonly element: HTMLElement
-  drafting = false // the text is not a valid design, so the machine shown has another one
+  /** The text on screen if it is not that of the machine shown: no valid design, or not yet read. */
+  get draft(): string | null {
+    return this.drafting ? this.area.value : null
+  }
+
+  private drafting = false
   private readonly area = h('textarea', {
     class: 'code',
     spellcheck: 'false',
@@ -23,9 +28,10 @@ export class DesignEditor {
   private readonly list = h('ul', { class: 'errors', role: 'alert' })
 
   constructor() {
-    this.element = h('div', {}, this.list, h('div', { class: 'editor' }, this.gutter, this.area))
+    this.element = h('div', {}, this.list, h('div', { class: 'editor', 'data-part': 'design' }, this.gutter, this.area))
     const read = settled(400, () => void this.read(this.area.value))
     this.area.addEventListener('input', () => {
+      this.drafting = true
       this.number([])
       read()
     })
@@ -39,7 +45,7 @@ export class DesignEditor {
   }
 
   /** Show a text that is not a valid design. */
-  draft(text: string, errors: FieldError[]): void {
+  show(text: string, errors: FieldError[]): void {
     this.drafting = true
     this.area.value = text
     this.complain(errors)
@@ -57,6 +63,7 @@ export class DesignEditor {
     try {
       const design = await describe(text)
       if (text !== this.area.value) return
+      this.drafting = false
       this.complain([])
       if (text !== page.text || Object.keys(page.changes).length) store.set(shown(text, design))
     } catch (error) {

@@ -29,7 +29,12 @@ export class DesignForm {
       if (document.activeElement !== name) name.value = page.design?.name ?? ''
     })
     const naming = h('div', { class: 'bar' }, h('label', { for: name.id }, 'Name'), name)
-    this.element = h('div', { class: 'form' }, naming, ...GROUPS.map(([start, title]) => this.group(start, title)))
+    this.element = h(
+      'div',
+      { class: 'form', 'data-part': 'changes' },
+      naming,
+      ...GROUPS.map(([start, title]) => this.group(start, title)),
+    )
   }
 
   private group(start: string, title: string): HTMLElement {

@@ -1,14 +1,16 @@
 // The design: every number as a form, or its file as text. Errors stand at the field and at the line.
 
 import type { Field } from '../state/answers'
+import { Refused } from '../state/api'
 import { page, store } from '../state/store'
-import { button, h, select, status } from '../widgets/dom'
+import { choose } from '../widgets/bound'
+import { button, h, status } from '../widgets/dom'
 import { saveText } from '../widgets/download'
 import { fileName } from '../widgets/format'
 import { spring } from '../widgets/layout'
 import { DesignEditor } from './design-editor'
 import { DesignForm } from './design-form'
-import { onDraft } from './opening'
+import { describe, onDraft } from './opening'
 
 const VIEWS = [
   ['form', 'Form'],
@@ -21,9 +23,20 @@ export interface DesignPanel {
   fail(key: string, message: string): void
 }
 
-function save(): void {
-  const { design } = page
-  if (design) saveText(`${fileName(design.name)}.toml`, design.toml, 'application/toml')
+/** Save the text on screen: a draft as it is written, otherwise the design with all its changes. */
+async function save(draft: string | null, say: (words: string) => void): Promise<void> {
+  if (draft !== null) {
+    saveText('draft.toml', draft, 'application/toml')
+    return say('Saved as draft.toml, as it is written; it is not the machine shown.')
+  }
+  try {
+    const { name, toml } = await describe(page.text, page.changes)
+    saveText(`${fileName(name)}.toml`, toml, 'application/toml')
+    say(`Saved as ${fileName(name)}.toml.`)
+  } catch (error) {
+    if (!(error instanceof Refused)) throw error
+    say(`Not saved. ${error.message}`)
+  }
 }
 
 /** `reveal` brings the panel to the front. */
@@ -32,25 +45,29 @@ export function designPanel(fields: Field[], reveal: () => void): DesignPanel {
   const editor = new DesignEditor()
   const note = status({ class: 'hint' })
   const warnings = h('ul', { class: 'warnings' })
-  const turn = (shown: 'form' | 'toml') => {
-    view.set(shown)
-    form.element.hidden = shown !== 'form'
-    editor.element.hidden = shown !== 'toml'
+  const turn = () => {
+    form.element.hidden = page.design_view !== 'form'
+    editor.element.hidden = page.design_view !== 'toml'
   }
-  const view = select('View of the design', VIEWS, 'form', turn)
-  turn('form')
+  const say = (words: string) => {
+    note.textContent = words
+  }
+  store.on(['design_view'], turn)
+  turn()
   onDraft((text, errors) => {
-    editor.draft(text, errors)
-    turn('toml')
-    note.textContent = NO_DESIGN
+    editor.show(text, errors)
+    store.set({ design_view: 'toml' })
+    say(NO_DESIGN)
     reveal()
   })
   store.on(['design'], () => {
-    if (!editor.drafting) note.textContent = ''
+    if (editor.draft === null) say('')
     warnings.replaceChildren(...(page.design?.warnings ?? []).map((words) => h('li', {}, words)))
   })
-  const download = button('Save TOML', save, { class: 'quiet' })
-  const title = h('div', { class: 'bar' }, h('h2', {}, 'Design'), view.element, spring(), download)
+  const text = () => (page.design_view === 'toml' ? editor.draft : null)
+  const download = button('Save TOML', () => void save(text(), say), { class: 'quiet' })
+  const view = choose('design_view', 'View of the design', VIEWS)
+  const title = h('div', { class: 'bar' }, h('h2', {}, 'Design'), view, spring(), download)
   return {
     element: h('div', { id: 'design' }, title, note, warnings, form.element, editor.element),
     fail: (key, message) => form.fail(key, message),

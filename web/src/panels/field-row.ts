@@ -1,11 +1,15 @@
 // One field of the design's form: its numbers, one for all legs or one for each, and what is wrong with them.
 
 import type { Field } from '../state/answers'
+import { page, store } from '../state/store'
+import { include } from '../widgets/bound'
 import { button, freshId, h } from '../widgets/dom'
 import { field, parsed } from '../widgets/format'
 import { spring } from '../widgets/layout'
 import { flat, type Nested, put, shaped } from './nested'
 import { change } from './parameters'
+
+const EACH = { class: 'quiet each', 'aria-pressed': 'false', 'data-option': 'each' }
 
 type Write = (path: number[], text: string) => void
 
@@ -13,7 +17,6 @@ export class FieldRow {
   readonly element: HTMLElement
   private readonly cells = h('div', { class: 'cells' })
   private readonly wrong = h('p', { class: 'wrong', role: 'alert', hidden: true, id: freshId('wrong') })
-  private each = false
   private value: Nested | undefined
 
   constructor(private readonly rule: Field) {
@@ -22,16 +25,19 @@ export class FieldRow {
       .replace(/_deg$/, '')
       .replace(/[._]/g, ' ')
     const perLeg = rule.key.startsWith('legs.') || rule.shapes.length > 1
-    const each = button('Each leg', () => this.turn(), { class: 'quiet each', 'aria-pressed': 'false' })
+    const each = button('Each leg', () => include('each', rule.key, !this.each), EACH)
+    store.on(['each'], () => {
+      if (each.getAttribute('aria-pressed') === String(this.each)) return
+      each.setAttribute('aria-pressed', String(this.each))
+      this.draw()
+    })
     const [unit, meaning] = [h('span', { class: 'unit' }, rule.unit), h('span', { class: 'meaning' }, rule.meaning)]
     const bar = h('div', { class: 'bar' }, h('strong', {}, name), unit, meaning, spring(), perLeg && each)
     this.element = h('div', { class: 'field-row', 'data-key': rule.key }, bar, this.cells, this.wrong)
   }
 
-  private turn(): void {
-    this.each = !this.each
-    this.element.querySelector('.each')!.setAttribute('aria-pressed', String(this.each))
-    this.draw()
+  private get each(): boolean {
+    return page.each.includes(this.rule.key)
   }
 
   fail(message: string): void {

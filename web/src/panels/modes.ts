@@ -5,12 +5,14 @@ import type { Animation } from '../machine3d/animation'
 import { noTwist, reach, twist } from '../machine3d/twist'
 import { COORDINATES, type OptionalNumber, type Snapshot } from '../state/answers'
 import { page, store } from '../state/store'
+import { slider } from '../widgets/bound'
 import { h } from '../widgets/dom'
 import { csvButton, saveCsv } from '../widgets/download'
 import { percent, sig } from '../widgets/format'
 import { dataTable, row, titleBar } from '../widgets/layout'
 
 const SWINGS = 0.7 // of the animation per second
+const STILL = 'Drawn still, at its greatest displacement: this computer asks for reduced motion.'
 const LEGS = [1, 2, 3, 4, 5, 6]
 const COLUMNS = [
   { name: 'Mode' },
@@ -69,13 +71,17 @@ function bars(label: string, names: readonly string[], shares: OptionalNumber[])
 }
 
 /** What a mode is made of, and how it is drawn. */
-function details(s: Snapshot, mode: number, drawn: number): HTMLElement[] {
+function details(s: Snapshot, mode: number, drawn: number, still: boolean): HTMLElement[] {
   const slower = (s.frequency[mode] ?? 0) / SWINGS
-  const pace = slower >= 1 ? `${sig(slower, 3)} times slower` : 'about as fast'
+  const pace = slower >= 1 ? `${sig(slower, 3)} times slower than` : 'about as fast as'
   const largest = `The greatest joint displacement drawn is ${sig(1000 * drawn, 3)} mm.`
   return [
     h('p', {}, h('strong', {}, `Mode ${mode + 1}: `), s.modes[mode].text, '.'),
-    h('p', { class: 'hint' }, `Drawn at ${SWINGS} swings a second, ${pace} than the machine. ${largest}`),
+    h(
+      'p',
+      { class: 'hint' },
+      `${still ? STILL : `Drawn at ${SWINGS} swings a second, ${pace} the machine.`} ${largest}`,
+    ),
     h(
       'div',
       { class: 'pair' },
@@ -99,7 +105,7 @@ function drawnSize({ geometry, shape }: Snapshot, mode: number, share: number): 
 
 /** Plays the chosen mode, and says what it is made of. */
 function player(animation: Animation): { amplitude: HTMLElement; detail: HTMLElement; play(): void } {
-  const slider = h('input', { type: 'range', min: 0, max: 1, step: 'any', value: 0.35, id: 'amplitude' })
+  const control = slider('drawn', { id: 'amplitude' })
   const words = h('output', { for: 'amplitude' })
   const detail = h('div', { class: 'detail' })
   const play = () => {
@@ -110,15 +116,15 @@ function player(animation: Animation): { amplitude: HTMLElement; detail: HTMLEle
       words.textContent = '–'
       return
     }
-    const [drawn, scale] = drawnSize(s, mode, Number(slider.value))
+    const [drawn, scale] = drawnSize(s, mode, page.drawn)
     words.textContent = `${sig(1000 * drawn, 3)} mm`
     const swing = (t: number) => scale * Math.sin(2 * Math.PI * SWINGS * t)
-    animation.play('mode', (t) => [twist(s.shape[mode], swing(t)), noTwist()])
-    detail.replaceChildren(...details(s, mode, drawn))
+    animation.swing('mode', (t) => [twist(s.shape[mode], swing(t)), noTwist()], SWINGS)
+    detail.replaceChildren(...details(s, mode, drawn, animation.reduced))
   }
-  slider.addEventListener('input', play)
+  store.on(['drawn'], play)
   const label = h('label', { for: 'amplitude' }, 'Amplitude drawn')
-  return { amplitude: h('div', { class: 'row amplitude' }, label, slider, words), detail, play }
+  return { amplitude: h('div', { class: 'row amplitude' }, label, control, words), detail, play }
 }
 
 function write(): void {

@@ -2,7 +2,9 @@
 
 import type { Parameter } from '../state/answers'
 import { page, store } from '../state/store'
-import { button, freshId, h, select } from '../widgets/dom'
+import { choose } from '../widgets/bound'
+import { button, freshId, h } from '../widgets/dom'
+import { type Fault, fault } from '../widgets/fault'
 import { field, parsed } from '../widgets/format'
 import { spring } from '../widgets/layout'
 
@@ -31,7 +33,7 @@ class ParameterRow {
   private readonly slider = h('input', { type: 'range', min: 0, max: 1, step: 'any' })
   private readonly number: HTMLInputElement
   private readonly undo: HTMLButtonElement
-  private readonly wrong = h('p', { class: 'wrong', role: 'alert', hidden: true })
+  private readonly wrong: Fault
   private typing = false // answers do not replace a number that is being typed
 
   constructor(private parameter: Parameter) {
@@ -40,6 +42,7 @@ class ParameterRow {
     const attributes = { class: 'number', autocomplete: 'off', 'data-key': key }
     this.number = h('input', { type: 'text', inputmode: 'decimal', id, ...attributes })
     const resets = { class: 'icon', 'aria-label': `Reset ${label}`, title: 'Back to the design' }
+    this.wrong = fault(this.number)
     this.undo = button('↺', () => change(key, undefined), resets)
     this.slider.setAttribute('aria-label', `${label} slider`)
     this.slider.addEventListener('input', () => {
@@ -50,7 +53,15 @@ class ParameterRow {
     })
     this.number.addEventListener('change', () => this.put())
     const name = h('label', { for: id }, label, h('span', { class: 'unit' }, ` ${unit}`))
-    this.element = h('div', { class: 'row wide' }, name, this.slider, this.number, this.undo, this.wrong)
+    this.element = h(
+      'div',
+      { class: 'row wide', 'data-part': 'changes' },
+      name,
+      this.slider,
+      this.number,
+      this.undo,
+      this.wrong.element,
+    )
     this.show(parameter)
   }
 
@@ -67,9 +78,7 @@ class ParameterRow {
   }
 
   fail(message: string): void {
-    this.wrong.textContent = message
-    this.wrong.hidden = message === ''
-    this.number.setAttribute('aria-invalid', String(message !== ''))
+    this.wrong.tell(message)
   }
 
   show(parameter: Parameter): void {
@@ -108,15 +117,13 @@ export function parametersPanel(): ParametersPanel {
       else add(parameter)
     }
   })
-  const joints = select('Joint model', JOINTS, page.joint, (joint) => store.set({ joint }))
-  store.on(['joint'], () => joints.set(page.joint))
   const undo = { class: 'quiet', title: 'Undo all changes to the design' }
   const reset = button('Reset', () => store.set({ changes: {} }), undo)
   store.on(['changes'], () => {
     reset.disabled = Object.keys(page.changes).length === 0
   })
   const title = h('div', { class: 'bar' }, h('h2', { id: 'numbers-title' }, 'Machine'), spring(), reset)
-  const joint = h('div', { class: 'row single' }, joints.element)
+  const joint = h('div', { class: 'row single' }, choose('joint', 'Joint model', JOINTS))
   return {
     element: h('section', { 'aria-labelledby': 'numbers-title', class: 'block' }, title, list, joint),
     fail: (key, message) => rows.get(key)?.fail(message),

@@ -5,17 +5,22 @@ import { LinePlot } from '../charts/lines'
 import { onTheme } from '../charts/theme'
 import type { Animation } from '../machine3d/animation'
 import { page, store } from '../state/store'
-import { button, h, select } from '../widgets/dom'
+import { choose } from '../widgets/bound'
+import { button, h } from '../widgets/dom'
 import { saveCsv } from '../widgets/download'
 import { sig } from '../widgets/format'
 import { toolBar } from '../widgets/layout'
+import { LineKeys } from './line-keys'
 import { endOf, type Run, runLines, runTable, twistsAt } from './simulation-run'
 
 const SPEEDS = [
-  ['0.25', '¼ speed'],
-  ['1', 'speed 1'],
-  ['4', 'speed 4'],
+  ['fit', 'the whole in 8 s'],
+  ['1', 'real time'],
+  ['10', '10 times slower'],
+  ['100', '100 times slower'],
+  ['1000', '1000 times slower'],
 ] as const
+const [DISPLACEMENTS, FORCES] = [[0, 1], [2]]
 
 export class Playback {
   readonly element: HTMLElement
@@ -34,9 +39,16 @@ export class Playback {
     value: 0,
     'aria-label': 'Time of the playback',
   })
+  readonly tools: HTMLElement
+  private readonly keys = [DISPLACEMENTS, FORCES].map(
+    (at) =>
+      new LineKeys(
+        'hidden_time',
+        at.map((i) => this.plots[i]),
+      ),
+  )
   private readonly words = h('output', { class: 'now' })
   private readonly toggle = button('Pause', () => this.turn(!this.playing), {})
-  private readonly speed = select('Speed', SPEEDS, '1', () => undefined)
   private run: Run | null = null
   private playing = false
   private at = 0 // s
@@ -44,10 +56,14 @@ export class Playback {
 
   constructor(private readonly animation: Animation) {
     this.slider.addEventListener('input', () => this.seek(Number(this.slider.value) * this.end))
-    const tools = toolBar(this.toggle, this.speed.element, this.slider, this.words)
-    this.element = h('div', { hidden: true }, tools, ...this.plots.map((plot) => plot.element))
+    this.tools = toolBar(this.toggle, choose('speed', 'Speed', SPEEDS), this.slider, this.words)
+    const plots = this.keys.flatMap((keys, k) => [
+      keys.element,
+      ...[DISPLACEMENTS, FORCES][k].map((i) => this.plots[i].element),
+    ])
+    this.element = h('div', { hidden: true }, this.tools, ...plots)
     store.on(['tab'], () => page.tab !== 'time' && this.turn(false))
-    store.on(['pose', 'text', 'changes'], () => this.leave())
+    store.on(['speed'], () => this.run && this.tell(this.run))
     onTheme(() => {
       this.draw()
       for (const plot of this.plots) plot.build()
@@ -64,57 +80,61 @@ export class Playback {
     this.draw()
     this.at = 0
     store.set({ mode: -1 })
-    this.turn(true)
+    this.turn(!this.animation.reduced) // where motion is not wanted, it waits for Play
   }
 
   private draw(): void {
     if (!this.run) return
-    runLines(this.run).forEach((lines, i) => {
-      this.plots[i].show(lines)
+    const lines = runLines(this.run)
+    lines.forEach((shown, i) => {
+      this.plots[i].show(shown)
     })
+    this.keys[0].show([...lines[0].series, ...lines[1].series])
+    this.keys[1].show(lines[2].series)
   }
 
   private turn(on: boolean): void {
     this.playing = on
     this.toggle.textContent = on ? 'Pause' : 'Play'
     this.last = performance.now()
-    if (on && this.at >= this.end) this.at = 0
-    if (on) this.play()
-    else if (page.tab !== 'time') this.animation.stop('time')
-  }
-
-  private play(): void {
-    const run = this.run
+    const { run } = this
     if (!run) return
-    this.animation.play('time', () => {
-      this.step(run)
-      return twistsAt(run, this.at)
-    })
+    if (on && this.at >= this.end) this.at = 0
+    if (on)
+      this.animation.play('time', () => {
+        this.advance(run)
+        return twistsAt(run, this.at)
+      })
+    else if (page.tab !== 'time') this.animation.stop('time')
+    else this.animation.hold('time', twistsAt(run, this.at))
+    this.tell(run)
   }
 
-  /** Stop: another machine or pose is shown. */
-  private leave(): void {
+  /** Stop: the run belongs to another machine or pose than the one shown. */
+  leave(): void {
     if (!this.run) return
     this.turn(false)
     this.animation.stop('time')
   }
 
-  private step(run: Run): void {
+  private advance(run: Run): void {
     const now = performance.now()
-    if (this.playing) {
-      this.at += ((now - this.last) / 1000) * run.speed * Number(this.speed.element.value)
-      if (this.at > this.end) this.at = this.end > 0 ? this.at % this.end : 0
-    }
+    this.at += ((now - this.last) / 1000) * pace(run)
+    if (this.at > this.end) this.at = this.end > 0 ? this.at % this.end : 0
     this.last = now
+    this.tell(run)
+  }
+
+  private tell(run: Run): void {
     this.slider.value = String(this.end ? this.at / this.end : 0)
-    this.words.textContent = `${sig(this.at, 4)} s, drawn ${sig(run.factor, 3)} × larger`
+    const size = run.factor === 1 ? 'to scale' : `${sig(run.factor, 3)} × larger`
+    this.words.textContent = `${sig(this.at, 4)} s, ${slowing(pace(run))}, drawn ${size}`
     for (const plot of this.plots) plot.playhead(this.at)
   }
 
   private seek(seconds: number): void {
     this.at = Math.min(Math.max(seconds, 0), this.end)
     this.turn(false)
-    this.play()
   }
 
   csv(): void {
@@ -127,4 +147,14 @@ export class Playback {
       1,
     )
   }
+}
+
+/** Simulated seconds in a second of playback. */
+function pace(run: Run): number {
+  return page.speed === 'fit' ? run.speed : 1 / Number(page.speed)
+}
+
+function slowing(pace: number): string {
+  if (Math.abs(pace - 1) < 0.005) return 'in real time'
+  return pace < 1 ? `${sig(1 / pace, 3)} times slower` : `${sig(pace, 3)} times faster`
 }

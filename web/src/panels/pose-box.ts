@@ -41,5 +41,5 @@ export function boxTable(): HTMLElement {
   const table = h('table', { class: 'data narrow' }, h('thead', {}, head), h('tbody', {}, ...rows))
   const reset = () => page.design && store.set({ box: page.design.box })
   const own = button('Box of the design', reset, { class: 'quiet' })
-  return h('details', { class: 'fold' }, h('summary', {}, 'Pose box'), table, own)
+  return h('details', { class: 'fold', 'data-part': 'box' }, h('summary', {}, 'Pose box'), table, own)
 }

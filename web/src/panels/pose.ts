@@ -2,13 +2,18 @@
 
 import { COORDINATES } from '../state/answers'
 import { page, store } from '../state/store'
-import { button, freshId, h, select } from '../widgets/dom'
+import { choose } from '../widgets/bound'
+import { button, freshId, h } from '../widgets/dom'
+import { fault } from '../widgets/fault'
 import { field, parsed } from '../widgets/format'
 
 const isLength = (i: number) => i < 3
 const factor = (i: number) => (isLength(i) && page.unit === 'mm' ? 1000 : 1)
 const unit = (i: number) => (isLength(i) ? page.unit : '°')
-const NAMES = ['x', 'y', 'z', 'roll', 'pitch', 'yaw']
+const UNITS = [
+  ['mm', 'mm'],
+  ['m', 'm'],
+] as const
 
 export function setPose(pose: number[]): void {
   store.set({ pose: [...pose] })
@@ -25,59 +30,71 @@ interface Row {
   show(): void
 }
 
-function row(i: number): Row {
-  const id = freshId('pose')
-  const name = COORDINATES[i]
-  const slider = h('input', { type: 'range', step: 'any', 'aria-label': `${name} slider`, tabindex: 0 })
-  const number = h('input', {
-    type: 'text',
-    inputmode: 'decimal',
-    id,
-    class: 'number',
-    autocomplete: 'off',
-    spellcheck: 'false',
-  })
-  const suffix = h('span', { class: 'unit' })
-  let typing = false // answers do not replace a number that is being typed
-  const put = () => {
-    typing = false
-    const value = parsed(number.value)
-    const good = Number.isFinite(value)
-    number.setAttribute('aria-invalid', String(!good))
-    if (good) setOne(i, value / factor(i))
-  }
-  slider.addEventListener('input', () => {
+/** A coordinate with its unit, as the number has it. */
+const text = (i: number, value: number) => `${field(value * factor(i))} ${unit(i)}`
+
+/** The slider of a coordinate, from end to end of the pose box. */
+function slider(i: number): HTMLInputElement {
+  const element = h('input', { type: 'range', step: 'any', 'aria-label': `${COORDINATES[i]} slider`, tabindex: 0 })
+  element.addEventListener('input', () => {
     const [low, high] = [page.box.low[i], page.box.high[i]]
     const steps = (high - low) / 1000
     const power = 10 ** Math.floor(Math.log10(steps || 1))
-    setOne(i, Number((Math.round(Number(slider.value) / power) * power).toPrecision(12)))
+    setOne(i, Number((Math.round(Number(element.value) / power) * power).toPrecision(12)))
   })
-  slider.addEventListener('keydown', (event) => {
+  element.addEventListener('keydown', (event) => {
     const way = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10 }[event.key]
     if (!way) return
     event.preventDefault()
     const step = (page.box.high[i] - page.box.low[i]) / 200
     setOne(i, Math.min(Math.max(page.pose[i] + way * step, page.box.low[i]), page.box.high[i]))
   })
-  number.addEventListener('input', () => (typing = true))
-  number.addEventListener('change', put)
-  number.addEventListener('keydown', (event) => {
+  return element
+}
+
+/** The number of a coordinate, and what is wrong with it. */
+function number(i: number): { input: HTMLInputElement; wrong: HTMLElement; show(): void } {
+  const attributes = { class: 'number', autocomplete: 'off', spellcheck: 'false' }
+  const input = h('input', { type: 'text', inputmode: 'decimal', id: freshId('pose'), ...attributes })
+  const wrong = fault(input)
+  let typing = false // answers do not replace a number that is being typed
+  const put = () => {
+    typing = false
+    const value = parsed(input.value)
+    if (Number.isFinite(value)) return setOne(i, value / factor(i))
+    const typed = input.value.trim() || 'empty'
+    wrong.tell(`${COORDINATES[i]} is ${typed}; give a number of ${unit(i)}. Shown: ${text(i, page.pose[i])}.`)
+  }
+  input.addEventListener('input', () => {
+    typing = true
+  })
+  input.addEventListener('change', put)
+  input.addEventListener('keydown', (event) => {
     if (event.key === 'Enter') put()
   })
-  const element = h('div', { class: 'row' }, h('label', { for: id }, NAMES[i]), slider, number, suffix)
+  const show = () => {
+    const shown = field(page.pose[i] * factor(i))
+    if (typing) return
+    if (document.activeElement !== input || parsed(input.value) !== parsed(shown)) input.value = shown
+    wrong.tell('')
+  }
+  return { input, wrong: wrong.element, show }
+}
+
+function row(i: number): Row {
+  const [range, { input, wrong, show }] = [slider(i), number(i)]
+  const suffix = h('span', { class: 'unit' })
+  const outside = h('span', { class: 'hint', hidden: true })
+  const label = h('label', { for: input.id }, COORDINATES[i])
   return {
-    element,
+    element: h('div', { class: 'row', 'data-part': 'pose' }, label, range, input, suffix, wrong, outside),
     show() {
-      const [low, high] = [page.box.low[i], page.box.high[i]]
-      slider.min = String(low)
-      slider.max = String(high)
-      slider.value = String(page.pose[i])
-      const shown = field(page.pose[i] * factor(i))
-      slider.setAttribute('aria-valuetext', `${shown} ${unit(i)}`)
-      if (!typing && (document.activeElement !== number || parsed(number.value) !== parsed(shown))) number.value = shown
-      number.removeAttribute('aria-invalid')
-      const outside = page.pose[i] < low - 1e-12 || page.pose[i] > high + 1e-12
-      element.classList.toggle('outside', outside)
+      const [low, high, at] = [page.box.low[i], page.box.high[i], page.pose[i]]
+      Object.assign(range, { min: String(low), max: String(high), value: String(at) })
+      range.setAttribute('aria-valuetext', text(i, at))
+      show()
+      outside.hidden = at >= low - 1e-12 && at <= high + 1e-12
+      outside.textContent = `outside the pose box: ${text(i, low)} to ${text(i, high)}`
       suffix.textContent = unit(i)
     },
   }
@@ -88,34 +105,18 @@ export function posePanel(): HTMLElement {
   const show = () => {
     for (const row of rows) row.show()
   }
-  const units = select(
-    'Unit of lengths',
-    [
-      ['mm', 'mm'],
-      ['m', 'm'],
-    ] as const,
-    page.unit,
-    (value) => store.set({ unit: value }),
-  )
+  const units = choose('unit', 'Unit of lengths', UNITS)
   const home = button('Home', () => page.design && setPose(page.design.home), {
     title: 'Move to the home pose (H)',
     class: 'quiet',
   })
   store.on(['pose', 'unit', 'box', 'design'], () => {
-    units.set(page.unit)
     show()
   })
   return h(
     'section',
     { 'aria-labelledby': 'pose-title', class: 'block' },
-    h(
-      'div',
-      { class: 'bar' },
-      h('h2', { id: 'pose-title' }, 'Pose'),
-      h('span', { class: 'spring' }),
-      home,
-      units.element,
-    ),
+    h('div', { class: 'bar' }, h('h2', { id: 'pose-title' }, 'Pose'), h('span', { class: 'spring' }), home, units),
     ...rows.map((r) => r.element),
   )
 }

@@ -7,10 +7,12 @@ import type { Animation } from '../machine3d/animation'
 import { COORDINATES, type FrequencyResponse } from '../state/answers'
 import { Live } from '../state/api'
 import { page, store } from '../state/store'
-import { freshId, h, select, settled, status, svg } from '../widgets/dom'
+import { choose, numberBox } from '../widgets/bound'
+import { h, status } from '../widgets/dom'
 import { csvButton, figureButtons, saveCsv } from '../widgets/download'
-import { parsed } from '../widgets/format'
 import { titleBar, toolBar } from '../widgets/layout'
+import { Result } from '../widgets/result'
+import { LineKeys } from './line-keys'
 import { responseLines, responseTable, TURN } from './response-lines'
 import { Shaker } from './shake'
 
@@ -30,54 +32,22 @@ const UNITS = [
   ['Hz', 'Hz'],
   ['rad', 'rad/s'],
 ] as const
-const OUTPUTS = COORDINATES.map((c, i) => [String(i), c] as const)
+const OUTPUTS = (['1', '2', '3', '4', '5', '6'] as const).map((n, i) => [n, COORDINATES[i]] as const)
+const LOSS_TITLE = 'Structural damping of the legs, K (1 + iη)'
 const HINT =
   'Exact tangent at rest, with damping. Dotted lines: damped natural frequencies. Click a plot to shake the base ' +
-  'there; drag across to zoom, double-click to see all; click a name above to hide its line.'
+  'there; drag across to zoom, double-click to see all; click a name above to hide its line. Point at a plot to read ' +
+  'its values.'
 
-/** Buttons that show and hide the lines of all plots by their names. */
-class LineKeys {
-  readonly element = h('div', { class: 'bar tools keys', role: 'group', 'aria-label': 'Lines shown' })
-  private drawn = ''
-
-  constructor(private readonly plots: LinePlot[]) {}
-
-  show(names: string[], anew = false): void {
-    if (this.drawn === names.join() && !anew) return
-    this.drawn = names.join()
-    this.element.replaceChildren(h('span', { class: 'hint' }, 'by'), ...names.map((name, i) => this.key(name, i)))
-  }
-
-  private key(name: string, i: number): HTMLElement {
-    const stroke = { stroke: categories()[i], 'stroke-width': 2.5, 'stroke-dasharray': DASHES[i].join(' ') }
-    const line = svg('line', { x1: 0, x2: 22, y1: 4, y2: 4, ...stroke })
-    const sample = svg('svg', { width: 22, height: 8, 'aria-hidden': 'true' }, line)
-    const key = h('button', { type: 'button', class: 'key', 'aria-pressed': 'true' }, sample, name)
-    key.addEventListener('click', () => {
-      const on = key.getAttribute('aria-pressed') !== 'true'
-      key.setAttribute('aria-pressed', String(on))
-      for (const plot of this.plots) plot.reveal(name, on)
-    })
-    return key
-  }
+function responseQuestion() {
+  return { ...store.question(), quantity: page.response, loss_factor: page.loss }
 }
 
 class ResponsePanel {
   readonly element: HTMLElement
   private answer: FrequencyResponse | null = null
-  private readonly note = status({ class: 'hint' })
-  private readonly quantity = select('Response', QUANTITIES, 'absolute', () => this.live.request())
-  private readonly layout = select('Panels', LAYOUTS, 'all', () => this.show())
-  private readonly output = select('Output', OUTPUTS, '2', () => this.show())
-  private readonly unit = select('Frequency axis', UNITS, 'Hz', () => this.show())
-  private readonly loss = h('input', {
-    type: 'text',
-    class: 'number tiny',
-    value: '0',
-    id: freshId('loss'),
-    inputmode: 'decimal',
-    title: 'Structural damping of the legs, K (1 + iη)',
-  })
+  private readonly note = status({ class: 'wrong' })
+  private readonly output = choose('output', 'Output', OUTPUTS)
   private readonly plots = COORDINATES.map(
     () =>
       new LinePlot(
@@ -86,13 +56,15 @@ class ResponsePanel {
       ),
   )
   private readonly grid = h('div', { class: 'panels' }, ...this.plots.map((p) => p.element))
-  private readonly keys = new LineKeys(this.plots)
+  private readonly keys = new LineKeys('hidden', this.plots, 'by')
   private readonly shaker: Shaker
+  private readonly result: Result
   private readonly live = new Live<FrequencyResponse>(
     'api/response',
-    () => ({ ...store.question(), quantity: this.quantity.element.value, loss_factor: parsed(this.loss.value) }),
-    (answer) => {
+    responseQuestion,
+    (answer, asked) => {
       this.answer = answer
+      this.result.shows(asked)
       this.show()
     },
     (error) => {
@@ -101,68 +73,73 @@ class ResponsePanel {
   )
 
   constructor(private readonly animation: Animation) {
-    for (const plot of this.plots) plot.legend = false
     this.shaker = new Shaker(animation, () => page.tab === 'response')
-    this.loss.addEventListener('change', () => this.live.request())
-    this.output.element.hidden = true
-    const tools = [this.quantity, this.layout, this.output, this.unit].map((choice) => choice.element)
-    const name = () => `response-${this.quantity.element.value}`
+    const name = () => `response-${page.response}`
+    const csv = csvButton('Response', () => this.answer && saveCsv(name(), ...responseTable(this.answer)))
+    const figures = figureButtons(name, 'Response', () => this.figure())
+    this.result = new Result(
+      { question: responseQuestion, ask: this.live.request, live: true, delay: 60 },
+      [this.keys.element, this.grid],
+      [csv, figures],
+    )
     this.element = h(
       'div',
       { id: 'response' },
-      titleBar(
-        'h2',
-        'Frequency response',
-        csvButton('Response', () => this.answer && saveCsv(name(), ...responseTable(this.answer))),
-        figureButtons(name, 'Response', () => this.figure()),
-      ),
-      toolBar(...tools, h('label', { for: this.loss.id }, 'loss factor'), this.loss),
+      titleBar('h2', 'Frequency response', csv, figures),
+      this.tools(),
       this.note,
       this.shaker.element,
-      this.keys.element,
-      this.grid,
+      this.result.framed(),
       h('p', { class: 'hint' }, HINT),
     )
     this.listen()
   }
 
+  private tools(): HTMLElement {
+    const loss = numberBox('loss', 'Loss factor', { class: 'number tiny', title: LOSS_TITLE })
+    return toolBar(
+      choose('response', 'Response', QUANTITIES),
+      choose('panels', 'Panels', LAYOUTS),
+      this.output,
+      choose('frequency_unit', 'Frequency axis', UNITS),
+      h('span', {}, 'loss factor'),
+      loss.input,
+      loss.wrong,
+    )
+  }
+
   private listen(): void {
-    const refresh = settled(60, () => this.element.offsetParent && this.live.request())
-    store.on(['snapshot'], refresh)
-    store.on(['tab'], () => {
-      requestAnimationFrame(refresh)
-      if (page.tab !== 'response') this.animation.stop('shake')
-    })
+    store.on(['panels', 'output', 'frequency_unit'], () => this.show())
+    store.on(['tab'], () => page.tab !== 'response' && this.animation.stop('shake'))
     onTheme(() => {
-      if (this.answer) this.keys.show(this.answer.inputs, true)
       this.show()
       for (const plot of this.plots) plot.build()
     })
   }
 
   private get whole(): boolean {
-    return this.layout.element.value !== 'all'
+    return page.panels !== 'all'
   }
 
   private get hertz(): boolean {
-    return this.unit.element.value === 'Hz'
+    return page.frequency_unit === 'Hz'
   }
 
   private show(): void {
     const { answer, whole, hertz } = this
     if (!answer) return
     this.note.textContent = ''
-    this.keys.show(answer.inputs)
-    this.output.element.hidden = !whole
+    this.output.hidden = !whole
     this.grid.classList.toggle('one', whole)
-    const chosen = Number(this.output.element.value)
-    const phase = this.layout.element.value === 'phase'
+    const phase = page.panels === 'phase'
     this.plots.forEach((plot, i) => {
       plot.element.hidden = whole && i > 0
-      if (!plot.element.hidden) plot.show(responseLines(answer, whole ? chosen : i, { phase, hertz }))
+      const output = whole ? Number(page.output) - 1 : i
+      if (!plot.element.hidden) plot.show(responseLines(answer, output, { phase, hertz }))
     })
+    this.keys.show(answer.inputs.map((input, i) => ({ name: input, colour: categories()[i], dash: DASHES[i] })))
     answer.outputs.forEach((name, i) => {
-      this.output.element.options[i].textContent = name
+      this.output.options[i].textContent = name
     })
   }
 

@@ -3,45 +3,55 @@
 import type { Animation } from '../machine3d/animation'
 import { twist } from '../machine3d/twist'
 import { COORDINATES, type ShakenBase } from '../state/answers'
-import { ask, Refused } from '../state/api'
-import { page, store } from '../state/store'
-import { button, freshId, h, select, status } from '../widgets/dom'
-import { field, parsed, sig } from '../widgets/format'
+import { Live } from '../state/api'
+import { page, type Question, store } from '../state/store'
+import { choose, numberBox } from '../widgets/bound'
+import { button, h } from '../widgets/dom'
+import { sig } from '../widgets/format'
 import { toolBar } from '../widgets/layout'
+import { Result } from '../widgets/result'
 import { TURN } from './response-lines'
 
+const AXES = COORDINATES.map((c) => [c, c] as const)
+const STILL = 'Drawn larger, at one instant: this computer asks for reduced motion.'
 const SPEED = 0.7 // swings drawn per second
+
+function shakeQuestion() {
+  return { ...store.question(), omega: TURN * page.shake, axis: page.shake_axis }
+}
 
 export class Shaker {
   readonly element: HTMLElement
-  private readonly frequency = h('input', {
-    type: 'text',
-    class: 'number',
-    inputmode: 'decimal',
-    id: freshId('shake'),
-    'aria-label': 'Shaking frequency, Hz',
-  })
-  private readonly axis = select(
-    'Axis of the base',
-    COORDINATES.map((c) => [c, c] as const),
-    'z',
-    () => void this.start(),
+  private readonly words = h('p', { class: 'hint', id: 'shake-words' })
+  private readonly toggle = button('Shake the base', () => (this.on ? this.stop() : this.start()), { id: 'shake' })
+  private readonly result: Result
+  private readonly live = new Live<ShakenBase>(
+    'api/shake',
+    shakeQuestion,
+    (answer, asked) => {
+      this.result.shows(asked)
+      if (this.on) this.play(answer, asked)
+    },
+    (error) => {
+      this.stop()
+      this.words.textContent = error.message
+    },
   )
-  private readonly words = status({ class: 'hint', id: 'shake-words' })
-  private readonly toggle = button('Shake the base', () => (this.on ? this.stop() : void this.start()), {
-    'aria-pressed': 'false',
-    id: 'shake',
-  })
   private on = false
 
   constructor(
     private readonly animation: Animation,
     private readonly shown: () => boolean,
   ) {
-    const tools = [this.toggle, h('span', {}, 'along'), this.axis.element, h('span', {}, 'at'), this.frequency]
-    this.element = h('div', {}, toolBar(...tools, h('span', {}, 'Hz')), this.words)
-    this.frequency.addEventListener('change', () => void this.start())
-    store.on(['snapshot'], () => this.follow())
+    const frequency = numberBox('shake', 'Shaking frequency, Hz')
+    const axis = choose('shake_axis', 'Axis of the base', AXES)
+    this.result = new Result({ question: shakeQuestion, ask: () => this.start(), live: false, again: 'shake again' }, [
+      this.words,
+    ])
+    const tools = [this.toggle, h('span', {}, 'along'), axis, h('span', {}, 'at'), frequency.input, h('span', {}, 'Hz')]
+    this.element = h('div', {}, toolBar(...tools, frequency.wrong), this.result.framed())
+    store.on(['snapshot'], () => this.suggest())
+    store.on(['snapshot', 'shake', 'shake_axis'], () => this.on && shown() && this.start())
     store.on(['tab', 'mode'], () => {
       if (this.on && (!shown() || page.mode >= 0)) this.stop()
     })
@@ -49,43 +59,41 @@ export class Shaker {
 
   /** Shake at a frequency, Hz. */
   at(hertz: number): void {
-    this.frequency.value = field(Number(hertz.toPrecision(5)))
-    void this.start()
+    store.set({ shake: Number(hertz.toPrecision(5)) })
+    this.start()
   }
 
-  /** After a change of the machine, shake it again. The first frequency is near that of the first mode. */
-  private follow(): void {
-    const first = page.snapshot?.damped?.frequency[0] ?? page.snapshot?.frequency[0]
-    if (!this.frequency.value && first) this.frequency.value = field(Number((0.97 * first).toPrecision(4)))
-    if (this.on && this.shown()) void this.start()
+  /** The first frequency is near that of the first mode. */
+  private suggest(): void {
+    const first = page.snapshot?.damped?.frequency.find((f) => f) ?? page.snapshot?.frequency[0]
+    if (!page.shake && first) store.set({ shake: Number((0.97 * first).toPrecision(4)) })
   }
 
-  private async start(): Promise<void> {
-    const hertz = parsed(this.frequency.value)
-    if (!(hertz > 0)) {
-      this.words.textContent = `The frequency is ${this.frequency.value || 'empty'}; give a number of Hz above 0.`
-      return
-    }
-    try {
-      const axis = this.axis.element.value
-      this.play(await ask<ShakenBase>('api/shake', { ...store.question(), omega: TURN * hertz, axis }), axis, hertz)
-    } catch (error) {
-      if (!(error instanceof Refused)) throw error
-      this.words.textContent = error.message
-    }
+  private start(): void {
+    this.on = page.shake > 0
+    this.paint()
+    if (this.on) this.live.request()
+    else this.words.textContent = 'Give a frequency above 0 Hz.'
   }
 
-  private play({ platform, base, ratio, reach }: ShakenBase, axis: string, hertz: number): void {
+  private play({ platform, base, ratio, reach }: ShakenBase, { omega, axis }: Question): void {
+    if (!this.shown()) return
     if (page.mode >= 0) store.set({ mode: -1 })
     this.on = true
     this.paint()
-    this.animation.play('shake', (t) => {
-      const [c, s] = [Math.cos(TURN * SPEED * t), Math.sin(TURN * SPEED * t)]
-      const moved = platform.real.map((re, i) => re * c - platform.imag[i] * s)
-      return [twist(moved, reach), twist(base, reach * c)]
-    })
+    const hertz = Number(omega) / TURN
+    this.animation.swing(
+      'shake',
+      (t) => {
+        const [c, s] = [Math.cos(TURN * SPEED * t), Math.sin(TURN * SPEED * t)]
+        const moved = platform.real.map((re, i) => re * c - platform.imag[i] * s)
+        return [twist(moved, reach), twist(base, reach * c)]
+      },
+      SPEED,
+    )
     const moves = `At ${sig(hertz, 4)} Hz the platform's ${axis} moves ${sig(ratio, 3)} times as far as the base's.`
-    this.words.textContent = `${moves} Drawn larger and ${sig(hertz / SPEED, 3)} times slower.`
+    const how = this.animation.reduced ? STILL : `Drawn larger and ${sig(hertz / SPEED, 3)} times slower.`
+    this.words.textContent = `${moves} ${how}`
   }
 
   private stop(): void {
@@ -96,6 +104,5 @@ export class Shaker {
 
   private paint(): void {
     this.toggle.textContent = this.on ? 'Stop' : 'Shake the base'
-    this.toggle.setAttribute('aria-pressed', String(this.on))
   }
 }

@@ -33,9 +33,9 @@ const PLOTS: Plot[] = [
     colours: [0, 1, 2, 0, 1, 2],
   },
   {
-    title: 'Rotation from rest',
-    label: 'rotation, mrad',
-    names: ['roll', 'pitch', 'yaw', 'base roll', 'base pitch', 'base yaw'],
+    title: 'Rotation from rest (rotation vector)',
+    label: 'rotation vector, mrad',
+    names: ['about x', 'about y', 'about z', 'base about x', 'base about y', 'base about z'],
     columns: [4, 5, 6, 10, 11, 12],
     factor: 1e3,
     colours: [0, 1, 2, 0, 1, 2],
@@ -88,7 +88,8 @@ export function twistsAt({ rows, count, factor }: Run, seconds: number): [Twist,
 
 /** Head and rows of the table. */
 export function runTable({ rows, count }: Run): [string[], number[][]] {
-  const six = (name: string) => COORDINATES.map((c, i) => `${name}_${c}_${i < 3 ? 'm' : 'rad'}`)
+  const three = (name: string, unit: string) => ['x', 'y', 'z'].map((c) => `${name}_${c}_${unit}`)
+  const six = (body: string) => [...three(body, 'm'), ...three(`${body}_rotation_vector`, 'rad')]
   const legs = (name: string) => LEGS.map((n) => `leg_${n}_${name}`)
   const head = ['time_s', ...six('platform'), ...six('base'), ...legs('length_m'), ...legs('force_n')]
   const row = (i: number) => Array.from(rows.subarray(i * COLUMNS, (i + 1) * COLUMNS))

@@ -3,21 +3,23 @@
 import { type Grid, Heatmap } from '../charts/heatmap'
 import { type Scale, valueAt } from '../charts/scale'
 import { onTheme } from '../charts/theme'
-import { COORDINATES, type Coordinate } from '../state/answers'
+import { COORDINATES } from '../state/answers'
 import { floats } from '../state/api'
 import { page, store } from '../state/store'
-import { h, select, settled } from '../widgets/dom'
+import { choose } from '../widgets/bound'
+import { h } from '../widgets/dom'
 import { csvButton, figureButtons, saveCsv } from '../widgets/download'
 import { count } from '../widgets/format'
 import { Runner } from '../widgets/job'
 import { titleBar, toolBar } from '../widgets/layout'
+import { Result } from '../widgets/result'
 import { setPose } from './pose'
 import { unitOf } from './pose-box'
 
 const SIDE = 120 // poses along each coordinate
 const QUANTITIES = [
-  ['0', 'index ω₁'],
-  ['1', 'cond(H)'],
+  ['index', 'index ω₁'],
+  ['condition', 'cond(H)'],
 ] as const
 const NAMES = COORDINATES.map((c) => [c, c] as const)
 const DONE = `${count(SIDE ** 2)} poses; the other four coordinates are the machine's. Paler: beyond the limits.`
@@ -33,58 +35,60 @@ function table({ side, x, y, values }: Grid): number[][] {
   })
 }
 
+/** The coordinates across and up do not count in the pose of a slice: a click in the map moves only these. */
+function sliceQuestion() {
+  const { across, up, box } = page
+  const pose = page.pose.map((v, i) => (COORDINATES[i] === across || COORDINATES[i] === up ? box.low[i] : v))
+  return { ...store.machine(), pose, box, across, up, side: SIDE }
+}
+
 export class SlicePart {
   readonly element: HTMLElement
   private readonly heat = new Heatmap((x, y) => this.move(x, y))
   private readonly runner = new Runner()
-  private readonly across = select('Coordinate across', NAMES, 'x', () => void this.run())
-  private readonly up = select('Coordinate up', NAMES, 'y', () => void this.run())
-  private readonly quantity = select('Quantity', QUANTITIES, '0', () => this.show(this.heat.shown))
+  private readonly result: Result
   private drawn = { across: 0, up: 1 } // coordinates of the map shown
-  private moved = false // by a click in this map, which then stays valid
 
   constructor() {
-    const again = settled(250, () => this.element.offsetParent && void this.run())
-    store.on(['pose'], () => {
-      this.mark()
-      if (this.moved) this.moved = false
-      else if (this.heat.shown) again()
-    })
-    onTheme(this.heat.draw)
-    const tools = [this.quantity.element, h('span', {}, 'over'), this.across.element, h('span', {}, 'and')]
+    const csv = csvButton('Slice', () => this.csv())
     const figures = figureButtons(
       () => 'slice',
       'Slice',
       () => this.heat.figure(),
     )
+    this.result = new Result(
+      { question: sliceQuestion, ask: () => void this.run(), live: true },
+      [this.heat.element],
+      [csv, figures],
+    )
+    store.on(['pose'], () => this.mark())
+    store.on(['map'], () => this.show(this.heat.shown))
+    onTheme(this.heat.draw)
+    const [across, up] = [choose('across', 'Coordinate across', NAMES), choose('up', 'Coordinate up', NAMES)]
+    const tools = [choose('map', 'Quantity', QUANTITIES), h('span', {}, 'over'), across, h('span', {}, 'and'), up]
     this.element = h(
       'section',
       { 'aria-label': 'Slice of the workspace', class: 'card', id: 'slice' },
-      titleBar(
-        'h3',
-        'Slice at the pose',
-        csvButton('Slice', () => this.csv()),
-        figures,
-      ),
-      toolBar(...tools, this.up.element),
+      titleBar('h3', 'Slice at the pose', csv, figures),
+      toolBar(...tools),
       this.runner.element,
-      this.heat.element,
+      this.result.framed(),
     )
   }
 
-  async run(): Promise<void> {
-    const names = { across: this.across.element.value, up: this.up.element.value }
-    const [across, up] = [names.across, names.up].map((name) => COORDINATES.indexOf(name as Coordinate))
+  private async run(): Promise<void> {
+    const question = sliceQuestion()
+    const [across, up] = [question.across, question.up].map((name) => COORDINATES.indexOf(name))
     const values = new Float32Array(3 * SIDE * SIDE).fill(Number.NaN)
     const grid: Grid = { side: SIDE, x: scaleOf(across), y: scaleOf(up), values }
     let at = 0
-    const spec = { ...store.question(), box: page.box, ...names, side: SIDE }
-    const whole = await this.runner.run('slice', spec, (message, data) => {
+    const whole = await this.runner.run('slice', question, (message, data) => {
       if (message.type !== 'rows') return
       const part = floats(data)
       values.set(part, at)
       at += part.length
       this.drawn = { across, up }
+      this.result.shows(question)
       this.show(grid)
       this.mark()
     })
@@ -92,7 +96,7 @@ export class SlicePart {
   }
 
   private show(grid: Grid | null): void {
-    if (grid) this.heat.show(grid, Number(this.quantity.element.value))
+    if (grid) this.heat.show(grid, page.map === 'condition' ? 1 : 0)
   }
 
   private mark(): void {
@@ -103,7 +107,6 @@ export class SlicePart {
     const pose = [...page.pose]
     pose[this.drawn.across] = Number(x.toPrecision(6))
     pose[this.drawn.up] = Number(y.toPrecision(6))
-    this.moved = true
     setPose(pose)
   }
 

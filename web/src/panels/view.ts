@@ -3,7 +3,8 @@
 import { onTheme, theme } from '../charts/theme'
 import type { Scene } from '../machine3d/scene'
 import { page, store } from '../state/store'
-import { button, h, select } from '../widgets/dom'
+import { choose, toggle } from '../widgets/bound'
+import { button, h } from '../widgets/dom'
 import { fileName } from '../widgets/format'
 import { spring } from '../widgets/layout'
 import { colourBar, legColours } from './leg-colours'
@@ -24,7 +25,7 @@ export function viewPanel(scene: Scene): HTMLElement {
     const s = page.snapshot
     if (!s || !page.design) return
     if (scene.machine.show(s.geometry, page.design.leg)) scene.paintGround()
-    if (page.text !== shown) scene.look('iso')
+    if (page.text !== shown) scene.look(page.view)
     shown = page.text
     const painted = legColours(s)
     legend.show(painted)
@@ -48,23 +49,21 @@ export function viewPanel(scene: Scene): HTMLElement {
 
 function tools(scene: Scene): HTMLElement {
   const views = (Object.keys(VIEWS) as (keyof typeof VIEWS)[]).map((name) =>
-    button(VIEWS[name], () => scene.look(name), { class: 'quiet', title: `${name} view` }),
+    button(VIEWS[name], () => store.set({ view: name }), { class: 'quiet', title: `${name} view` }),
   )
-  const colour = select('Colour of the legs', COLOURS, page.colour, (value) => store.set({ colour: value }))
-  store.on(['colour'], () => colour.set(page.colour))
-  const toggle = () => {
-    scene.machine.showLabels(!scene.machine.labelsShown)
-    labels.setAttribute('aria-pressed', String(scene.machine.labelsShown))
+  store.on(['view'], () => scene.look(page.view))
+  scene.turned = (view) => store.set({ view })
+  store.on(['labels'], () => {
+    scene.machine.showLabels(page.labels)
     scene.draw()
-  }
-  const labels = button('Labels', toggle, { 'aria-pressed': 'true', class: 'quiet' })
+  })
   const file = () => fileName(page.design?.name ?? 'hexapod')
   return h(
     'div',
     { class: 'bar tools over' },
     h('span', { role: 'group', 'aria-label': 'Standard views' }, ...views),
-    colour.element,
-    labels,
+    choose('colour', 'Colour of the legs', COLOURS),
+    toggle('labels', 'Labels', { class: 'quiet' }),
     spring(),
     button('PNG', () => scene.savePng(file()), { class: 'quiet', 'aria-label': '3-D view as PNG' }),
     button('SVG', () => void scene.saveSvg(file()), { class: 'quiet', 'aria-label': '3-D view as SVG' }),

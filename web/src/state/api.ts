@@ -1,6 +1,7 @@
 // Requests to the server: single answers, answers that follow a state, and streams of binary numbers.
 
 import type { FieldError, JobFailure, JobMessage, Refusal } from './answers'
+import type { Question } from './store'
 
 /** The server refuses a request; `errors` stand at the fields that are wrong. */
 export class Refused extends Error {
@@ -9,6 +10,34 @@ export class Refused extends Error {
   constructor(message: string, fields: FieldError[] = []) {
     super(message)
     this.errors = fields.length ? fields : [{ key: '', message, line: 0 }]
+  }
+}
+
+/** The server does not answer at all. */
+export class Unreachable extends Refused {
+  constructor() {
+    super('The server does not answer. Is `flexapod serve` still running?')
+  }
+}
+
+let lost: () => void = () => undefined
+
+/** Set what is told whenever the server does not answer. */
+export function onLost(tell: () => void): void {
+  lost = tell
+}
+
+function unreachable(): Unreachable {
+  lost()
+  return new Unreachable()
+}
+
+/** Whether the server answers. */
+export async function answers(): Promise<boolean> {
+  try {
+    return (await fetch('icon.svg', { method: 'HEAD', cache: 'no-store' })).ok
+  } catch {
+    return false
   }
 }
 
@@ -23,7 +52,7 @@ async function send(path: string, body: unknown, signal?: AbortSignal): Promise<
     })
   } catch (error) {
     if (signal?.aborted) throw error
-    throw new Refused('The server does not answer. Is `flexapod serve` still running?')
+    throw unreachable()
   }
   if (response.ok) return response
   const answer: Refusal = await response
@@ -47,8 +76,8 @@ export class Live<T> {
 
   constructor(
     private readonly path: string,
-    private readonly body: () => unknown,
-    private readonly answered: (answer: T) => void,
+    private readonly body: () => Question,
+    private readonly answered: (answer: T, asked: Question) => void,
     private readonly failed: (error: Refused) => void,
   ) {}
 
@@ -64,7 +93,7 @@ export class Live<T> {
       const asked = this.body()
       try {
         const answer = await ask<T>(this.path, asked)
-        this.answered(answer)
+        this.answered(answer, asked)
       } catch (error) {
         if (!(error instanceof Refused)) throw error
         const meant = JSON.stringify(asked) === JSON.stringify(this.body()) // otherwise a newer request follows
@@ -86,7 +115,10 @@ function pieces(reader: ReadableStreamDefaultReader<Uint8Array>): (length: numbe
     const parts: Uint8Array[] = [held]
     let have = held.length
     while (have < length) {
-      const { done, value } = await reader.read()
+      const { done, value } = await reader.read().catch((error: unknown) => {
+        if (error instanceof DOMException) throw error // the page itself stops the job
+        throw unreachable()
+      })
       if (done) return null
       parts.push(value)
       have += value.length
@@ -98,7 +130,7 @@ function pieces(reader: ReadableStreamDefaultReader<Uint8Array>): (length: numbe
 }
 
 /** A long job's messages as they come. Aborting the signal stops the job on the server too. */
-export async function* job(kind: string, spec: unknown, signal: AbortSignal): AsyncGenerator<[Message, Uint8Array]> {
+export async function* job(kind: string, spec: Question, signal: AbortSignal): AsyncGenerator<[Message, Uint8Array]> {
   const response = await send(`api/jobs/${kind}`, spec, signal)
   const take = pieces(response.body!.getReader())
   for (;;) {

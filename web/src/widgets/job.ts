@@ -2,6 +2,7 @@
 
 import type { Progress } from '../state/answers'
 import { job, type Message, Refused } from '../state/api'
+import type { Question } from '../state/store'
 import { button, h, status } from './dom'
 import { duration } from './format'
 
@@ -18,7 +19,7 @@ export class Runner {
   }
 
   /** Run a job; one that still runs is stopped first. Resolves to whether the job was completed. */
-  async run(kind: string, spec: unknown, message: (message: Message, data: Uint8Array) => void): Promise<boolean> {
+  async run(kind: string, spec: Question, message: (message: Message, data: Uint8Array) => void): Promise<boolean> {
     this.running?.abort()
     const mine = new AbortController()
     this.running = mine
@@ -35,9 +36,7 @@ export class Runner {
       }
       return true
     } catch (error) {
-      if (mine.signal.aborted) return false
-      this.words.classList.add('wrong')
-      this.words.textContent = error instanceof Refused ? error.message : String(error)
+      if (!mine.signal.aborted) this.fail(error instanceof Refused ? error.message : String(error))
       return false
     } finally {
       if (this.running === mine) {
@@ -56,6 +55,11 @@ export class Runner {
 
   say(words: string): void {
     this.words.classList.remove('wrong')
+    this.words.textContent = words
+  }
+
+  fail(words: string): void {
+    this.words.classList.add('wrong')
     this.words.textContent = words
   }
 

@@ -1,9 +1,13 @@
 // Panels behind tabs, by the usual keys: arrows, Home and End.
 
+import type { Options } from '../state/options'
 import { page, store } from '../state/store'
+import { toggle } from './bound'
 import { h } from './dom'
 
-export function tabs(panels: [string, string, HTMLElement][]): HTMLElement {
+export type Panel = [Options['tab'], string, HTMLElement]
+
+export function tabs(panels: Panel[]): HTMLElement {
   const names = panels.map(([name]) => name)
   const heads = panels.map(([name, title]) =>
     h(
@@ -41,15 +45,9 @@ export function tabs(panels: [string, string, HTMLElement][]): HTMLElement {
     store.set({ tab: names[next] })
     heads[next].focus()
   })
-  const whole = h(
-    'button',
-    { type: 'button', class: 'quiet wide-only', 'aria-pressed': 'false', title: 'Give the panels the whole width' },
-    '⤢ Wide',
-  )
-  whole.addEventListener('click', () => {
-    const on = document.body.classList.toggle('wide')
-    whole.setAttribute('aria-pressed', String(on))
-  })
+  const title = 'Give the panels the whole width'
+  const whole = toggle('wide', '⤢ Wide', { class: 'quiet wide-only', title })
+  store.on(['wide'], () => document.body.classList.toggle('wide', page.wide))
   list.append(h('span', { class: 'spring' }), whole)
   store.on(['tab'], show)
   show()
