@@ -18,6 +18,16 @@ class _Short(reprlib.Repr):
 shown = _Short().repr
 
 
+def told_apart(value: float, bound: float, digits: tuple[int, int] = (4, 4)) -> tuple[str, str]:
+    """A value and a bound in words, with so many digits or as many more as show which of them is larger."""
+    for more in range(14):
+        words = f"{value:.{digits[0] + more}g}", f"{bound:.{digits[1] + more}g}"
+        shown_as = float(words[0]), float(words[1])
+        if (shown_as[0] < shown_as[1], shown_as[0] > shown_as[1]) == (value < bound, value > bound):
+            break
+    return words
+
+
 class FlexapodError(Exception):
     """Base of all errors of Flexapod: catching it catches them all."""
 

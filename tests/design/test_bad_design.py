@@ -450,7 +450,10 @@ def test_a_directory(tmp_path):
         ({"name[0]": "x"}, ["name"]),
         ({"limits.leg_distance[0]": 3}, ["limits.leg_distance is not a list in this design"]),
         ({"platform.inertia[0][1]": 0.1}, ["platform.inertia is not symmetric"]),
-        ({"base.circle.radius": 0.3}, ["base.circle.angles is missing"]),
+        (
+            {"base.circle.radius": 0.3},
+            ["base.circle.radius is set, but this design has no [base.circle]", "half_angle"],
+        ),
         ({"base.joints": None}, ["missing: base.joints"]),
         ({"platfrom": None}, ["platfrom is not a key"]),
         ({3: 4}, ["3 is no key", "text"]),

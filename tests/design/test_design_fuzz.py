@@ -84,7 +84,11 @@ def message_of(make) -> str:
 @given(bent())
 @settings(max_examples=400)
 def test_a_bent_design_is_a_design_or_a_design_error(tree):
-    message = message_of(lambda: Hexapod.from_values(design_file.complete(expand(design_file.flatten(tree)))))
+    def built():
+        values, forms = expand(design_file.flatten(tree))
+        return Hexapod.from_values(design_file.complete(values), forms)
+
+    message = message_of(built)
     assert message == "" or message.rstrip().endswith((".", "?"))
 
 

@@ -605,8 +605,9 @@ def test_circles_need_one_of_half_angle_and_angles():
         Hexapod.from_circles(0.5, 0.3, 0.5, **given)
     with pytest.raises(DesignError, match=r"base.circle.radius is -0.5 m; it must be > 0"):
         Hexapod.from_circles(-0.5, 0.3, 0.5, base_half_angle=0.1, **given)
-    with pytest.raises(DesignError, match=r"base_half_angle is 0 rad; it must be > 0"):
-        Hexapod.from_circles(0.5, 0.3, 0.5, base_half_angle=0, **given)
+    with pytest.raises(DesignError, match=r"base_half_angle is -0.1 rad; it must be >= 0"):
+        Hexapod.from_circles(0.5, 0.3, 0.5, base_half_angle=-0.1, **given)
+    assert "Joints coincide" in Hexapod.from_circles(0.5, 0.3, 0.5, base_half_angle=0, **given).warnings[0]
 
 
 def test_keys_by_keyword_and_fields_names():

@@ -10,7 +10,8 @@ import numpy as np
 
 from flexapod.design.key_names import resolve, unknown_key
 from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS
-from flexapod.design.shorthands import Values, expand
+from flexapod.design.short_forms import ShortForm
+from flexapod.design.shorthands import BESIDE, MAKES, NEEDS, Values, expand, stands_in_pairs
 from flexapod.design.tables import complete, flatten, table_of
 from flexapod.design.value_checks import check_value
 from flexapod.errors import DesignError, shown
@@ -29,42 +30,83 @@ def parse_assignments(texts: Iterable[str]) -> dict[str, str]:
     return changes
 
 
-def changed(values: Values, changes: Mapping[str, Any]) -> Values:
-    """Values with changes made, checked: dotted keys, units in names, indices; None takes an optional key out."""
-    values = dict(values)
+def changed(
+    values: Values, forms: Iterable[ShortForm], changes: Mapping[str, Any]
+) -> tuple[Values, tuple[ShortForm, ...]]:
+    """Values and short forms with changes made, checked: dotted keys, units in names, indices; None takes a key out.
+
+    A short form of which a key is changed makes its values anew; one whose values are changed ends where the design is
+    built (see `standing`).
+    """
     tables: dict[str, Any] = {}
-    places: list[tuple[str, Any]] = []
+    places: dict[str, list[tuple[str, Any]]] = {}
+    taken: list[str] = []
     for key, value in changes.items():
         if not isinstance(key, str):
             raise DesignError(f"{shown(key)} is no key; keys of a change are text such as 'platform.mass'.")
         if "[" in key:
-            places.append((key, _parsed(key, value)))
+            places.setdefault(_canonical(key.partition("[")[0])[0], []).append((key, _parsed(key, value)))
         elif value is None:
-            _take_out(values, key)
+            taken.append(key if key in TABLES else _canonical(key)[0])
         else:
             _nest(tables, key, _parsed(key, value))
     new = flatten(tables)
-    for key in _overruled(new):
+    opened = [form for form in forms if any(key in form for key in (*new, *places, *taken))]
+    values = _opened(values, opened)
+    for key in taken:
+        _take_out(values, key)
+    for key in _overruled(new, opened):
         values.pop(key, None)
-    values = expand(values | new)
-    for key, value in places:
-        _set_place(values, key, value)
-    return complete(values)
+    values |= new
+    short = [key for key in places if any(key in form for form in opened)]
+    for key in short:
+        _set_places(values, places.pop(key))
+    values, made = expand(values)
+    for given in places.values():
+        _set_places(values, given)
+    return complete(values), (*(form for form in forms if form not in opened), *made)
 
 
-def _overruled(new: Values) -> set[str]:
-    """Plain keys that the short forms among the changes take the place of."""
+def _opened(values: Values, forms: Iterable[ShortForm]) -> Values:
+    """The values with some short forms in place of what these made."""
+    made = {key for form in forms for key in form.made}
+    found = {key: value for key, value in values.items() if key not in made}
+    for form in forms:
+        found |= form.values()
+    return found
+
+
+def _overruled(new: Values, opened: Iterable[ShortForm]) -> set[str]:
+    """Keys that the short keys among the changes take the place of: plain ones, and those that say the same."""
     keys: set[str] = set()
-    for key in new:
-        if key.startswith("cubic."):
-            keys |= {"base.joints", "base.universal_axes", "platform.joints", "home.position", "home.orientation"}
-        elif ".circle." in key:
-            plate = key.split(".")[0]
-            keys |= {f"{plate}.joints"} | ({"base.universal_axes"} if plate == "base" else set())
-        elif ".rod." in key:
-            part = key.split(".rod.")[0]
-            keys |= {f"{part}.mass", f"{part}.mass_center", f"{part}.inertia"}
+    for table, makes in MAKES.items():
+        given = {key[len(table) + 1 :] for key in new if key.startswith(f"{table}.")}
+        if not given:
+            continue
+        needs = [(need,) if isinstance(need, str) else need for need in NEEDS[table.split(".")[-1]]]
+        if not any(form.table == table for form in opened):
+            missing = [" or ".join(need) for need in needs if not given & {*need}]
+            if missing:
+                raise DesignError(
+                    f"{table}.{min(given)} is set, but this design has no [{table}]: it gives {' and '.join(makes)} as "
+                    f"they are. Change these, or give {' and '.join(missing)} of {table} as well."
+                )
+            keys |= {*makes, *BESIDE.get(table, ())}
+        if "half_angle" in given:
+            _check_pairs(table, opened)
+        keys |= {f"{table}.{key}" for need in needs if given & {*need} for key in need if key not in given}
     return keys
+
+
+def _check_pairs(table: str, opened: Iterable[ShortForm]) -> None:
+    """Refuses a half angle for a circle whose joints are not the pairs that it stands for: they would change places."""
+    for form in opened:
+        angles = form.given.get("angles") if form.table == table else None
+        if angles is not None and not stands_in_pairs(table.split(".")[0], angles):
+            raise DesignError(
+                f"{table}.half_angle is {KEYS[f'{table}.half_angle'].meaning}; the joints of this design are "
+                f"elsewhere. Change {table}.angles."
+            )
 
 
 def _parsed(key: str, value: Any) -> Any:
@@ -92,11 +134,8 @@ def _nest(tables: dict[str, Any], key: str, value: Any) -> None:
 
 
 def _take_out(values: Values, key: str) -> None:
-    if key in TABLES:
-        for full in [full for full in values if full.startswith(f"{key}.")]:
-            del values[full]
-        return
-    values.pop(_canonical(key)[0], None)
+    for full in [full for full in values if full == key or full.startswith(f"{key}.")]:
+        del values[full]
 
 
 def _canonical(key: str) -> tuple[str, str]:
@@ -106,6 +145,11 @@ def _canonical(key: str) -> tuple[str, str]:
         parent, _, name = table.rpartition(".")
         unknown_key(parent, name)
     return resolve(table, last)
+
+
+def _set_places(values: Values, given: Iterable[tuple[str, Any]]) -> None:
+    for key, value in given:
+        _set_place(values, key, value)
 
 
 def _set_place(values: Values, key: str, value: Any) -> None:

@@ -4,10 +4,12 @@ Values are a flat dict: the file's dotted keys without units -> arrays in SI uni
 """
 
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from flexapod.design.schema import KEYS, TEXT_KEYS
+from flexapod.design.short_forms import ShortForm, written
 from flexapod.design.shorthands import Values, expand
 from flexapod.design.tables import START, complete, flatten
 from flexapod.design.units import printed, si_unit
@@ -94,8 +96,8 @@ def template(name: str) -> str:
     return text.replace('name = "template"', f"name = {tomlkit.item(name).as_string()}", 1)
 
 
-def read_file(path: Path) -> Values:
-    """Values of a design file. Without a name in it, the design is named after the file."""
+def read_file(path: Path) -> tuple[Values, tuple[ShortForm, ...]]:
+    """Values of a design file, and its short forms. Without a name in it, the design is named after the file."""
     try:
         text = path.read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -103,11 +105,11 @@ def read_file(path: Path) -> Values:
     except OSError as error:
         raise DesignError(f"{path} cannot be read: {error.strerror}. Check the file's permissions.") from error
     try:
-        values = read_text(text, path.parent)
+        values, forms = read_text(text, path.parent)
     except DesignError as error:
         raise DesignError(f"{path}: {error}") from error
     values.setdefault("name", path.stem)
-    return values
+    return values, forms
 
 
 def self_contained(path: Path) -> str:
@@ -115,29 +117,33 @@ def self_contained(path: Path) -> str:
     text = path.read_text("utf-8-sig", "replace")
     try:
         joints = tomllib.loads(text).get("joints")
-        return write_text(read_file(path)) if isinstance(joints, dict) and "csv" in joints else text
+        return write_text(*read_file(path)) if isinstance(joints, dict) and "csv" in joints else text
     except (ValueError, RecursionError):  # no TOML, or no design
         return text
 
 
-def read_text(text: str, directory: Path | None = None) -> Values:
-    """Values of a design given as TOML text, short forms expanded. directory: where the files that it names are."""
+def read_text(text: str, directory: Path | None = None) -> tuple[Values, tuple[ShortForm, ...]]:
+    """Values of a design given as TOML text, and its short forms. directory: where the files that it names are."""
     try:
         tables = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # ValueError: wrong TOML, or an integer of thousands of digits
         raise DesignError(f"this is not TOML: {error}. Correct that line; {START}") from None
     if not tables:
         raise DesignError(f"the design is empty; it must have [base], [platform] and [legs]. {START}")
-    return complete(expand(flatten(tables), directory))
+    values, forms = expand(flatten(tables), directory)
+    return complete(values), forms
 
 
-def write_text(values: Values) -> str:
-    """Values as a commented TOML file in SI units; reading it gives the same numbers bit for bit."""
+def write_text(values: Values, forms: Iterable[ShortForm] = ()) -> str:
+    """Values as a commented TOML file in SI units, by short forms where these made them.
+
+    Reading it gives the same numbers bit for bit.
+    """
     import tomlkit  # slow to import, and only writing needs it
 
     document = tomlkit.document()
     document.add("name", tomlkit.item(values["name"]))
-    for key, value in values.items():
+    for key, value in written(values, forms).items():
         if key in TEXT_KEYS:
             continue
         *path, last = key.split(".")

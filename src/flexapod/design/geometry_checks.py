@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from flexapod import _core
 from flexapod.conventions import LEG_PAIRS, Array
-from flexapod.design.inertia import inertia_flaw
+from flexapod.design.inertia import inertia_flaw, unusual
 from flexapod.errors import DesignError
 
 
@@ -73,9 +73,9 @@ def platform_warnings(inertia: Array) -> list[str]:
 
 def warnings_of_part(key: str, inertias: Array) -> list[str]:
     """What is odd about the inertias of a part of the six legs."""
-    flaws = [inertia_flaw(inertia) for inertia in inertias]
-    legs = [leg for leg, flaw in enumerate(flaws) if flaw]
-    if not legs:
+    legs = np.flatnonzero(unusual(inertias))
+    if not legs.size:
         return []
     which = "all legs" if len(legs) == 6 else f"legs {', '.join(str(leg + 1) for leg in legs)}"
-    return [f"{key}.inertia ({which}): no rigid body has it; {flaws[legs[0]]}. Results are computed with it as given."]
+    flaw = inertia_flaw(inertias[legs[0]])
+    return [f"{key}.inertia ({which}): no rigid body has it; {flaw}. Results are computed with it as given."]

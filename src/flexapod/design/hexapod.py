@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
@@ -18,9 +18,10 @@ from flexapod.conventions import Array
 from flexapod.design import changes as design_changes
 from flexapod.design import design_file
 from flexapod.design.geometry_checks import joint_warnings, platform_warnings, unit_axes, warnings_of_part
-from flexapod.design.home import Home
+from flexapod.design.home import Home, home_of
 from flexapod.design.packing import packed
 from flexapod.design.parts import Damping, LegPart, Legs, Limits, Value, bytes_of, more_keys
+from flexapod.design.short_forms import ShortForm, standing
 from flexapod.design.shorthands import circle_table, expand
 from flexapod.design.tables import DEFAULT_GRAVITY, complete, flatten
 from flexapod.design.universal_axes import default_axes
@@ -77,6 +78,10 @@ class Hexapod(Value, metaclass=Suggesting):
     home : Pose or array_like, optional
         Pose of the platform in the base frame that is taken where none is given: a Pose, or x, y, z in m and roll,
         pitch, yaw in rad. It is kept as a `Pose`.
+    short_forms : tuple, optional
+        The circles, cube and rods of a design file that joints and bodies were made by. `replace` changes their
+        numbers and `to_toml` writes them; those that do not make the other values are left out. Designs of the same
+        numbers are equal, however they were given.
 
     Attributes
     ----------
@@ -124,6 +129,7 @@ class Hexapod(Value, metaclass=Suggesting):
     legs: Legs
     limits: Limits = field(default_factory=Limits)
     home: Pose | None = None
+    short_forms: tuple[ShortForm, ...] = field(default=(), compare=False)
     warnings: tuple[str, ...] = field(default=(), init=False)
 
     def __post_init__(self) -> None:
@@ -145,6 +151,8 @@ class Hexapod(Value, metaclass=Suggesting):
         for side in ("lower", "upper"):
             warnings += warnings_of_part(f"legs.{side}", getattr(self.legs, side).inertia)
         object.__setattr__(self, "warnings", tuple(warnings))
+        if self.short_forms:
+            object.__setattr__(self, "short_forms", standing(self.short_forms, self.values()))
 
     @classmethod
     def from_circles(
@@ -236,14 +244,15 @@ class Hexapod(Value, metaclass=Suggesting):
             "legs": {"stiffness": stiffness},
             "home": {"position": [0.0, 0.0, height]},
         }
-        machine = cls.from_values(complete(expand(flatten(tables))))
+        values, forms = expand(flatten(tables))
+        machine = cls.from_values(complete(values), forms)
         friction = damping if isinstance(damping, Damping) else Damping(damping)  # type: ignore[arg-type]
         legs = Legs(machine.legs.stiffness, friction, lower or LegPart.massless(), upper or LegPart.massless())
         return dataclasses.replace(machine, legs=legs, limits=limits or Limits())
 
     @classmethod
-    def from_values(cls, values: Mapping[str, Any]) -> Hexapod:
-        """A design from checked values by file key, as `values` gives them.
+    def from_values(cls, values: Mapping[str, Any], short_forms: Iterable[ShortForm] = ()) -> Hexapod:
+        """A design from checked values by file key, as `values` gives them, and the short forms that made them.
 
         Raises
         ------
@@ -266,7 +275,8 @@ class Hexapod(Value, metaclass=Suggesting):
                 more={key: values[f"legs.{key}"] for key in more_keys()},
             ),
             limits=Limits(**{item.name: values.get(f"limits.{item.name}") for item in fields(Limits)}),
-            home=Home(values["home.position"], values["home.orientation"]) if "home.position" in values else None,
+            home=home_of(values),
+            short_forms=tuple(short_forms),
         )
 
     @classmethod
@@ -278,7 +288,7 @@ class Hexapod(Value, metaclass=Suggesting):
         DesignError
             For text that is no design, with the key and the remedy.
         """
-        return cls.from_values(design_file.read_text(text))
+        return cls.from_values(*design_file.read_text(text))
 
     def values(self) -> dict[str, Any]:
         """The whole design by dotted file key: text for `name`, arrays in SI units for all else."""
@@ -313,15 +323,18 @@ class Hexapod(Value, metaclass=Suggesting):
         Returns
         -------
         Hexapod
-            The changed design. Universal joint axes stay as they are when joints are moved one by one or the home pose
-            is another, and are the default again with a new `base.circle` or `cubic`.
+            The changed design. A number of a short form that the design was given by (`base.circle.radius`,
+            `cubic.edge`, `legs.upper.rod.mass`) makes it anew with the others that it has. Universal joint axes stay as
+            they are when joints are moved one by one or the home pose is another, and default ones are the default
+            again with another `base.circle` or `cubic`.
 
         Raises
         ------
         DesignError
             For an unknown key, with the nearest ones, or a value that it cannot have.
         """
-        return self.from_values(design_changes.changed(self.values(), {**(changes or {}), **more}))
+        changes = {**(changes or {}), **more}
+        return self.from_values(*design_changes.changed(self.values(), self.short_forms, changes))
 
     def to_toml(self) -> str:
         """This design as a commented TOML file; `from_toml` gives the same numbers bit for bit."""
@@ -332,7 +345,7 @@ class Hexapod(Value, metaclass=Suggesting):
                 values = {
                     key: value for key, value in values.items() if not key.startswith(("legs.lower", "legs.upper"))
                 }
-        return design_file.write_text(values)
+        return design_file.write_text(values, self.short_forms)
 
     def save(self, path: str | Path) -> None:
         """Write the design to a TOML file without loss.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,13 @@ from flexapod.design.schema import KEYS
 from flexapod.design.value_checks import check_value
 from flexapod.errors import DesignError, shown
 from flexapod.pose import Pose, PoseLike, as_pose, rpy_matrix
+
+
+def home_of(values: Mapping[str, Any]) -> Home | None:
+    """The home pose of a design by its values, where they have one."""
+    if "home.position" not in values:
+        return None
+    return Home(values["home.position"], values.get("home.orientation", (0.0, 0.0, 0.0)))
 
 
 class Home(Pose):

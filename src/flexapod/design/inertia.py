@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod.conventions import Array
 
@@ -12,6 +13,13 @@ ROUNDING = 1e-9  # of the largest moment: what printing with nine digits changes
 def second_moments(inertia: Array) -> Array:
     """Second moments of mass, trace(I)/2 E - I, kg m2: positive semidefinite for every rigid body."""
     return np.asarray(np.trace(inertia) / 2 * np.eye(3) - inertia)
+
+
+def unusual(inertias: Array) -> NDArray[np.bool_]:
+    """Whether `inertia_flaw` finds anything, for many inertias (..., 3, 3)."""
+    principal = np.linalg.eigvalsh(inertias)
+    moments = principal.sum(axis=-1, keepdims=True) / 2 - principal
+    return np.asarray(moments[..., 2] < -ROUNDING * np.abs(moments).max(axis=-1))
 
 
 def inertia_flaw(inertia: Array, *, solid: bool = False) -> str:

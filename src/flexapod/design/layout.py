@@ -37,7 +37,7 @@ def with_numbers(hexapod: Hexapod, given: Array, changed: NDArray[np.bool_]) -> 
     for key, place in PLACES.items():
         if changed[place].any():
             values[key] = given[place]
-    return Hexapod.from_values(values)
+    return Hexapod.from_values(values, hexapod.short_forms)
 
 
 def entries(key: str) -> tuple[NDArray[np.int64], Key, float]:

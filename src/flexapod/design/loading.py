@@ -41,8 +41,8 @@ def load(name_or_path: str | Path) -> Hexapod:
     4.0
     """
     path = design_file.find(name_or_path)
-    values = design_file.read_file(path)
+    read = design_file.read_file(path)
     try:
-        return Hexapod.from_values(values)
+        return Hexapod.from_values(*read)
     except DesignError as error:
         raise DesignError(f"{path}: {error}") from error

@@ -49,7 +49,8 @@ def bytes_of(value: Any) -> bytes:
     if isinstance(value, Home):
         return b"(" + bytes_of(value.position) + b"," + bytes_of(value.rpy) + b")"
     if isinstance(value, Value):
-        return b"(" + b",".join(map(bytes_of, value.state().values())) + b")"
+        compared = (getattr(value, item.name) for item in fields(value) if item.init and item.compare)  # type: ignore[arg-type]
+        return b"(" + b",".join(map(bytes_of, compared)) + b")"
     if isinstance(value, Mapping):
         return b"{" + b",".join(key.encode() + bytes_of(item) for key, item in value.items()) + b"}"
     if isinstance(value, np.ndarray):

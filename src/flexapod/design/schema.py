@@ -82,6 +82,7 @@ def _part(joint: str) -> dict[str, Key]:
 
 
 def _circle(plate: str) -> dict[str, Key]:
+    pairs = "60, 180 and 300" if plate == "base" else "0, 120 and 240"
     return {
         "radius": Key(
             f"radius of the {plate}'s joint circle", "length", _ONE, "Give a radius > 0.", least=0.0, open_=True
@@ -93,6 +94,14 @@ def _circle(plate: str) -> dict[str, Key]:
             _ANGLE_REMEDY,
             least=-4 * _FLAT_ANGLE,
             most=4 * _FLAT_ANGLE,
+        ),
+        "half_angle": Key(
+            f"half the angle between the joints of a pair; the pairs are at {pairs} degrees",
+            "angle",
+            _ONE,
+            _ANGLE_REMEDY,
+            least=0.0,
+            most=_FLAT_ANGLE / 3,
         ),
         "height": Key(f"z of the six {plate} joints", "length", _ONE),
     }

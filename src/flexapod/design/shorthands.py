@@ -1,48 +1,97 @@
 """What the short forms of a design file stand for: tables of joints, circles, the cubic configuration, rods, axes."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from flexapod.conventions import TWO_PI, Array
-from flexapod.design.schema import KEYS, Key
-from flexapod.design.universal_axes import default_axes
+from flexapod.design.home import home_of
+from flexapod.design.schema import KEYS
+from flexapod.design.short_forms import ShortForm
+from flexapod.design.universal_axes import default_axes_of
 from flexapod.design.value_checks import check_value
 from flexapod.errors import DesignError
-from flexapod.pose import Pose, rpy_matrix
-
-_HALF_ANGLE = Key("angle between a joint and the middle of its pair", "angle", ((),), least=0.0, open_=True)
 
 Values = dict[str, Any]  # dotted key -> array in SI units, or text
 
+#: Tables of short keys, and the plain keys that they stand for.
+MAKES = {
+    "base.circle": ("base.joints",),
+    "platform.circle": ("platform.joints",),
+    "cubic": ("base.joints", "platform.joints"),
+    **{
+        f"legs.{part}.rod": tuple(f"legs.{part}.{key}" for key in ("mass", "mass_center", "inertia"))
+        for part in ("lower", "upper")
+    },
+}
+#: What a new one also takes the place of.
+BESIDE = {
+    "base.circle": ("base.universal_axes",),
+    "cubic": ("base.universal_axes", "home.position", "home.orientation"),
+}
+#: What a table needs, by its last name: keys, or pairs of keys of which it takes one.
+NEEDS: dict[str, tuple[str | tuple[str, str], ...]] = {
+    "circle": ("radius", ("angles", "half_angle")),
+    "cubic": (("edge", "height"), "middle"),
+    "rod": ("mass", "length"),
+}
 
-def expand(values: Values, directory: Path | None = None) -> Values:
-    """The same design in plain keys only. Raises DesignError where a short form and its plain keys are both given.
 
-    directory: where files that the design names are looked for; without it none is read, so that a text from elsewhere
-    cannot make this computer read files.
+def expand(values: Values, directory: Path | None = None) -> tuple[Values, tuple[ShortForm, ...]]:
+    """The same design in plain keys only, and the short forms that were given.
+
+    Raises DesignError where a short form and its plain keys are both given. directory: where files that the design
+    names are looked for; without it none is read, so that a text from elsewhere cannot make this computer read files.
     """
     values = dict(values)
     _expand_table(values, directory)
-    for plate in ("base", "platform"):
-        _expand_circle(values, plate)
-    _expand_cubic(values)
-    for part, side in (("lower", 1.0), ("upper", -1.0)):
-        _expand_rod(values, f"legs.{part}", side)
+    given: dict[str, Values] = {}
+    made: dict[str, Values] = {}
+    for table, keys in MAKES.items():
+        short = _take(values, table)
+        if short:
+            _refuse_both(values, table, *keys)
+            _check_complete(short, table)
+            given[table] = short
+            made[table] = {key: check_value(key, value, KEYS[key]) for key, value in make(table, short).items()}
+            values |= made[table]
+    if "cubic" in made and not {"home.position", "home.orientation"} & values.keys():
+        in_base, in_platform = _cube_centers(given["cubic"])
+        made["cubic"] |= {"home.position": in_base - in_platform + 0.0, "home.orientation": np.zeros(3)}
+        values |= made["cubic"]
     if {"base.joints", "platform.joints"} <= values.keys() and "base.universal_axes" not in values:
-        joints = values["base.joints"], values["platform.joints"]
-        values["base.universal_axes"] = default_axes(*joints, _home(values))
-    return values
+        values["base.universal_axes"] = default_axes_of(values)
+        for table in {"base.circle", "cubic"} & made.keys():
+            made[table]["base.universal_axes"] = values["base.universal_axes"]
+    return values, tuple(ShortForm(table, given[table], made[table]) for table in given)
 
 
-def circle(radius: float, angles: Array, height: float) -> Array:
+def make(table: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """What the numbers of a short form stand for, by plain key; complex numbers keep their derivatives."""
+    if table == "cubic":
+        lower, upper = cubic(_edge(given), given["middle"])
+        in_base, in_platform = _cube_centers(given)
+        return {"base.joints": lower + in_base, "platform.joints": upper + in_platform}
+    if table.endswith(".rod"):
+        center, inertia = rod(
+            given["mass"], given["length"], given.get("radius", 0.0), 1.0 if "lower" in table else -1.0
+        )
+        mass = np.broadcast_to(given["mass"], 6) + 0.0
+        return dict(zip(MAKES[table], (mass, center, inertia), strict=True))
+    plate = table.split(".")[0]
+    angles = given["angles"] if "angles" in given else pair_angles(plate, given["half_angle"])
+    return {f"{plate}.joints": circle(given["radius"], angles, given.get("height", 0.0)) + 0.0}
+
+
+def circle(radius: Any, angles: Any, height: Any) -> Array:
     """Six joints on a circle about z, shape (6, 3)."""
     return np.stack([radius * np.cos(angles), radius * np.sin(angles), np.full(6, height)], axis=1)
 
 
-def circle_table(plate: str, radius: float, half_angle: float | None, angles: Any, degrees: bool) -> Values:
-    """The table [base.circle] or [platform.circle] of a plate given by half angle or angles, in legs' order."""
+def circle_table(plate: str, radius: float, half_angle: Any, angles: Any, degrees: bool) -> Values:
+    """The table [base.circle] or [platform.circle] of a plate given by half angle or angles."""
     if (half_angle is None) == (angles is None):
         raise DesignError(
             f"{plate}_half_angle and {plate}_angles are {'both missing' if angles is None else 'both given'}; give one "
@@ -50,16 +99,26 @@ def circle_table(plate: str, radius: float, half_angle: float | None, angles: An
         )
     unit = "deg" if degrees else "rad"
     if angles is None:
-        check_value(f"{plate}_half_angle", half_angle, _HALF_ANGLE, unit)
-        first = 60.0 if plate == "base" else 0.0
-        middles = first + np.repeat([0.0, 120.0, 240.0], 2)
-        angles = (middles if degrees else np.radians(middles)) + np.tile([-1.0, 1.0], 3) * half_angle
-        if plate == "platform":  # legs 6 and 1 are its first pair
-            angles = np.append(angles[1:], angles[0] + (360.0 if degrees else TWO_PI))
+        check_value(f"{plate}_half_angle", half_angle, KEYS[f"{plate}.circle.half_angle"], unit)
+        angles = pair_angles(plate, half_angle, 360.0 if degrees else TWO_PI)
     return {"radius": radius, f"angles_{unit}": angles}
 
 
-def cubic(edge: float, middle: float) -> tuple[Array, Array]:
+def pair_angles(plate: str, half_angle: Any, turn: float = TWO_PI) -> Array:
+    """Angles of six joints in three pairs, on the base legs 1 and 2 first, on the platform 6 and 1. turn: a whole."""
+    first = turn / 6 if plate == "base" else 0.0
+    angles = first + np.repeat([0.0, turn / 3, 2 * turn / 3], 2) + np.tile([-1.0, 1.0], 3) * half_angle
+    return angles if plate == "base" else np.append(angles[1:], angles[0] + turn)
+
+
+def stands_in_pairs(plate: str, angles: Array) -> bool:
+    """Whether the six joints of a circle are the pairs that a half angle stands for."""
+    away = np.angle(np.exp(1j * (angles - pair_angles(plate, 0.0))))
+    half = np.abs(away).mean()
+    return bool(np.abs(away - (pair_angles(plate, half) - pair_angles(plate, 0.0))).max() < 1e-6)
+
+
+def cubic(edge: Any, middle: Any) -> tuple[Array, Array]:
     """Lower and upper joints of the six legs about the cube's centre, each (6, 3).
 
     The cube stands on a corner. Its legs are the edges between the three corners next to the lowest one and the three
@@ -74,20 +133,24 @@ def cubic(edge: float, middle: float) -> tuple[Array, Array]:
     return center - middle * half, center + middle * half
 
 
-def rod(mass: Array, length: Array, radius: Array, side: float) -> tuple[Array, Array]:
+def _edge(given: Mapping[str, Any]) -> Any:
+    return given["edge"] if "edge" in given else given["height"] * np.sqrt(3)
+
+
+def _cube_centers(given: Mapping[str, Any]) -> tuple[Any, Any]:
+    """The cube's centre in the base frame, by default with the base joints at z = 0, and in the platform frame."""
+    lower, _ = cubic(_edge(given), given["middle"])
+    in_base = given.get("center_in_base", np.array([0.0, 0.0, 1.0]) * -lower[0, 2])
+    return in_base, given.get("center_in_platform", np.zeros(3))
+
+
+def rod(mass: Any, length: Any, radius: Any, side: float) -> tuple[Array, Array]:
     """Mass centre (6, 3) and inertia (6, 3, 3) of a uniform round rod along the leg, from its joint (side 1 or -1)."""
     mass, length, radius = (np.broadcast_to(value, (6,)) for value in (mass, length, radius))
     along, across = mass * radius**2 / 2, mass * (3 * radius**2 + length**2) / 12
-    inertia = np.zeros((6, 3, 3))
+    inertia = np.zeros((6, 3, 3), dtype=across.dtype)
     inertia[:, 0, 0], inertia[:, 1, 1], inertia[:, 2, 2] = along, across, across
     return np.stack([side * length / 2, np.zeros(6), np.zeros(6)], axis=1), inertia
-
-
-def _home(values: Values) -> Pose | None:
-    """The home pose, where the values have one."""
-    if "home.position" not in values:
-        return None
-    return Pose(values["home.position"], rpy_matrix(values.get("home.orientation", np.zeros(3))))
 
 
 def _take(values: Values, table: str) -> Values:
@@ -99,11 +162,20 @@ def _take(values: Values, table: str) -> Values:
     return found
 
 
-def _need(given: Values, table: str, *keys: str) -> None:
-    for key in keys:
-        if key not in given:
-            rule = KEYS[f"{table}.{key}"]
-            raise DesignError(f"{table}.{key} is missing ({rule.meaning}). Add {key} = {rule.shape_text} to [{table}].")
+def _check_complete(given: Values, table: str) -> None:
+    """Refuses a short form in which something is missing, or given twice."""
+    for need in NEEDS[table.split(".")[-1]]:
+        if isinstance(need, str):
+            if need not in given:
+                rule = KEYS[f"{table}.{need}"]
+                must = f"Add {need} = {rule.shape_text} to [{table}]."
+                raise DesignError(f"{table}.{need} is missing ({rule.meaning}). {must}")
+            continue
+        one, other = need
+        if (one in given) == (other in given):
+            which = "both given" if one in given else "both missing"
+            meanings = " or ".join(f"{key} ({KEYS[f'{table}.{key}'].meaning})" for key in need)
+            raise DesignError(f"{table}.{one} and {table}.{other} are {which}. Give one of them: {meanings}.")
 
 
 def _refuse_both(values: Values, table: str, *keys: str) -> None:
@@ -128,47 +200,7 @@ def _expand_table(values: Values, directory: Path | None) -> None:
     _refuse_both(values, "joints", "base.joints", "platform.joints")
     from flexapod.design.joint_table import read_joints  # the reader of tables is needed for designs with a table only
 
-    for key, value in read_joints(directory / given, _home(values)).items():
+    for key, value in read_joints(directory / given, home_of(values)).items():
         if value is not None:
             _refuse_both(values, "joints", key)
             values[key] = check_value(key, value, KEYS[key])
-
-
-def _expand_circle(values: Values, plate: str) -> None:
-    table = f"{plate}.circle"
-    given = _take(values, table)
-    if given:
-        _refuse_both(values, table, f"{plate}.joints")
-        _need(given, table, "radius", "angles")
-        values[f"{plate}.joints"] = circle(given["radius"], given["angles"], given.get("height", 0.0)) + 0.0
-
-
-def _expand_cubic(values: Values) -> None:
-    given = _take(values, "cubic")
-    if not given:
-        return
-    _refuse_both(values, "cubic", "base.joints", "platform.joints")
-    if ("edge" in given) == ("height" in given):
-        which = "both given" if "edge" in given else "both missing"
-        raise DesignError(
-            f"cubic.edge and cubic.height are {which}. Give one of them: the cube's edge, or edge / sqrt(3), "
-            "the height of the legs' edges."
-        )
-    _need(given, "cubic", "middle")
-    edge = given.get("edge", given.get("height", 0.0) * np.sqrt(3))
-    lower, upper = cubic(float(edge), float(given["middle"]))
-    in_base = given.get("center_in_base", np.array([0.0, 0.0, -lower[0, 2]]))
-    in_platform = given.get("center_in_platform", np.zeros(3))
-    values["base.joints"] = check_value("base.joints", lower + in_base, KEYS["base.joints"])
-    values["platform.joints"] = check_value("platform.joints", upper + in_platform, KEYS["platform.joints"])
-    if "home.position" not in values and "home.orientation" not in values:
-        values["home.position"] = in_base - in_platform + 0.0
-
-
-def _expand_rod(values: Values, table: str, side: float) -> None:
-    given = _take(values, f"{table}.rod")
-    if given:
-        _refuse_both(values, f"{table}.rod", *(f"{table}.{key}" for key in ("mass", "mass_center", "inertia")))
-        _need(given, f"{table}.rod", "mass", "length")
-        center, inertia = rod(given["mass"], given["length"], given.get("radius", np.zeros(())), side)
-        values |= {f"{table}.mass": given["mass"], f"{table}.mass_center": center, f"{table}.inertia": inertia}

@@ -74,5 +74,7 @@ def printed(unit: str) -> str:
 def to_si(value: ArrayLike, dimension: str, unit: str) -> NDArray[np.float64]:
     """Numbers in the SI unit of their dimension."""
     multiply, divide = UNITS[dimension][unit]
+    if multiply == divide == 1:
+        return np.asarray(value, dtype=np.float64)
     with np.errstate(over="ignore"):  # an infinite result is refused with the value as it was given
         return np.asarray(value, dtype=np.float64) * multiply / divide

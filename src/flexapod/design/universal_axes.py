@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.conventions import Array
+from flexapod.design.home import home_of
 from flexapod.errors import DesignError
 from flexapod.pose import Pose
 
@@ -35,6 +39,11 @@ def default_axes(base_joints: Array, platform_joints: Array, home: Pose | None) 
     across = near - (near * leg).sum(axis=1, keepdims=True) * leg
     across = across / np.linalg.norm(across, axis=1, keepdims=True)
     return np.where(fits[:, None], tangent, across) + 0.0
+
+
+def default_axes_of(values: Mapping[str, Any]) -> Array:
+    """The same of a design by its values."""
+    return default_axes(values["base.joints"], values["platform.joints"], home_of(values))
 
 
 def keeps_tangents(base_joints: Array, platform_joints: Array, home: Pose | None) -> NDArray[np.bool_]:

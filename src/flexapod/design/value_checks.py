@@ -7,7 +7,7 @@ import numpy as np
 from flexapod.conventions import Array
 from flexapod.design.schema import SHAPES, Key
 from flexapod.design.units import printed, si_unit, to_si
-from flexapod.errors import DesignError, shown
+from flexapod.errors import DesignError, shown, told_apart
 
 LARGEST = 1e100  # squares and products of such numbers still do not overflow
 DEEPEST = max(len(shape) for shape in SHAPES) + 2  # a little more than any value has: the shape is checked later
@@ -63,24 +63,23 @@ def _not_a_number(value: Any, path: str, depth: int = 0) -> tuple[str, Any] | No
 
 
 def _check_each(name: str, given: Array, si: Array, rule: Key, unit: str) -> None:
-    bad = ~(np.abs(si) < LARGEST)
-    must = "a finite number" if not np.isfinite(given).all() else f"smaller than {LARGEST:g} in SI units"
+    low, high = si.min(), si.max()  # NaN, which keeps no bound, where any of them is
+    above = rule.least is None or low > rule.least or (low == rule.least and not rule.open_)
+    if above and (rule.most is None or high <= rule.most) and low > -LARGEST and high < LARGEST:
+        return
+    bad, bound, sign = ~(np.abs(si) < LARGEST), LARGEST, "smaller than"
     if rule.least is not None and not bad.any():
-        bad = si <= rule.least if rule.open_ else si < rule.least
-        must = f"{'>' if rule.open_ else '>='} {_in_unit(rule.least, rule, unit)}"
+        bad, bound, sign = si <= rule.least if rule.open_ else si < rule.least, rule.least, ">" if rule.open_ else ">="
     if rule.most is not None and not bad.any():
-        bad = si > rule.most
-        must = f"<= {_in_unit(rule.most, rule, unit)}"
-    if bad.any():
-        index = tuple(np.argwhere(bad)[0])
-        place = "".join(f"[{i}]" for i in index)
-        value = f"{given[index]:.6g} {printed(unit)}".rstrip()
-        raise DesignError(f"{name}{place} is {value}; it must be {must}. {rule.remedy}")
-
-
-def _in_unit(limit: float, rule: Key, unit: str) -> str:
-    shown = limit / float(to_si(1.0, rule.dimension, unit)) if rule.dimension else limit
-    return f"{shown:.4g} {printed(unit)}".rstrip() if shown else "0"
+        bad, bound, sign = si > rule.most, rule.most, "<="
+    index = tuple(np.argwhere(bad)[0])
+    place = "".join(f"[{i}]" for i in index)
+    limit = bound / float(to_si(1.0, rule.dimension, unit)) if rule.dimension else bound
+    value, least = (f"{words} {printed(unit)}".rstrip() for words in told_apart(float(given[index]), limit, (6, 4)))
+    must = f"{sign} {least if limit else 0}"
+    if bound == LARGEST:
+        must = f"smaller than {LARGEST:g} in SI units" if np.isfinite(given).all() else "a finite number"
+    raise DesignError(f"{name}{place} is {value}; it must be {must}. {rule.remedy}")
 
 
 def _symmetric(name: str, given: Array, si: Array, rule: Key, unit: str) -> Array:

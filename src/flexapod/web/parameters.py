@@ -57,6 +57,8 @@ def with_radius(hexapod: Hexapod, key: str, radius: Any) -> Hexapod:
     if isinstance(radius, bool) or not isinstance(radius, int | float) or not 0 < radius < 1e6:
         raise DesignError(f"{key} is {radius!r} m; it must be a number > 0.")
     plate = key.split(".")[0]
+    if any(form.table == f"{plate}.circle" for form in hexapod.short_forms):
+        return hexapod.replace({f"{plate}.circle.radius": radius})
     joints = getattr(hexapod, f"{plate}_joints")
     scale = radius / mean_radius(joints)
     return hexapod.replace({f"{plate}.joints": joints * [scale, scale, 1.0]})
