@@ -92,13 +92,21 @@ def unit_named(word: str, units: Iterable[str]) -> str | None:
     """The unit that is meant, however it is written: `Nm` is N_m, `m/s^2` is m_per_s2, `MM` is mm; None if none is."""
     bare = normal_unit(word).replace("_", "")
     exact = [known for known in units if known.replace("_", "") == bare]
-    alike = [known for known in units if known.islower() and known.replace("_", "") == bare.lower()]
-    return next(iter([*exact, *alike]), None)  # MM is mm, but MN is not mN, nor Nm nm
+    free = [known for known in units if known.islower() or known in ("Hz", "kHz")]  # MM is mm, but MN is not mN
+    alike = [known for known in free if known.replace("_", "").lower() == bare.lower()]
+    return next(iter([*exact, *alike]), None)
 
 
 def normal_unit(word: str) -> str:
     """A unit as units are named in keys: `m/s²` is m_per_s2."""
-    for sign, plain in {"\u00b5": "u", "\u03bc": "u", "\u00b2": "2", "\u00b0": "deg", "\u00b7": "_"}.items():
+    for sign, plain in {
+        "\u00b5": "u",
+        "\u03bc": "u",
+        "\u00b2": "2",
+        "\u00b3": "3",
+        "\u00b0": "deg",
+        "\u00b7": "_",
+    }.items():
         word = word.replace(sign, plain)
     word = re.sub(r"[\[\](){}^]", "", word.strip(" _-.,:[](){}/")).replace("/", "_per_")
     return re.sub(r"[\s_*\-]+", "_", word)

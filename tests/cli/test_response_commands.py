@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 from PIL import Image
+from tests.helpers.cases import case
 
 import flexapod as fx
 from flexapod.plots import response as plots_response
@@ -105,10 +106,18 @@ def test_response_wrong_command_lines(run, arguments, message):
         ("hz,z\n1,2\n", "must have frequency_hz"),
         ("frequency_hz\n1\n", "must have frequency_hz"),
         ("frequency_hz,up\n1,2\n", "must have frequency_hz"),
-        ("frequency_hz,z\n1,much\n2,3\n", "no number"),
+        ("frequency_hz,z\n1,much\n2,3\n", "line 2, column z: 'much' is no finite number"),
+        (
+            "frequency_hz,z\n0,1\n1,1\n0.5,1\n",
+            "line 4, column frequency_hz: 0.5 Hz; frequencies must be above zero and",
+        ),
+        ("frequency_hz,z\n-1,1\n1,1\n", "line 2, column frequency_hz: -1 Hz"),
+        ("frequency_hz,z\n0,1\n1,1\n", "1 frequencies above 0 Hz; two or more"),
+        ("frequency_hz,x_g2/Hz,z_mm2/Hz\n1,1,1\n2,1,1\n", "spectra of acceleration and displacement"),
+        ("frequency_hz,z_N2/Hz\n1,1\n2,1\n", "'z_N2/Hz' has the unit 'N2_per_Hz'"),
         ("frequency_hz,z\n2,1\n1,1\n", "ascending"),
         ("frequency_hz,z\n1,1\n2,-1\n", "negative"),
-        ("frequency_hz,z\n1,1\n2,\n", "NaN"),
+        ("frequency_hz,z\n1,1\n2,\n", "line 3, column z: '' is no finite number"),
     ],
 )
 def test_bad_spectrum_files(run, tmp_path, text, message):
@@ -117,6 +126,62 @@ def test_bad_spectrum_files(run, tmp_path, text, message):
     code, _, err = run("response", "mukherjee-ii", *CENTER, "--psd", path)
     assert code == 2
     assert message in err
+
+
+FLOORS = {
+    "Frequency (Hz),Z (m2/s4/Hz)": 1.0,
+    "f_Hz;z_(m/s^2)^2/Hz": 1.0,
+    "frequency_hz,z_g2/Hz": 9.80665**-2,
+    "frequency [kHz],z [mm²/s³]": 1e6,
+    "frequency_rad/s,z": 1.0,
+}
+
+
+@pytest.mark.parametrize("header", FLOORS)
+def test_spectra_are_read_in_their_units(result, tmp_path, header):
+    hertz = {"k": 1e-3, "r": 2 * np.pi}.get(header.split("[")[1][0] if "[" in header else header[10], 1.0)
+    mark = ";" if ";" in header else ","
+    rows = [f"{hertz * f:.15g}{mark}{1e-6 * FLOORS[header]:.15g}" for f in (1, 80)]
+    path = tmp_path / "floor.csv"
+    path.write_text("\n".join([header, *rows]), encoding="utf-8")
+    expected = fx.random_response(fx.load("cubic-isolator"), psd=[1e-6, 1e-6], frequency=[1, 80], axis="z")
+    found = result("response", "cubic-isolator", "--points", 5, "--psd", path)
+    np.testing.assert_allclose(found["random_rms"]["leg_force"], expected.rms_leg_force, rtol=1e-10)
+
+
+@pytest.mark.parametrize(("unit", "of"), [("mm2/Hz", "displacement"), ("(mm/s)2/Hz", "velocity")])
+def test_a_spectrum_says_what_it_is_of(result, tmp_path, unit, of):
+    path = tmp_path / "floor.csv"
+    path.write_text(f"frequency_hz,z_{unit}\n1,1e-6\n80,1e-6\n")
+    expected = fx.random_response(fx.load("cubic-isolator"), psd=[1e-12, 1e-12], frequency=[1, 80], axis="z", of=of)
+    found = result("response", "cubic-isolator", "--points", 5, "--psd", path)
+    np.testing.assert_allclose(found["random_rms"]["displacement"][2], expected.rms_displacement[2], rtol=1e-12)
+
+
+def test_the_line_at_zero_of_welchs_method_is_left_out(result, tmp_path):
+    path = tmp_path / "welch.csv"
+    path.write_text("frequency_hz,z\n0,1\n1,1e-6\n80,1e-6\n")
+    found = result("response", "cubic-isolator", "--points", 5, "--psd", path)
+    assert "welch.csv, line 2: the density at 0 Hz is left out" in found["warnings"][0]
+    path.write_text("frequency_hz,z\n1,1e-6\n80,1e-6\n")
+    without = result("response", "cubic-isolator", "--points", 5, "--psd", path)
+    assert (found["random_rms"], without["warnings"]) == (without["random_rms"], [])
+
+
+@pytest.mark.parametrize("name", ["psd", "psd2"])
+def test_spectra_as_people_write_them(result, name):
+    found = result("response", "motion-base", "--points", 5, "--psd", case("recordings", f"{name}.csv"))
+    assert found["random_rms"]["acceleration"][2] > 0
+
+
+@pytest.mark.parametrize("source", ["wrench", "command"])
+def test_a_spectrum_of_the_base_is_none_of_a_load(run, tmp_path, source):
+    path = tmp_path / "wind.csv"
+    path.write_text("frequency_hz,z\n1,1\n80,1\n")
+    code, out, err = run("response", "cubic-isolator", "--from", source, "--psd", path)
+    assert (code, out) == (2, "")
+    assert f"not --from {source}" in err
+    assert "simulate --random force:z" in err
 
 
 # --- animate -------------------------------------------------------------------------------------------------------

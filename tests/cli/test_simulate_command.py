@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 import xarray as xr
+from tests.helpers.cases import case
 
 import flexapod as fx
 from flexapod.cli import main
@@ -127,3 +128,139 @@ def test_a_motion_that_ends_early_is_kept(capsys, tmp_path):
 def test_what_is_wrong_is_said(capsys, arguments, words):
     assert main([str(argument) for argument in (*MACHINE, *arguments)]) == 2
     assert words in capsys.readouterr().err
+
+
+ISOLATOR = ("simulate", "cubic-isolator")
+BASE = "motion-base"
+
+
+def refused(capsys, *arguments):
+    assert main([str(argument) for argument in arguments]) == 2
+    return capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--duration", "20Hz"), "'20Hz' is not a number with a unit of time"),
+        (("--duration", "1kN"), "unit of time"),
+        (("--duration", "10mm"), "unit of time"),
+        (("--duration", "-1s"), "duration is -1s; it must be finite and > 0"),
+        (("--harmonic", "z", "1deg", "20Hz"), "--harmonic: '1deg' is not a number with a unit of length"),
+        (("--harmonic", "z", "1um", "20ms"), "unit of frequency"),
+        (("--harmonic", "roll", "1mm", "750"), "unit of angle"),
+        (("--harmonic", "force:x", "1mm", "750"), "unit of force"),
+        (("--harmonic", "moment:x", "1N", "750"), "unit of moment"),
+        (("--sweep", "z", "1um", "1Hz", "2s", "3s"), "'2s' is not a number with a unit of frequency"),
+        (("--sweep", "leg:1", "1N", "1Hz", "2Hz", "3s"), "unit of length"),
+        (("--shock", "z", "1mm", "10ms"), "unit of acceleration"),
+        (("--shock", "roll", "1g", "10ms"), "unit of angular acceleration"),
+        (("--shock", "force:z", "3g", "10ms"), "unit of force"),
+        (("--step", "leg:1", "1mm", "10Hz"), "unit of time"),
+        (("--spin", "yaw", "30mm"), "unit of angular velocity"),
+        (("--spin", "force:x", "3"), "--spin turns or moves the base"),
+        (("--ramp", "5Hz"), "unit of time"),
+        (("--force", "1", "2m", "3"), "unit of force"),
+        (("--moment", "1", "2N", "3"), "unit of moment"),
+        (("--random", "z", "sea:1Hz:8kN"), "'1Hz' is not a number with a unit of length"),
+        (("--random", "z", "sea:1m:8kN"), "unit of time"),
+        (("--random", "z", "sea:1m:8s:3N"), "GAMMA is '3N'"),
+        (("--random", "z", "flat:10N:1:100"), "unit of acceleration"),
+        (("--random", "force:z", "flat:10g:1:100"), "unit of force"),
+        (("--random", "force:z", "VC-A"), "force:z takes flat:RMS:FROM:TO"),
+        (("--random", "moment:z", "ground"), "moment:z takes flat:RMS:FROM:TO"),
+        (("--random", "leg:1", "sea:1:8"), "leg:1 takes flat:RMS:FROM:TO"),
+        (("--random", "roll", "VC-A"), "roll takes flat:RMS:FROM:TO"),
+        (("--seed", -1), "-1 is not in the range"),
+        (("--highpass", "1"), "--detrend and --highpass are for --recording"),
+        (("--detrend", "median"), "'median' is not one of"),
+    ],
+)
+def test_every_number_has_its_dimension(capsys, arguments, words):
+    assert words in refused(capsys, *ISOLATOR, "--duration", "1ms", *arguments)
+
+
+def test_units_of_each_dimension_are_read(result):
+    first = result("--harmonic", "z", "0.001mm", "100 Hz", "--duration", "0.01 s", "--samples", 30)
+    again = result("--harmonic", "z", "1µm", "6000rpm", "--duration", "10ms", "--samples", 30)
+    assert first["displacement"]["largest"][2] == pytest.approx(again["displacement"]["largest"][2], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "quantity"), [("1um", "displacement"), ("1um/s", "velocity"), ("0.1g", "acceleration")]
+)
+def test_the_unit_of_a_flat_spectrum_says_what_it_is_of(text, quantity):
+    from flexapod.cli.options.drives import _spectrum
+
+    assert _spectrum(f"flat:{text}:1Hz:10Hz", "base_motion", "z").quantity == quantity
+
+
+def test_a_random_force_is_one_of_newtons(capsys):
+    """Far below the modes the platform follows the force by its compliance: 10 N give 10 N times that."""
+    drive = ("--random", "force:z", "flat:10N:0.1Hz:2Hz", "--ramp", "100ms", "--duration", "40s", "--samples", 4000)
+    assert main([*map(str, ("simulate", "precision-positioner", *drive)), "--json"]) == 0
+    found = json.loads(capsys.readouterr().out)
+    hexapod = fx.load("precision-positioner")
+    soft = fx.transmissibility(hexapod, frequency=[0.5]).compliance.sel(output="z", wrench="z").values[0]
+    # 400 sines over 40 s: the power of one record is met to some percent
+    assert found["displacement"]["rms"][2] == pytest.approx(10 * abs(soft), rel=0.1)
+
+
+def test_a_recording_gives_the_duration(capsys, tmp_path):
+    """A recording of 60 s at 2 kHz ends half a millisecond before 60 s."""
+    times = np.arange(2000) / 2000
+    record = tmp_path / "floor.csv"
+    np.savetxt(record, np.column_stack([times, 1e-6 * np.sin(90 * times)]), delimiter=",", header="time,z", comments="")
+    for given in ((), ("--duration", 1), ("--duration", "0.9996")):
+        assert main([*map(str, (*ISOLATOR, "--recording", "base", record, "--samples", 5, *given)), "--json"]) == 0
+        assert json.loads(capsys.readouterr().out)["duration_s"] == pytest.approx(0.9995)
+    words = refused(capsys, *ISOLATOR, "--recording", "base", record, "--duration", 1.01)
+    assert "ends at 0.9995 s, the simulation at 1.01 s" in words
+
+
+@pytest.mark.parametrize(
+    ("use", "name", "options", "words"),
+    [
+        ("base", "offset", (), r"offset.csv, column z) begins at 0.3 m in its first row, off zero"),
+        ("base", "yawoffset", (), "begins at 90 degrees in its first row"),
+        ("base", "acc2", (), "has a mean of 9.81 m/s2, which holds gravity, and drifts by 19.5 m within 1.99 s"),
+        ("base", "offset", ("--start", "carried"), None),
+        ("base", "offset", ("--detrend", "first"), None),
+        ("base", "yawoffset", ("--detrend", "first"), None),
+        ("base", "wrap", ("--start", "carried"), None),
+        ("base", "wrap2", ("--start", "carried"), None),
+        ("base", "nowrap2", ("--start", "carried"), None),
+        ("leg", "leglen", ("--detrend", "first"), None),
+    ],
+)
+def test_recordings_as_people_have_them(capsys, use, name, options, words):
+    arguments = ("simulate", BASE, "--recording", use, case("recordings", f"{name}.csv"), *options, "--json")
+    assert main([str(argument) for argument in arguments]) == 0
+    found = json.loads(capsys.readouterr().out)
+    if words is None:
+        assert found["warnings"] == []
+        assert 7e3 < min(found["leg_force_N"]["least"]) < max(found["leg_force_N"]["largest"]) < 9e3
+    else:
+        assert words in found["warnings"][0]
+
+
+def test_lengths_of_legs_are_no_commands(capsys):
+    record = case("recordings", "leglen.csv")
+    words = refused(capsys, "simulate", BASE, "--recording", "leg", record)
+    assert "leglen.csv, column leg1_mm) begins at 2.9 m in its first row" in words
+    assert "detrend 'first'" in words
+
+
+def test_what_a_recording_does_is_told_where_the_simulation_ends_early(capsys):
+    words = refused(capsys, "simulate", BASE, "--recording", "base", case("recordings", "wrap2.csv"))
+    assert "wrap2.csv, column yaw_deg) begins at 179 degrees" in words
+
+
+def test_legs_that_leave_their_stroke_are_told(capsys):
+    steps = [word for leg in range(1, 7) for word in ("--step", f"leg:{leg}", "700mm", "200ms")]
+    assert main(["simulate", BASE, *steps, "--duration", "0.4", "--json"]) == 0
+    (told,) = json.loads(capsys.readouterr().out)["warnings"]
+    assert "length of legs 1, 2, 3, 4, 5, 6 is above its limit, first at t = 0.1295 s" in told
+    assert "3.41038 m against 3.261 m" in told
+    assert main(["simulate", BASE, *steps, "--duration", "0.4"]) == 0
+    assert "Warning: Limit exceeded: length of legs" in capsys.readouterr().out

@@ -1,5 +1,7 @@
 """Excitations: exact derivatives, spectra that have the power they name, recordings, clear errors."""
 
+import pickle
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -207,6 +209,42 @@ def test_a_ships_motions_follow_one_sea():
     np.testing.assert_allclose(pitch[:, 0], heave[:, 0] * heave[:, 1] ** 2 / 9.81, rtol=1e-12)
 
 
+@pytest.mark.parametrize(
+    "spectrum",
+    [
+        fx.vc_curve("VC-A"),
+        fx.excitation.ground_noise("low"),
+        fx.excitation.sea_spectrum(2.0, 8.0, 3.3),
+        fx.excitation.flat_spectrum(1.0, 1.0, 9.0, quantity="moment"),
+    ],
+)
+def test_spectra_go_to_other_processes(spectrum):
+    sent = pickle.loads(pickle.dumps(spectrum))
+    omega = np.geomspace(spectrum.omega_min, spectrum.omega_max, 40)
+    np.testing.assert_array_equal(sent.density(omega), spectrum.density(omega))
+    assert sent[1:] == spectrum[1:]
+
+
+def test_a_random_force_has_the_rms_of_its_spectrum():
+    force = fx.random_motion("z", fx.excitation.flat_spectrum(10.0, 5.0, 200.0, quantity="force"), seed=3)
+    assert force.evaluate(np.linspace(0, 200, 40001))[0][:, 2].std() == pytest.approx(10.0, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("argument", "drive", "is_a"),
+    [
+        ("force", fx.random_motion("z", fx.vc_curve("VC-A")), "motion"),
+        ("force", fx.half_sine_shock("z", 1.0, 0.01), "motion"),
+        ("moment", fx.sine_sweep("z", 1.0, 1.0, 2.0, 1.0, hold="acceleration"), "motion"),
+        ("moment", fx.random_motion("z", fx.excitation.flat_spectrum(1.0, 5.0, 9.0, quantity="force")), "force"),
+        ("base_motion", fx.random_motion("z", fx.excitation.flat_spectrum(1.0, 5.0, 9.0, quantity="force")), "force"),
+    ],
+)
+def test_a_drive_goes_where_its_quantity_belongs(argument, drive, is_a):
+    with pytest.raises(ArgumentError, match=f"{argument} drives 'z' by what is a {is_a}; it takes a"):
+        fx.simulate(fx.load("cubic-isolator"), duration=0.1, **{argument: drive})
+
+
 # --- recordings ------------------------------------------------------------------------------------------------------
 
 
@@ -276,12 +314,22 @@ def test_missing_recording(tmp_path):
         fx.read_time_series(tmp_path / "none.csv")
 
 
+FORCE = fx.excitation.flat_spectrum(3.0, 10.0, 90.0, quantity="force")
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [
         (lambda: fx.harmonic("up", 1.0, 1.0), "axis is 'up'"),
         (lambda: fx.harmonic("x", np.nan, 1.0), "NaN"),
         (lambda: fx.harmonic("x", 1.0, -1.0), "omega is -1"),
+        (lambda: fx.harmonic("x", []), "give one of omega"),
+        (lambda: fx.harmonic("x", [], 5.0), "empty; at least one sine"),
+        (lambda: fx.excitation.flat_spectrum(1.0, 1.0, 2.0, quantity="jerk"), "quantity is 'jerk'"),
+        (lambda: fx.random_motion("roll", fx.vc_curve("VC-A")), "axis is 'roll'.*must be one of rad"),
+        (lambda: fx.random_motion("roll", FORCE), "spectrum is one of force"),
+        (lambda: fx.excitation.sea_motion(FORCE, {"z": np.ones_like}), "spectrum is one of force"),
+        (lambda: fx.harmonic("x", 1.0, 1.0).for_use("pressure"), "use is 'pressure'"),
         (lambda: fx.sine_sweep("x", 1.0, 0.0, 2.0, 1.0), "omega_start is 0"),
         (lambda: fx.sine_sweep("x", 1.0, 1.0, 2.0, 1.0, law="cubic"), "law is 'cubic'"),
         (lambda: fx.sine_sweep("x", 1.0, 1.0, 2.0, 1.0, hold="power"), "hold is 'power'"),

@@ -70,7 +70,7 @@ def test_a_bad_row_is_told_by_its_line(tmp_path):
     ("unit", "use"), [("mm", "motion"), ("N", "force"), ("Nm", "moment"), ("kN·m", "moment"), ("g", "motion")]
 )
 def test_a_column_drives_what_its_unit_can_drive(tmp_path, unit, use):
-    rows = "\n".join(f"{0.01 * i:g},{np.sin(i):.6f}" for i in range(20))
+    rows = "\n".join(f"{0.01 * i:g},{1e-3 * np.sin(i):.6f}" for i in range(20))
     found = fx.read_time_series(written(tmp_path / "a.csv", f"time,x_{unit}\n{rows}"))
     machine = fx.load("cubic-isolator")
     for name, taken in (("base_motion", "motion"), ("force", "force"), ("moment", "moment")):

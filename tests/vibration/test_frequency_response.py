@@ -390,6 +390,7 @@ def test_spectra_by_axis(damped):
 
 def test_bad_ready_made_spectra(damped):
     floor, ground = fx.vc_curve("VC-A"), fx.excitation.ground_noise()
+    force = fx.excitation.flat_spectrum(1.0, 10.0, 20.0, quantity="force")
     cases = [
         ({"psd": floor}, "axis"),
         ({"psd": {"z": floor}, "axis": "z"}, "axis is 'z'"),
@@ -399,6 +400,10 @@ def test_bad_ready_made_spectra(damped):
         ({"psd": {"x": floor, "z": ground}}, "acceleration and velocity"),
         ({"psd": {"z": floor}, "omega": [1e5, 1e6]}, "outside"),
         ({"psd": [1.0, 1.0], "axis": "z"}, "omega is missing"),
+        ({"psd": floor, "axis": "roll"}, "in m; it must be one of rad"),
+        ({"psd": {"roll": ground}}, "in m; it must be one of rad"),
+        ({"psd": force, "axis": "z"}, "spectrum of force.*simulate"),
+        ({"psd": [1.0, 1.0], "omega": [10.0, 20.0], "axis": "z", "of": "force"}, "of is 'force'"),
     ]
     for arguments, message in cases:
         with pytest.raises(fx.ArgumentError, match=message):

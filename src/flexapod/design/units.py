@@ -63,7 +63,7 @@ ALL_UNITS = frozenset(unit for units in UNITS.values() for unit in units)
 
 def si_unit(dimension: str | None) -> str:
     """The SI unit of a dimension as it stands in a key; "" for a pure number."""
-    return next(iter(UNITS[dimension])) if dimension else ""
+    return next(iter(QUANTITIES[dimension])) if dimension else ""
 
 
 def printed(unit: str) -> str:

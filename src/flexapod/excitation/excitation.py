@@ -10,14 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod._core import TermKind
-from flexapod.checks import not_negative, positive
+from flexapod.checks import not_negative, one_of, positive
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, Array
 from flexapod.errors import ArgumentError, shown
 from flexapod.pose import Motion, PoseLike, as_pose
@@ -182,6 +182,17 @@ class Excitation:
             Old axis to new axis.
         """
         return replace(self, terms=tuple(replace(term, channel=axes[term.channel]) for term in self.terms))
+
+    def for_use(self, use: Use) -> Excitation:
+        """Return the excitation as one that drives nothing but a motion, a force or a moment.
+
+        Parameters
+        ----------
+        use : {"motion", "force", "moment", ""}
+            What it may drive; "" for all.
+        """
+        one_of(use, "use", get_args(Use))
+        return replace(self, terms=tuple(replace(term, use=use) for term in self.terms))
 
     @property
     def channels(self) -> tuple[str, ...]:

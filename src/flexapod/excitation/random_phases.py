@@ -10,20 +10,21 @@ from numpy.typing import ArrayLike
 from flexapod.checks import one_of, whole
 from flexapod.conventions import TWO_PI, Array
 from flexapod.errors import ArgumentError
-from flexapod.excitation.excitation import Excitation
+from flexapod.excitation.excitation import Excitation, Use
 from flexapod.excitation.sines import harmonic
-from flexapod.excitation.spectra import QUANTITIES, Spectrum
+from flexapod.excitation.spectra import LOADS, MOTIONS, QUANTITIES, Spectrum, check_axis
 
 
 def random_motion(axis: str, spectrum: Spectrum, *, seed: int = 0, samples: int = 400) -> Excitation:
-    """Return a random motion with a power spectrum, as a sum of sines.
+    """Return a random motion, or a random load, with a power spectrum, as a sum of sines.
 
     Parameters
     ----------
     axis : str
         One of x, y, z, roll, pitch, yaw, or a leg "1" to "6".
     spectrum : Spectrum
-        Density of displacement, velocity or acceleration, per rad/s.
+        Density of displacement, velocity or acceleration, or of a force or moment, per rad/s. It also says what the
+        sum can drive.
     seed : int, optional
         Seed of the frequencies and phases.
     samples : int, optional
@@ -37,7 +38,8 @@ def random_motion(axis: str, spectrum: Spectrum, *, seed: int = 0, samples: int 
     Raises
     ------
     ArgumentError
-        If the axis is unknown, the number of sines is invalid, or the density is negative or not finite.
+        If the axis is unknown or not one of the spectrum's unit, the number of sines is invalid, or the density is
+        negative or not finite.
 
     Notes
     -----
@@ -53,7 +55,9 @@ def random_motion(axis: str, spectrum: Spectrum, *, seed: int = 0, samples: int 
     1.0
     """
     omega, amplitude, phase = _lines(spectrum, seed, samples)
-    return harmonic(axis, amplitude, omega, phase)
+    check_axis(spectrum, axis)
+    use: Use = spectrum.quantity if spectrum.quantity in LOADS else "motion"  # type: ignore[assignment]
+    return harmonic(axis, amplitude, omega, phase).for_use(use)
 
 
 def sea_motion(
@@ -85,7 +89,8 @@ def sea_motion(
     Raises
     ------
     ArgumentError
-        If an axis is unknown, the number of waves is invalid, or a response is not finite.
+        If an axis is unknown, the spectrum is not one of a motion, the number of waves is invalid, or a response is not
+        finite.
 
     Notes
     -----
@@ -98,17 +103,20 @@ def sea_motion(
     <Excitation of z, roll, 2 terms>
     """
     omega, amplitude, phase = _lines(spectrum, seed, samples)
+    if spectrum.quantity in LOADS:
+        raise ArgumentError(f"spectrum is one of {spectrum.quantity}; it must be that of the sea's elevation.")
     total = Excitation()
     for axis, operator in response.items():
         factor = np.broadcast_to(np.asarray(operator(omega), dtype=complex), omega.shape)
         if not np.isfinite(factor).all():
             raise ArgumentError(f"the response of {axis} holds NaN or infinity; it must be finite for all omega.")
-        total = total + harmonic(axis, amplitude * np.abs(factor), omega, phase + np.angle(factor))
+        motion = harmonic(axis, amplitude * np.abs(factor), omega, phase + np.angle(factor))
+        total = total + motion.for_use("motion")
     return total
 
 
 def _lines(spectrum: Spectrum, seed: int, samples: int) -> tuple[Array, Array, Array]:
-    """Frequencies, displacement amplitudes and phases."""
+    """Frequencies, phases, and amplitudes of the displacement or the load."""
     samples = whole(samples, "samples")
     rng = np.random.default_rng(whole(seed, "seed", 0))
     edges = np.linspace(spectrum.omega_min, spectrum.omega_max, samples + 1)
@@ -116,6 +124,7 @@ def _lines(spectrum: Spectrum, seed: int, samples: int) -> tuple[Array, Array, A
     density = np.asarray(spectrum.density(omega), dtype=float)
     if not np.isfinite(density).all() or (density < 0).any():
         raise ArgumentError("the density holds NaN, infinity or negative numbers; it must be >= 0 and finite.")
-    power = QUANTITIES.index(one_of(spectrum.quantity, "quantity of the spectrum", QUANTITIES))
+    quantity = one_of(spectrum.quantity, "quantity of the spectrum", QUANTITIES)
+    power = MOTIONS.index(quantity) if quantity in MOTIONS else 0
     amplitude = np.sqrt(2 * density * np.diff(edges)) / omega**power
     return omega, amplitude, rng.uniform(0, TWO_PI, samples)

@@ -47,8 +47,8 @@ def harmonic(
     Raises
     ------
     ArgumentError
-        If the axis is unknown, a number is not finite, a frequency is negative, or not one of `omega` and `frequency`
-        is given.
+        If the axis is unknown, there is no sine, a number is not finite, a frequency is negative, or not one of `omega`
+        and `frequency` is given.
 
     See Also
     --------
@@ -70,7 +70,10 @@ def harmonic(
         raise ArgumentError("give one of omega (rad/s) and frequency (Hz).")
     if omega is None:
         omega = TWO_PI * np.asarray(frequency, dtype=float)
-    parts = np.broadcast_arrays(*(np.atleast_1d(np.asarray(v, dtype=float)) for v in (amplitude, omega, phase)))
+    given = (amplitude, omega, phase)
+    if any(np.size(v) == 0 for v in given):
+        raise ArgumentError("amplitude, omega or phase is empty; at least one sine is needed.")
+    parts = np.broadcast_arrays(*(np.atleast_1d(np.asarray(v, dtype=float)) for v in given))
     triples = np.stack([part.ravel() for part in parts], axis=1)
     if not np.isfinite(triples).all():
         raise ArgumentError("amplitude, omega or phase holds NaN or infinity; all numbers must be finite.")
@@ -105,7 +108,7 @@ def sine_sweep(
         How the frequency goes with time.
     hold : {"displacement", "velocity", "acceleration"}, optional
         What keeps its amplitude while the frequency changes. With "acceleration" the amplitude of the displacement goes
-        with 1/omega^2, as in tests on shakers.
+        with 1/omega^2, as in tests on shakers; it then drives motions only.
 
     Returns
     -------
@@ -131,4 +134,5 @@ def sine_sweep(
     one_of(hold, "hold", _POWERS)
     start, end = positive(omega_start, "omega_start", "rad/s"), positive(omega_end, "omega_end", "rad/s")
     size, time = number(amplitude, "amplitude"), positive(duration, "duration", "s")
-    return one_term(axis, TermKind.chirp, np.array([size, start, end, time, float(law == "log"), _POWERS[hold]]))
+    numbers = np.array([size, start, end, time, float(law == "log"), _POWERS[hold]])
+    return one_term(axis, TermKind.chirp, numbers, use="" if hold == "displacement" else "motion")

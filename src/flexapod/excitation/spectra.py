@@ -1,36 +1,41 @@
-"""Power spectra of floors, the ground and the sea."""
+"""Power spectra of floors, the ground, the sea, and loads."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.checks import number, one_of, positive, whole
-from flexapod.conventions import TWO_PI, Array
+from flexapod.conventions import ROTATIONS, TWO_PI, Array
 from flexapod.errors import ArgumentError
 from flexapod.excitation.noise_models import HIGH_NOISE, LOW_NOISE
 
-Quantity = Literal["displacement", "velocity", "acceleration"]
+Quantity = Literal["displacement", "velocity", "acceleration", "force", "moment"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
+MOTIONS: tuple[Quantity, ...] = QUANTITIES[:3]
+LOADS: dict[Quantity, str] = {"force": "N", "moment": "N m"}
 
 VC_SPEED = {"VC-A": 50.0, "VC-B": 25.0, "VC-C": 12.5, "VC-D": 6.25, "VC-E": 3.12, "VC-F": 1.56, "VC-G": 0.78}  # um/s
 
 
 class Spectrum(NamedTuple):
-    """A one-sided power spectral density of a motion on one axis, per rad/s.
+    """A one-sided power spectral density of a motion or a load on one axis, per rad/s.
 
     Attributes
     ----------
     density : callable
-        From angular frequencies (n,) in rad/s to densities (n,): the square of m, m/s or m/s2 (or with rad) per rad/s;
-        zero outside the range.
-    quantity : {"displacement", "velocity", "acceleration"}
+        From angular frequencies (n,) in rad/s to densities (n,): the square of m, m/s or m/s2 (or with rad), N or N m
+        per rad/s; zero outside the range.
+    quantity : {"displacement", "velocity", "acceleration", "force", "moment"}
         What the density is of.
     omega_min, omega_max : float
         The range of frequencies, rad/s.
+    unit : {"", "m", "rad"}, optional
+        Whether a motion is a translation (m, m/s, m/s2) or a rotation; "" where it is that of the axis.
 
     Examples
     --------
@@ -44,6 +49,7 @@ class Spectrum(NamedTuple):
     quantity: Quantity
     omega_min: float
     omega_max: float
+    unit: Literal["", "m", "rad"] = ""
 
     def rms(self, samples: int = 20000) -> float:
         """Return the root mean square of the quantity.
@@ -57,16 +63,30 @@ class Spectrum(NamedTuple):
         return float(np.sqrt(np.trapezoid(self.density(omega), omega)))
 
 
+def check_axis(spectrum: Spectrum, axis: str) -> None:
+    """Raises ArgumentError where a spectrum of metres is given to a rotation, or one of radians to a translation."""
+    turns = axis in ROTATIONS
+    if spectrum.quantity in LOADS and turns:
+        raise ArgumentError(
+            f"axis is {axis!r}, but the spectrum is one of {spectrum.quantity}, which has the axes x, y, z. Choose one."
+        )
+    if spectrum.unit == ("m" if turns else "rad"):
+        raise ArgumentError(
+            f"axis is {axis!r}, but the spectrum of {spectrum.quantity} is in {spectrum.unit}; it must be one of "
+            f"{'rad' if turns else 'm'}. Give a spectrum for that axis, such as flat_spectrum makes one."
+        )
+
+
 def flat_spectrum(rms: float, omega_min: float, omega_max: float, *, quantity: Quantity = "acceleration") -> Spectrum:
     """Return a spectrum with the same density over a range of frequencies.
 
     Parameters
     ----------
     rms : float
-        Root mean square of the quantity, m, m/s or m/s2, or with rad; > 0.
+        Root mean square of the quantity, m, m/s or m/s2, or with rad, N or N m; > 0.
     omega_min, omega_max : float
         Range of frequencies, rad/s, > 0.
-    quantity : {"displacement", "velocity", "acceleration"}, optional
+    quantity : {"displacement", "velocity", "acceleration", "force", "moment"}, optional
         What the spectrum is of.
 
     Returns
@@ -77,7 +97,7 @@ def flat_spectrum(rms: float, omega_min: float, omega_max: float, *, quantity: Q
     Raises
     ------
     ArgumentError
-        If a number is not > 0, or the range does not ascend.
+        If a number is not > 0, the range does not ascend, or the quantity is unknown.
 
     Notes
     -----
@@ -91,8 +111,8 @@ def flat_spectrum(rms: float, omega_min: float, omega_max: float, *, quantity: Q
     low, high = number(omega_min, "omega_min", "rad/s"), number(omega_max, "omega_max", "rad/s")
     if not 0 < low < high:
         raise ArgumentError(f"frequencies are {low} to {high} rad/s; the first must be > 0 and below the second.")
-    level = positive(rms, "rms") ** 2 / (high - low)
-    return _limited(lambda omega: np.full(np.shape(omega), level), quantity, low, high)
+    one_of(quantity, "quantity", QUANTITIES)
+    return Spectrum(_Limited(_Flat(positive(rms, "rms") ** 2 / (high - low)), low, high), quantity, low, high)
 
 
 def vc_curve(name: str) -> Spectrum:
@@ -130,15 +150,10 @@ def vc_curve(name: str) -> Spectrum:
     54.4
     """
     one_of(name, "name", VC_SPEED)
-    speed = VC_SPEED[name] * 1e-6
-    band = 2 ** (1 / 6) - 2 ** (-1 / 6)  # width of a one-third octave band over its middle
     lifted = name in ("VC-A", "VC-B")
-
-    def density(omega: Array) -> Array:
-        level = speed * np.where(lifted & (omega < 8 * TWO_PI), 8 * TWO_PI / omega, 1.0)
-        return level**2 / (band * omega)
-
-    return _limited(density, "velocity", (4 if lifted else 1) * TWO_PI, 80 * TWO_PI)
+    low, high = (4 if lifted else 1) * TWO_PI, 80 * TWO_PI
+    density = _Criterion(VC_SPEED[name] * 1e-6, lifted)
+    return Spectrum(_Limited(density, low, high), "velocity", low, high, "m")
 
 
 def ground_noise(model: Literal["low", "high"] = "high") -> Spectrum:
@@ -169,14 +184,8 @@ def ground_noise(model: Literal["low", "high"] = "high") -> Spectrum:
     49
     """
     one_of(model, "model", ("low", "high"))
-    period, a, b = np.array(LOW_NOISE if model == "low" else HIGH_NOISE).T
-
-    def density(omega: Array) -> Array:
-        T = TWO_PI / np.asarray(omega, dtype=float)
-        row = np.clip(np.searchsorted(period, T * (1 + 1e-12), side="right") - 1, 0, None)
-        return 10 ** ((a[row] + b[row] * np.log10(T)) / 10) / TWO_PI
-
-    return _limited(density, "acceleration", 0.01 * TWO_PI, 10 * TWO_PI)
+    low, high = 0.01 * TWO_PI, 10 * TWO_PI
+    return Spectrum(_Limited(_Ground(model == "low"), low, high), "acceleration", low, high, "m")
 
 
 def sea_spectrum(height: float, period: float, gamma: float = 1.0) -> Spectrum:
@@ -221,21 +230,69 @@ def sea_spectrum(height: float, period: float, gamma: float = 1.0) -> Spectrum:
         raise ArgumentError(f"gamma is {gamma}; it must be from 1 (Pierson-Moskowitz) to 10; JONSWAP's mean is 3.3.")
     peak = TWO_PI / T
 
-    def shape(omega: Array) -> Array:
-        width = np.where(omega <= peak, 0.07, 0.09)
-        lift = gamma ** np.exp(-0.5 * ((omega - peak) / (width * peak)) ** 2)
-        return peak**4 / omega**5 * np.exp(-1.25 * (peak / omega) ** 4) * lift
-
     low, high = 0.3 * peak, 10 * peak  # outside it lies 1e-4 of the energy
     grid = np.geomspace(low, high, 20001)
-    level = (H / 4) ** 2 / np.trapezoid(shape(grid), grid)
-    return _limited(lambda omega: level * shape(omega), "displacement", low, high)
+    level = float((H / 4) ** 2 / np.trapezoid(_Waves(1.0, peak, gamma)(grid), grid))
+    return Spectrum(_Limited(_Waves(level, peak, gamma), low, high), "displacement", low, high, "m")
 
 
-def _limited(density: Callable[[Array], Array], quantity: Quantity, low: float, high: float) -> Spectrum:
-    def limited(omega: ArrayLike) -> Array:
+@dataclass(frozen=True)
+class _Limited:
+    """A density that is zero outside its range."""
+
+    density: Callable[[Array], Array]
+    low: float
+    high: float
+
+    def __call__(self, omega: ArrayLike) -> Array:
         w = np.asarray(omega, dtype=float)
-        inside = (w >= low * (1 - 1e-12)) & (w <= high * (1 + 1e-12))
-        return np.where(inside, density(np.clip(w, low, high)), 0.0)
+        inside = (w >= self.low * (1 - 1e-12)) & (w <= self.high * (1 + 1e-12))
+        return np.where(inside, self.density(np.clip(w, self.low, self.high)), 0.0)
 
-    return Spectrum(limited, quantity, float(low), float(high))
+
+@dataclass(frozen=True)
+class _Flat:
+    level: float
+
+    def __call__(self, omega: Array) -> Array:
+        return np.full(np.shape(omega), self.level)
+
+
+@dataclass(frozen=True)
+class _Criterion:
+    """The same speed (m/s) in each one-third octave band; lifted: more below 8 Hz."""
+
+    speed: float
+    lifted: bool
+
+    def __call__(self, omega: Array) -> Array:
+        band = 2 ** (1 / 6) - 2 ** (-1 / 6)  # width of a one-third octave band over its middle
+        level = self.speed * np.where(self.lifted & (omega < 8 * TWO_PI), 8 * TWO_PI / omega, 1.0)
+        return level**2 / (band * omega)
+
+
+@dataclass(frozen=True)
+class _Ground:
+    """Peterson's models of noise."""
+
+    low: bool
+
+    def __call__(self, omega: Array) -> Array:
+        period, a, b = np.array(LOW_NOISE if self.low else HIGH_NOISE).T
+        T = TWO_PI / np.asarray(omega, dtype=float)
+        row = np.clip(np.searchsorted(period, T * (1 + 1e-12), side="right") - 1, 0, None)
+        return 10 ** ((a[row] + b[row] * np.log10(T)) / 10) / TWO_PI
+
+
+@dataclass(frozen=True)
+class _Waves:
+    """JONSWAP's spectrum with a peak (rad/s)."""
+
+    level: float
+    peak: float
+    gamma: float
+
+    def __call__(self, omega: Array) -> Array:
+        width = np.where(omega <= self.peak, 0.07, 0.09)
+        lift = self.gamma ** np.exp(-0.5 * ((omega - self.peak) / (width * self.peak)) ** 2)
+        return self.level * self.peak**4 / omega**5 * np.exp(-1.25 * (self.peak / omega) ** 4) * lift

@@ -17,6 +17,7 @@ from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.modes import advised_sampling_time, natural_modes
 from flexapod.simulation.datasets import one_run
 from flexapod.simulation.integrator import IntegratorOptions, integrate
+from flexapod.simulation.notes import of_recordings, of_results
 from flexapod.simulation.run import SimulationRun
 
 MOST_SAMPLES = 20_000
@@ -46,7 +47,8 @@ def simulate_many(
     runs : sequence of SimulationRun
         What to simulate.
     duration : float, optional
-        Length of every simulation, s. Needed unless `times` is given.
+        Length of every simulation, s. Default: where there is a recording, its length; of several the shortest. A
+        recording that ends less than one of its samples earlier ends the simulation.
     times : array_like, optional
         Instants of the result, (m,) s, ascending from 0 or later, the same for all runs.
     samples : int, optional
@@ -78,7 +80,8 @@ def simulate_many(
     Warns
     -----
     UserWarning
-        If a recording is sampled too coarsely for the machine.
+        If a recording is sampled too coarsely for the machine, drifts, or begins off zero; if a motion exceeds a limit
+        of its machine, or an energy balance is off.
 
     See Also
     --------
@@ -104,24 +107,35 @@ def simulate_many(
         if not isinstance(run, SimulationRun):
             raise ArgumentError(f"runs[{i}] is {shown(run)}; it must be a flexapod.simulation.SimulationRun.")
     highest = [natural_modes(run.hexapod, run.pose, joint=joint, base=run.base).omega[-1] for run in runs]
-    at = _sample_times(times, duration, samples, max(highest, default=0.0))
-    notes = [note for run, omega in zip(runs, highest, strict=True) for note in _coarse(run, omega)]
-    for note in dict.fromkeys(notes):
-        warnings.warn(note, UserWarning, stacklevel=_outside())
+    end = _end(runs, duration) if times is None else duration
+    at = _sample_times(times, end, samples, max(highest, default=0.0))
+    notes = [note for run, omega in zip(runs, highest, strict=True) for note in of_recordings(run, omega)]
     found = integrate(runs, at, joint=joint, options=options, works=energies, progress=progress)
     each = [
         one_run(run, found, i, at, joint=joint, energies=energies, reactions=reactions) for i, run in enumerate(runs)
     ]
+    notes = list(dict.fromkeys([*notes, *_of_results(runs, each)]))
+    for note in notes:
+        warnings.warn(note, UserWarning, stacklevel=_outside())
     dataset = xr.concat([part.reindex(time=at) for part in each], dim="run", combine_attrs="drop_conflicts")
     dataset.attrs = {
         "design": ", ".join(sorted({run.hexapod.name for run in runs})),
         "joint": joint,
         "method": "Runge-Kutta 8(5,3), Dormand and Prince; orientation on SO(3)",
         "rtol": rtol,
-        "warnings": list(dict.fromkeys(notes)),
+        "warnings": notes,
         "last": found.last,
     }
     return dataset
+
+
+def _of_results(runs: Sequence[SimulationRun], each: Sequence[xr.Dataset]) -> list[str]:
+    """What there is to say of the results; of many runs, of the first for each kind and how many there are."""
+    found = [of_results(run, result) for run, result in zip(runs, each, strict=True)]
+    said = [i for i, notes in enumerate(found) if notes]
+    if len(runs) == 1 or not said:
+        return [note for notes in found for note in notes]
+    return [f"run {said[0]}, and {len(said) - 1} of {len(runs)} runs besides: {note}" for note in found[said[0]]]
 
 
 def _outside() -> int:
@@ -140,7 +154,7 @@ def _sample_times(times: ArrayLike | None, duration: float | None, samples: int 
             raise ArgumentError("times is given, so duration and samples must not be.")
         return np.asarray(times, dtype=np.float64)
     if duration is None:
-        raise ArgumentError("duration is missing; give the length of the simulation in s, or times.")
+        raise ArgumentError("duration is missing, and no recording gives it; give the length in s, or times.")
     end = positive(duration, "duration", "s")
     if samples is None:
         needed = MOST_SAMPLES if highest <= 0 else int(np.ceil(end / advised_sampling_time(highest)))
@@ -148,15 +162,11 @@ def _sample_times(times: ArrayLike | None, duration: float | None, samples: int 
     return np.linspace(0.0, end, whole(samples, "samples", 2))
 
 
-def _coarse(run: SimulationRun, highest: float) -> list[str]:
-    """What a recording cannot show because of its sampling."""
-    notes = []
-    for use, history in run.histories().items():
-        for term in history.terms:
-            if term.sampled > 0 and np.pi / term.sampled < highest:
-                notes.append(
-                    f"the recording of {use} {term.channel} is sampled every {term.sampled:.4g} s and holds nothing "
-                    f"above {np.pi / term.sampled:.4g} rad/s, but {run.hexapod.name!r} has natural frequencies up to "
-                    f"{highest:.4g} rad/s: what excites them is not in it."
-                )
-    return notes
+def _end(runs: Sequence[SimulationRun], duration: float | None) -> float | None:
+    """The duration given, or that of the shortest recording where it is missing or less than a sample longer."""
+    terms = [term for run in runs for use in run.histories().values() for term in use.terms if term.sampled > 0]
+    if duration is None:
+        return min((term.last for term in terms if term.stop > term.last), default=None)
+    end = positive(duration, "duration", "s")
+    near = [term.last for term in terms if end - 1.000001 * term.sampled <= term.last < min(end, term.stop)]
+    return min([end, *near])

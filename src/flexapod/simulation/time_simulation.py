@@ -74,7 +74,8 @@ def simulate(
     leg_command : Excitation, optional
         Change of the unstretched lengths of legs "1" to "6", m.
     duration : float, optional
-        Length of the simulation, s. Needed unless `times` is given.
+        Length of the simulation, s. Default: where there is a recording, its length; of several the shortest. A
+        recording that ends less than one of its samples earlier ends the simulation.
     times : array_like, optional
         Instants of the result, (m,) s, ascending from 0 or later.
     samples : int, optional
@@ -141,7 +142,8 @@ def simulate(
     Warns
     -----
     UserWarning
-        If a recording is sampled too coarsely for the machine.
+        If a recording is sampled too coarsely for the machine, drifts, or begins off zero; if the motion exceeds a
+        limit of the machine, or the energy balance is off.
 
     See Also
     --------
@@ -212,6 +214,7 @@ def _complete(dataset: xr.Dataset) -> xr.Dataset:
     parts = unpack(last)
     where = Pose(parts["position"], parts["matrix"])
     result = dataset.sel(time=dataset.time <= end)
+    remarks = "".join(f" {note[0].upper()}{note[1:]}" for note in dataset.attrs["warnings"])
     raise SimulationError(
-        f"the simulation ended at t = {end:.9g} s in {where!r}: {REASONS[status]}.", end, where, result
+        f"the simulation ended at t = {end:.9g} s in {where!r}: {REASONS[status]}.{remarks}", end, where, result
     )

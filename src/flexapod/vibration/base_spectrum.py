@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import NamedTuple, get_args
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from flexapod.checks import one_of
 from flexapod.conventions import AXES, TWO_PI, Array, Complex
 from flexapod.errors import ArgumentError, shown
-from flexapod.excitation.spectra import Quantity, Spectrum
+from flexapod.excitation.spectra import LOADS, MOTIONS, Quantity, Spectrum, check_axis
 
 Density = ArrayLike | Callable[[Array], ArrayLike] | Spectrum | Mapping[str, Spectrum]
 
@@ -35,6 +35,13 @@ def ready_made(psd: Spectrum | Mapping[str, Spectrum], axis: str | None, omega: 
     for name, item in psd.items():
         if not isinstance(item, Spectrum):
             raise ArgumentError(f"psd[{name!r}] is {shown(item)}; it must be a flexapod Spectrum.")
+        if item.quantity in LOADS:
+            raise ArgumentError(
+                f"psd of {name} is a spectrum of {item.quantity}; it must be one of the base's displacement, velocity "
+                f"or acceleration. A random {item.quantity} on the platform can be simulated in time: "
+                f"simulate(..., {item.quantity}=random_motion({name!r}, spectrum))."
+            )
+        check_axis(item, _known(name))
     axes, spectra = [_unit_axis(name) for name in psd], list(psd.values())
     kinds = {item.quantity for item in spectra}
     if len(kinds) > 1:
@@ -59,7 +66,7 @@ def tabulated(
     psd: ArrayLike | Callable[[Array], ArrayLike], axis: str | None, omega: Array, quantity: Quantity, per_hertz: bool
 ) -> BaseSpectrum:
     """A table over `omega`, or a function, of densities per rad/s, or per Hz over frequencies in Hz."""
-    one_of(quantity, "of", get_args(Quantity))
+    one_of(quantity, "of", MOTIONS)
     grid, unit = _checked_band(omega), TWO_PI if per_hertz else 1.0
     if callable(psd):
         return BaseSpectrum(lambda w: _checked(psd(w / unit), w, axis, unit), grid, quantity)

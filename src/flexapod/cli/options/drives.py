@@ -1,80 +1,53 @@
-"""What drives a simulation, as said on the command line: channels, numbers with units, spectra."""
+"""What drives a simulation, as said on the command line: channels, numbers with units, spectra, recordings."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from flexapod.cli.options import common
-from flexapod.conventions import AXES, LEGS, TRANSLATIONS, TWO_PI
+from flexapod.cli.options.quantities import Quantity, dimension_of, read
+from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, TWO_PI
 
 if TYPE_CHECKING:
     from flexapod.excitation.excitation import Excitation
     from flexapod.excitation.spectra import Spectrum
 
 USES = {"base": "base_motion", "force": "force", "moment": "moment", "leg": "leg_command"}
-UNITS = {
-    "": 1.0,
-    "m": 1.0,
-    "cm": 1e-2,
-    "mm": 1e-3,
-    "um": 1e-6,
-    "nm": 1e-9,
-    "rad": 1.0,
-    "mrad": 1e-3,
-    "urad": 1e-6,
-    "deg": TWO_PI / 360,
-    "N": 1.0,
-    "kN": 1e3,
-    "Nm": 1.0,
-    "m/s2": 1.0,
-    "g": 9.80665,
-    "rad/s2": 1.0,
-    "rad/s": 1.0,
-    "Hz": TWO_PI,
-    "rpm": TWO_PI / 60,
-    "s": 1.0,
-    "ms": 1e-3,
-    "min": 60.0,
+#: Dimensions of the numbers behind a channel; "" is that of the channel's value, "rate" and "pulse" follow from it.
+NUMBERS = {
+    "harmonic": ("", "frequency"),
+    "sweep": ("", "frequency", "frequency", "time"),
+    "shock": ("pulse", "time"),
+    "step": ("", "time"),
+    "spin": ("rate",),
 }
-NUMBER = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([a-zA-Z/2]*)")
+RATES = {"length": "velocity", "angle": "angular velocity"}
+SECOND_RATES = {"length": "acceleration", "angle": "angular acceleration"}
+POSITIVE_TIME = Quantity("time", need="> 0")
 
 
-class Quantity(click.ParamType):
-    """A number, SI unless a unit follows it at once: 1e-6, 1um, 0.5deg, 20Hz."""
-
-    name = "number"
-
-    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        match = NUMBER.fullmatch(str(value).strip())
-        if match is None or match[2] not in UNITS:
-            self.fail(f"{value!r} is not a number with a unit of {', '.join(u for u in UNITS if u)}.", param, ctx)
-        return float(match[1]) * UNITS[match[2]]
-
-
-QUANTITY = Quantity()
-
-
-def _drive(name: str, numbers: int, metavar: str, words: str) -> Callable[[Any], Any]:
-    kinds = (str, *[QUANTITY] * numbers)
+def _drive(name: str, metavar: str, words: str) -> Callable[[Any], Any]:
+    kinds = (str,) * (1 + len(NUMBERS[name]))
     return click.option(f"--{name}", type=kinds, multiple=True, metavar=f"CHANNEL {metavar}", help=words)
 
 
 drive_options = common.stack(
-    _drive("harmonic", 2, "AMPLITUDE OMEGA", "A sine, as `--harmonic z 1um 750`."),
-    _drive("sweep", 4, "AMPLITUDE FROM TO SECONDS", "A sine swept by logarithm from one frequency to another."),
-    _drive("shock", 2, "PEAK SECONDS", "A half-sine pulse: of the base's acceleration, or of a load itself."),
-    _drive("step", 2, "CHANGE SECONDS", "A smooth change, as of a load or a leg's length."),
-    _drive("spin", 1, "RATE", "A constant rate, as `--spin yaw 30rpm --start carried`."),
+    _drive("harmonic", "AMPLITUDE OMEGA", "A sine, as `--harmonic z 1um 750`."),
+    _drive("sweep", "AMPLITUDE FROM TO SECONDS", "A sine swept by logarithm from one frequency to another."),
+    _drive("shock", "PEAK SECONDS", "A half-sine pulse: of the base's acceleration, or of a load itself."),
+    _drive("step", "CHANGE SECONDS", "A smooth change, as of a load or a leg's length."),
+    _drive("spin", "RATE", "A constant rate, as `--spin yaw 30rpm --start carried`."),
     click.option(
         "--random",
         type=(str, str),
         multiple=True,
         metavar="CHANNEL SPECTRUM",
-        help="Random motion: VC-A to VC-G, ground, ground:low, sea:HEIGHT:PERIOD, or flat:RMS:FROM:TO (acceleration).",
+        help="Random motion of the base: VC-A to VC-G, ground, ground:low, sea:HEIGHT:PERIOD, or flat:RMS:FROM:TO, "
+        "whose RMS is an acceleration unless its unit says otherwise. A random load or leg command: flat:RMS:FROM:TO "
+        "of the load or command itself.",
     ),
     click.option(
         "--recording",
@@ -83,8 +56,21 @@ drive_options = common.stack(
         metavar="USE FILE",
         help="A CSV file for base, force, moment or leg: columns time and channels, as time,z_um,roll_deg or leg1_mm.",
     ),
-    click.option("--seed", type=int, default=1, show_default=True, help="Of --random."),
-    click.option("--ramp", type=QUANTITY, default=None, metavar="SECONDS", help="Let all drives rise smoothly."),
+    click.option(
+        "--detrend",
+        type=click.Choice(("first", "mean", "linear")),
+        default=None,
+        help="Take the first value, the mean or a straight line out of every recording.",
+    ),
+    click.option(
+        "--highpass",
+        type=Quantity("frequency", "Hz", "> 0"),
+        default=None,
+        metavar="HZ",
+        help="Take what is slower than this out of every recording.",
+    ),
+    click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of --random."),
+    click.option("--ramp", type=POSITIVE_TIME, default=None, metavar="SECONDS", help="Let all drives rise smoothly."),
 )
 
 
@@ -112,18 +98,39 @@ def drives(given: dict[str, Any]) -> dict[str, Excitation]:
     for name, make in makers.items():
         for channel, *numbers in given[name]:
             use, own = _channel(channel)
-            add(use, make(own, *numbers))
+            add(use, make(own, *_numbers(name, use, own, numbers)))
     for channel, *numbers in given["shock"]:
         use, own = _channel(channel)
-        add(use, shock(use, own, *numbers))
+        add(use, shock(use, own, *_numbers("shock", use, own, numbers)))
     for i, (channel, text) in enumerate(given["random"]):
         use, own = _channel(channel)
-        add(use, random_phases.random_motion(own, _spectrum(text), seed=given["seed"] + i))
+        add(use, random_phases.random_motion(own, _spectrum(text, use, own), seed=given["seed"] + i))
+    highpass = None if given["highpass"] is None else TWO_PI * given["highpass"]
     for use, file in given["recording"]:
-        add(USES[use], recordings.read_time_series(file))
+        add(USES[use], recordings.read_time_series(file, detrend=given["detrend"], highpass=highpass))
+    if not given["recording"] and (highpass is not None or given["detrend"] is not None):
+        raise click.UsageError("--detrend and --highpass are for --recording, which is not given.")
     if given["ramp"] is not None:
         total = {use: drive.ramped(given["ramp"]) for use, drive in total.items()}
     return total
+
+
+def _numbers(name: str, use: str, own: str, texts: list[str]) -> list[float]:
+    """The numbers of a drive in SI units, each of its dimension."""
+    value = _value(use, own)
+    if name == "spin" and value not in RATES:
+        raise click.UsageError("--spin turns or moves the base, or changes a leg's length, at a constant rate.")
+    found = []
+    for text, kind in zip(texts, NUMBERS[name], strict=True):
+        pulse = SECOND_RATES[value] if use == "base_motion" else value
+        dimension = {"": value, "rate": RATES.get(value, ""), "pulse": pulse}.get(kind, kind)
+        found.append(read(text, dimension, f"--{name}"))
+    return found
+
+
+def _value(use: str, own: str) -> str:
+    """The dimension of a channel's value."""
+    return use if use in ("force", "moment") else "angle" if own in ROTATIONS else "length"
 
 
 def _channel(text: str) -> tuple[str, str]:
@@ -139,20 +146,45 @@ def _channel(text: str) -> tuple[str, str]:
     return USES[use], own
 
 
-def _spectrum(text: str) -> Spectrum:
+def _spectrum(text: str, use: str, own: str) -> Spectrum:
+    """The spectrum of `--random`. Raises UsageError for one that the channel cannot have."""
     from flexapod.excitation import spectra
 
     kind, *words = text.split(":")
+    value = _value(use, own)
+    if kind == "flat" and len(words) == 3:
+        low, high = (read(word, "frequency", "--random") for word in words[1:])
+        quantities: dict[str, spectra.Quantity] = {value: value if value in spectra.LOADS else "displacement"}
+        if use == "base_motion":
+            quantities = {SECOND_RATES[value]: "acceleration", RATES[value]: "velocity", value: "displacement"}
+        dimension = dimension_of(words[0], tuple(quantities))
+        rms = read(words[0], dimension, "--random")
+        return spectra.flat_spectrum(rms, low, high, quantity=quantities[dimension])
+    known = kind in spectra.VC_SPEED or kind in ("ground", "sea")
+    if known and (use != "base_motion" or own in ROTATIONS):
+        raise click.UsageError(
+            f"spectrum {text!r} is one of a floor's or a sea's translation; {_channel_words(use, own)} takes "
+            f"flat:RMS:FROM:TO, as flat:10{'N' if value == 'force' else ''}:1Hz:100Hz."
+        )
     if kind in spectra.VC_SPEED and not words:
         return spectra.vc_curve(kind)
     if kind == "ground" and len(words) < 2:
         return spectra.ground_noise(words[0] if words else "high")  # type: ignore[arg-type]
-    numbers = [QUANTITY.convert(word, None, None) for word in words]
-    if kind == "sea" and len(numbers) in (2, 3):
-        return spectra.sea_spectrum(*numbers)
-    if kind == "flat" and len(numbers) == 3:
-        return spectra.flat_spectrum(numbers[0], numbers[1], numbers[2])
+    if kind == "sea" and len(words) in (2, 3):
+        height, period = read(words[0], "length", "--random"), read(words[1], "time", "--random")
+        return spectra.sea_spectrum(height, period, *(_plain(word) for word in words[2:]))
     raise click.UsageError(
         f"spectrum {text!r} is unknown: give VC-A to VC-G, ground, ground:low, sea:HEIGHT:PERIOD, "
         "sea:HEIGHT:PERIOD:GAMMA or flat:RMS:FROM:TO."
     )
+
+
+def _channel_words(use: str, own: str) -> str:
+    return own if use == "base_motion" else f"{'leg' if use == 'leg_command' else use}:{own}"
+
+
+def _plain(word: str) -> float:
+    try:
+        return float(word)
+    except ValueError:
+        raise click.UsageError(f"--random: GAMMA is {word!r}; it must be a number without a unit.") from None

@@ -61,8 +61,8 @@ response_options = common.stack(
         type=click.Path(path_type=Path, exists=True, dir_okay=False),
         default=None,
         metavar="CSV",
-        help="Base acceleration spectra for RMS values: column frequency_hz and one or more of x, y, z (m/s2)^2/Hz, "
-        "roll, pitch, yaw (rad/s2)^2/Hz, one-sided.",
+        help="Spectra of the base for RMS values: column frequency_hz and one or more of x, y, z (m/s2)^2/Hz, roll, "
+        "pitch, yaw (rad/s2)^2/Hz, one-sided; or in the units of their titles, as z_g2/Hz or x_mm2/Hz.",
     ),
     common.out_option("Write figures, .csv and .nc here."),
 )

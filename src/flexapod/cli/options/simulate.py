@@ -7,13 +7,22 @@ from pathlib import Path
 import click
 
 from flexapod.cli.options import common
-from flexapod.cli.options.drives import QUANTITY, drive_options
+from flexapod.cli.options.drives import POSITIVE_TIME, drive_options
+from flexapod.cli.options.quantities import Quantity
 
 simulate_options = common.stack(
     drive_options,
-    click.option("--duration", type=QUANTITY, required=True, metavar="SECONDS", help="As 0.5, 500ms or 2min."),
-    click.option("--force", type=QUANTITY, nargs=3, default=(0, 0, 0), metavar="X Y Z", help="Constant, N."),
-    click.option("--moment", type=QUANTITY, nargs=3, default=(0, 0, 0), metavar="X Y Z", help="Constant, N m."),
+    click.option(
+        "--duration",
+        type=POSITIVE_TIME,
+        default=None,
+        metavar="SECONDS",
+        help="As 0.5, 500ms or 2min. Default: the length of the recording.",
+    ),
+    click.option("--force", type=Quantity("force"), nargs=3, default=(0, 0, 0), metavar="X Y Z", help="Constant, N."),
+    click.option(
+        "--moment", type=Quantity("moment"), nargs=3, default=(0, 0, 0), metavar="X Y Z", help="Constant, N m."
+    ),
     click.option(
         "--start",
         type=click.Choice(("rest", "carried")),

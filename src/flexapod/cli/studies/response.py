@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import click
@@ -12,21 +11,19 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import Progress
 
-from flexapod.conventions import AXES, LEGS, Array, unit_of
+from flexapod.cli.options.spectra import read_spectra
+from flexapod.conventions import AXES, LEGS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import linearise
 from flexapod.pose import Pose
 from flexapod.report.studies.response import ResponseFindings, study
 from flexapod.report.study import Study
-from flexapod.tables import naming, parse_table, read_text
 from flexapod.vibration.frequency_response import transmissibility
 from flexapod.vibration.grid import band, grid_around
 from flexapod.vibration.harmonic import complex_poles
 from flexapod.vibration.random_vibration import random_response
 from flexapod.vibration.stepped import stepped_sine
-
-_PSD = f"It must have frequency_hz and one or more of {', '.join(AXES)}."
 
 
 def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) -> Study:
@@ -44,10 +41,13 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
     options = {key: given[key] for key in ("point", "loss_factor", "joint")}
     response = transmissibility(hexapod, pose, omega=grid_around(poles, *ends, given["points"]), **options)
     stepped = None if given["amplitude"] is None else _stepped(hexapod, pose, given, (low, high), quiet)
-    random = None
+    random, notes = None, []
     if given["psd"] is not None:
-        frequency, psd = _read_psd(given["psd"])
-        random = random_response(hexapod, pose, psd=psd, frequency=frequency, **options)
+        spectra = read_spectra(given["psd"])
+        notes = spectra.notes
+        random = random_response(
+            hexapod, pose, psd=spectra.density, frequency=spectra.frequency, of=spectra.of, **options
+        )
     found = ResponseFindings(
         hexapod=hexapod,
         pose=pose,
@@ -59,6 +59,7 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
         response=response,
         stepped=stepped,
         random=random,
+        notes=notes,
     )
     at_modes = None
     moving = poles.imag > 0
@@ -74,6 +75,12 @@ def _check(given: dict[str, Any]) -> None:
         raise click.UsageError(f"--axis {axis} does not go with --from {given['source']}; choose one of {allowed}.")
     if given["relative"] and given["source"] != "base":
         raise click.UsageError("--relative is for --from base; wrenches and commands act on a base at rest.")
+    if given["psd"] is not None and given["source"] != "base":
+        raise click.UsageError(
+            f"--psd gives spectra of the base's motion: it goes with --from base, not --from {given['source']}. Random "
+            "loads and leg commands are simulated in time: flexapod simulate --random force:z flat:10N:1Hz:100Hz. In "
+            "Python abs(transmissibility(...).compliance)**2 turns the density of a force into that of the motion."
+        )
     if given["amplitude"] is not None and (given["source"] != "base" or given["loss_factor"] or any(given["point"])):
         raise click.UsageError(
             "--amplitude shakes the base of the non-linear machine, whose friction is viscous: use it with --from base "
@@ -112,25 +119,3 @@ def _peaks(found: ResponseFindings, moving: NDArray[np.bool_], at_modes: xr.Data
     if at_modes is not None:
         peaks[moving] = np.abs(at_modes[found.variable].sel({found.dimension: found.axis}).values)
     return peaks
-
-
-def _read_psd(path: Path) -> tuple[Array, Array]:
-    """Frequencies in Hz and densities per Hz (n, 6) of a CSV file."""
-    text = read_text(path)
-    with naming(path):
-        table = parse_table(text, {"frequency": "frequency", "f": "frequency", **{axis: axis for axis in AXES}}, _PSD)
-        frequency = table.column("frequency")
-        if frequency is None or len(table.columns) < 2:
-            raise ArgumentError(f"it has columns {', '.join(column.title for column in table.columns)}. {_PSD}")
-        hertz = table.numbers(frequency, {"Hz": (1, 1), "hz": (1, 1), "kHz": (1e3, 1)}, finite=False)
-        density = np.zeros((len(hertz), 6))
-        for column in table.columns:
-            if column.name in AXES:
-                density[:, AXES.index(column.name)] = table.numbers(column, _density_units(column.name), finite=False)
-    return hertz, density
-
-
-def _density_units(axis: str) -> dict[str, tuple[float, float]]:
-    """What people write for (m/s2)2/Hz, or with rad."""
-    unit = unit_of(axis)
-    return dict.fromkeys((f"{unit}2_per_s4_per_Hz", f"{unit}_per_s22_per_Hz", f"{unit}2_per_s3"), (1.0, 1.0))

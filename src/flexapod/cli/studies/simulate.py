@@ -40,14 +40,14 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
     took = time.perf_counter() - began
     if given["animate"] is not None:
         animation.animate_simulation(dataset, hexapod, given["animate"], exaggeration=given["exaggeration"])
-    for warning in [] if quiet else dataset.attrs["warnings"]:
-        click.echo(f"Warning: {warning}", err=True)
     idle = "Nothing drives the machine: what moves is rounding. Give --harmonic, --shock or the like."
     driven = drives(given) or given["unloaded"]
     return study(hexapod, pose, dataset, took, [] if driven else [Caution("idle", idle)])
 
 
 def _simulate(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) -> xr.Dataset:
+    if given["duration"] is None and not given["recording"]:
+        raise click.UsageError("Missing option '--duration': how long is simulated, as 0.5, 500ms or 2min.")
     settings: dict[str, Any] = {name: given[name] for name in ("joint", "start", "rtol", "reactions")}
     if given["samples"] is not None:
         settings["samples"] = given["samples"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -14,6 +15,7 @@ from matplotlib.figure import Figure
 from flexapod import plots
 from flexapod.conventions import AXES, LEGS, TWO_PI, Array, Complex, unit_of
 from flexapod.design.hexapod import Hexapod
+from flexapod.mechanics.cautions import Caution
 from flexapod.pose import Pose
 from flexapod.report.numbers import pose_numbers, pose_words
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
@@ -38,6 +40,7 @@ class ResponseFindings:
     response: xr.Dataset
     stepped: xr.Dataset | None = None
     random: xr.Dataset | None = None
+    notes: Sequence[str] = ()
 
     @property
     def dimension(self) -> str:
@@ -72,6 +75,7 @@ def study(f: ResponseFindings, peaks: Array) -> Study:
         data=_data(f, peaks),
         rows=[] if f.stepped is None else [Row("Non-linear stepped sine,", stepped_words(f.stepped))],
         sections=sections,
+        cautions=[Caution("spectrum", text) for text in f.notes],
         files=files,
         dataset=f.response,
     )
@@ -194,6 +198,7 @@ def _data(f: ResponseFindings, peaks: Array) -> dict[str, Any]:
         "amplitude_at_modes": peaks,
         "omega_rad_s": f.response.omega.values,
         "amplitude": {name: np.abs(f.chosen.sel(output=name).values) for name in AXES},
+        "warnings": list(f.notes),
         "phase_rad": {name: np.angle(f.chosen.sel(output=name).values) for name in AXES},
     }
     if f.stepped is not None:

@@ -27,6 +27,10 @@ def study(
 ) -> Study:
     """The study of a simulation. took: s."""
     force = dataset.leg_force.values
+    cautions = [
+        *(Caution("simulation", f"{text[0].upper()}{text[1:]}") for text in dataset.attrs["warnings"]),
+        *cautions,
+    ]
     steps = f"{dataset.attrs['steps']} steps in {took:.2f} s; energy balance error"
     few = dataset.isel(time=slice(None, None, max(1, dataset.sizes["time"] // MOST_PLOTTED)))
     drawings = [
@@ -39,7 +43,7 @@ def study(
         hexapod=hexapod,
         subject="simulation",
         about=f"From rest at {pose_words(pose)}, joint model {dataset.attrs['joint']}.",
-        data=_data(hexapod, pose, dataset, took),
+        data=_data(hexapod, pose, dataset, took, cautions),
         rows=[
             Row("Leg forces from", f"{force.min():.5g} to {force.max():.5g}", "N", note="(positive: compression)"),
             Row(steps, f"{dataset.attrs['energy_error']:.1e}", note="of the largest of kinetic energy and works"),
@@ -103,7 +107,9 @@ def _summary(dataset: xr.Dataset) -> dict[str, dict[str, list[float]]]:
     }
 
 
-def _data(hexapod: Hexapod, pose: Pose, dataset: xr.Dataset, took: float) -> dict[str, Any]:
+def _data(
+    hexapod: Hexapod, pose: Pose, dataset: xr.Dataset, took: float, cautions: Sequence[Caution]
+) -> dict[str, Any]:
     force = dataset.leg_force.values
     return {
         "design": hexapod.name,
@@ -119,5 +125,5 @@ def _data(hexapod: Hexapod, pose: Pose, dataset: xr.Dataset, took: float) -> dic
         "steps": dataset.attrs["steps"],
         "evaluations": dataset.attrs["evaluations"],
         "seconds": took,
-        "warnings": dataset.attrs["warnings"],
+        "warnings": [caution.text for caution in cautions],
     }

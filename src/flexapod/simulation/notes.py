@@ -1,0 +1,111 @@
+"""What there is to say of a simulation: of its recordings, the machine's limits, and its energy balance."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from flexapod.conventions import LEGS, ROTATIONS, TRANSLATIONS, Array
+from flexapod.errors import ArgumentError
+from flexapod.excitation.excitation import Excitation, Term
+from flexapod.mechanics.joint_limits import LimitedQuantity, limit_excess
+from flexapod.mechanics.kinematics import inverse_kinematics
+from flexapod.pose import Pose
+from flexapod.simulation.run import SimulationRun
+
+JUMPS = 0.01  # of a recording's range: where it begins farther off zero, its start is a blow
+ABSOLUTE = 0.5  # of a leg: a command that begins with more is the leg's length, and no change of it
+BALANCE = 1e-3  # of the largest of kinetic energy and works
+ROUNDING = 1e-11  # of the energies that make up the balance
+
+
+def of_recordings(run: SimulationRun, highest: float) -> list[str]:
+    """What a recording does to a run that it should not. highest: natural frequency, rad/s.
+
+    Raises ArgumentError for leg lengths that are given as commands.
+    """
+    notes = []
+    for use, history in run.histories().items():
+        for term in history.terms:
+            if term.sampled > 0:
+                name = f"the recording of {use} {term.channel}" + (f" ({term.origin})" if term.origin else "")
+                notes += [f"{name} {words}." for words in _of_recording(run, use, term, name, highest)]
+    return notes
+
+
+def _of_recording(run: SimulationRun, use: str, term: Term, name: str, highest: float) -> Iterator[str]:
+    if np.pi / term.sampled < highest:
+        yield (
+            f"is sampled every {term.sampled:.4g} s and holds nothing above {np.pi / term.sampled:.4g} rad/s, but "
+            f"{run.hexapod.name!r} has natural frequencies up to {highest:.4g} rad/s: what excites them is not in it"
+        )
+    if term.remark:
+        yield term.remark
+    column = (LEGS if term.channel in LEGS else (*TRANSLATIONS, *ROTATIONS)).index(term.channel)
+    values = Excitation((term,)).evaluate(np.linspace(0.0, term.last, 2001))[0][:, column]
+    first, span = float(values[0]), float(np.ptp(values))
+    if use == "leg_command":
+        length = inverse_kinematics(run.hexapod, run.pose, base=run.base)[column]
+        if abs(first) > ABSOLUTE * length:
+            raise ArgumentError(
+                f"{name} begins at {first:.6g} m in its first row; a command is a change of the leg's length, which is "
+                f"{length:.6g} m at rest. Take the first row out of all rows (detrend 'first')."
+            )
+    rests = isinstance(run.start, str) and (run.start == "rest" or use == "leg_command")
+    if use in ("base_motion", "leg_command") and rests and abs(first) > JUMPS * span and first != 0:
+        value = f"{np.degrees(first):.6g} degrees" if term.channel in ROTATIONS else f"{first:.6g} m"
+        what = "the legs change by it at once" if use == "leg_command" else "the legs take it up at once"
+        remedy = "" if use == "leg_command" else ", or let the platform start with the base (start 'carried')"
+        yield f"begins at {value} in its first row, off zero: {what}. Take it out (detrend 'first'){remedy}"
+
+
+def of_results(run: SimulationRun, result: xr.Dataset) -> list[str]:
+    """Limits of the machine that the motion exceeds, and an energy balance that is off."""
+    return [*_of_limits(run, result), *_of_balance(result)]
+
+
+def _of_limits(run: SimulationRun, result: xr.Dataset) -> list[str]:
+    limits = run.hexapod.limits
+    if all(getattr(limits, name) is None for name in limits.__dataclass_fields__) or not result.sizes["time"]:
+        return []
+    platform = Pose(result.position.values, result.rotation.values)
+    base = Pose(result.base_position.values, result.base_rotation.values)
+    times = result.time.values
+    return [
+        words for quantity in limit_excess(run.hexapod, platform, base=base) for words in _exceeded(quantity, times)
+    ]
+
+
+def _exceeded(quantity: LimitedQuantity, times: Array) -> Iterator[str]:
+    """What a quantity exceeds below and above: in which legs, from when on, and by how much at most."""
+    name, unit = quantity.what.rsplit(" ", 1)
+    values = quantity.value.reshape(times.size, -1)
+    for word, sign, bound in (("below", -1.0, quantity.least), ("above", 1.0, quantity.most)):
+        bounds = np.broadcast_to(np.asarray(bound, dtype=float), values.shape[1:])
+        with np.errstate(invalid="ignore"):
+            excess = np.where(np.isfinite(bounds), sign * (values - bounds), -np.inf)
+        over = excess > 0
+        if not over.any():
+            continue
+        i, leg = np.unravel_index(int(np.nanargmax(excess)), excess.shape)
+        legs = [str(k + 1) for k in np.flatnonzero(over.any(axis=0))]
+        who = f" of leg{'s' * (len(legs) > 1)} {', '.join(legs)}" if values.shape[1] == 6 else ""
+        yield (
+            f"limit exceeded: {name}{who} is {word} its limit, first at t = {times[over.any(axis=1)][0]:.5g} s; the "
+            f"farthest is {values[i, leg]:.6g} {unit} against {bounds[leg]:.6g} {unit}, at t = {times[i]:.5g} s."
+        )
+
+
+def _of_balance(result: xr.Dataset) -> list[str]:
+    if "energy_error" not in result or not result.sizes["time"]:
+        return []
+    share, error = float(result.energy_error_relative), float(np.abs(result.energy_error).max())
+    size = max(float(np.abs(result[f"{kind}_energy"]).max()) for kind in ("elastic", "gravitational", "kinetic"))
+    if share <= BALANCE or error <= ROUNDING * size:
+        return []
+    return [
+        f"the energy balance is off by {share:.2g} of the largest of kinetic energy and works: this motion is not that "
+        "of the machine. Lower rtol, or look for a stiffness or a mass that is out of range."
+    ]
