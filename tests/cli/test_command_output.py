@@ -78,7 +78,7 @@ def test_brackets_in_a_warning_are_shown(capsys):
 def test_animate_says_how_much_larger_it_shows_the_motion(run, tmp_path, monkeypatch):
     monkeypatch.setattr("flexapod.plots.animation._PER_PERIOD", 3)
     out = words(run, "animate", "cubic-isolator", "--exaggeration", 5000, "--out", tmp_path / "mode.gif")
-    assert out == f"Wrote {tmp_path / 'mode.gif'}: mode 1, motion shown 5,000 times larger\n"
+    assert out == f"Wrote {tmp_path / 'mode.gif'}: mode 1, motion shown 5000 times larger\n"
 
 
 def test_odd_names_make_plain_files_where_one_is(run, tmp_path):

@@ -124,3 +124,28 @@ def test_pid_shows_where_gains_are_near(run, tmp_path):
     assert "Warning" in out
     assert "within 10 % of a natural frequency" in out
     assert (tmp_path / "control-gains.png").stat().st_size > 10_000
+
+
+def test_control_tells_its_law_and_its_shaking(run, result, tmp_path):
+    """Everything that is needed to do it again; a card only for what was run."""
+    shaken = ["control", "cubic-isolator", "lqg", "--noise", 0.2, "--shake", 0.01, "--band", 1, 8, "--seed", 7]
+    found = result(*shaken, "--duration", 1)
+    assert found["law"] == {"measures": "acceleration of the platform", "effort": 0.1, "stroke": 0.1, "noise": 0.2}
+    shaking = found["run"]["shaking"]
+    assert (shaking["rms_acceleration"], shaking["axes"], shaking["seed"]) == (0.01, "x, y, z", 7)
+    assert [shaking["band_hz_from"], shaking["band_hz_to"], shaking["duration_s"]] == pytest.approx([1, 8, 1])
+    code, out, err = run(*shaken, "--duration", 1, "--out", tmp_path)
+    assert (code, "sensor noise expected" in out, "flat from" in out) == (0, True, True), err
+    page = (tmp_path / "control.html").read_text()
+    assert page.index("<h2>Transmissibility") < page.index("<h2>Closed loop")
+
+
+def test_control_without_a_run_says_nothing_of_one(run, tmp_path):
+    code, out, err = run("control", "precision-positioner", "velocity", "--gain", 20000, "--out", tmp_path)
+    assert code == 0, err
+    assert "20000 N s/m" in out
+    page = (tmp_path / "control.html").read_text()
+    assert "not run" not in page
+    assert "chosen gain" in page
+    assert ">zeros<" not in page
+    assert "Pose(" not in out

@@ -216,7 +216,7 @@ class _Film(NamedTuple):
         with settings, writer.saving(figure, str(path), dpi=100):
             for i, (x, x_b) in enumerate(zip(factor * self.platform, factor * self.base, strict=True)):
                 draw(*self.joints(x, x_b))
-                caption.set_text(f"motion shown {factor:,.6g} times larger; {notes[i]}")
+                caption.set_text(f"motion shown {factor:.6g} times larger; {notes[i]}")
                 writer.grab_frame()
                 if progress is not None:
                     progress((i + 1) / len(notes))

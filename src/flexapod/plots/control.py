@@ -86,13 +86,15 @@ def gain_map(dataset: xr.Dataset) -> Figure:
     return figure
 
 
-def root_locus(dataset: xr.Dataset) -> Figure:
+def root_locus(dataset: xr.Dataset, chosen: float | None = None) -> Figure:
     """Draw poles over the gain, upper half plane, and the least damping against the gain.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The result of `control.root_locus`.
+    chosen : float, optional
+        A gain to mark, in the unit of the dataset's.
 
     Returns
     -------
@@ -101,7 +103,7 @@ def root_locus(dataset: xr.Dataset) -> Figure:
 
     Notes
     -----
-    Crosses: no control. Circles: zeros. Diamonds: the gain with the most damping.
+    Crosses: no control. Circles: zeros. Diamonds: the gain with the most damping. Squares: the chosen gain.
 
     Examples
     --------
@@ -119,16 +121,20 @@ def root_locus(dataset: xr.Dataset) -> Figure:
     _damping_rays(left, top)
     left.plot(np.zeros_like(omega), omega, ls="none", marker="x", ms=8, mew=1.8, color=INK, label="no control")
     zero = dataset.zero.values[np.isfinite(dataset.zero.values)]
-    left.plot(np.zeros_like(zero), zero, "o", ms=7, mfc="none", mec=INK, mew=1.3, label="zeros", clip_on=False)
+    zero = zero[zero <= top]
+    if zero.size:
+        left.plot(np.zeros_like(zero), zero, "o", ms=7, mfc="none", mec=INK, mew=1.3, label="zeros", clip_on=False)
     helps = dataset.attrs["best_damping"] > 0
     if helps:
         best = int(np.argmin(np.abs(dataset.gain.values - dataset.attrs["best_gain"])))
         at = shown[best][shown[best].imag > 1e-6 * top]
         left.plot(at.real, at.imag, "D", ms=6, color=ORANGE, mec="white", mew=0.8, label="most damping")
+    if chosen is not None:
+        _mark_chosen(left, right, dataset, chosen, top)
     left.set(
         xlim=(-top, 0.06 * top), ylim=(-0.02 * top, top), xlabel="real part, rad/s", ylabel="imaginary part, rad/s"
     )
-    figure.legend(*left.get_legend_handles_labels(), loc="outside lower left", ncols=3, fontsize=9, frameon=False)
+    left.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=4, fontsize=9, frameon=False)
     least = np.maximum(dataset.least_damping.values, -0.2)  # below zero it is unstable, however much
     right.semilogx(dataset.gain.values, least, color=BLUE, lw=1.8)
     right.axhspan(-0.25, 0, color=ORANGE, alpha=0.12, lw=0)
@@ -148,6 +154,19 @@ def root_locus(dataset: xr.Dataset) -> Figure:
     which = "all legs" if len(legs) == 6 else f"leg{'s' if len(legs) > 1 else ''} {', '.join(map(str, legs))}"
     entitle(figure, f"{dataset.attrs['design']}: {kind}, {which}" + (f", leak {leak:.4g} rad/s" if leak else ""))
     return figure
+
+
+def _mark_chosen(left: Axes, right: Axes, dataset: xr.Dataset, gain: float, top: float) -> None:
+    """Squares at the poles and at the least damping of a gain, between those that were computed."""
+    row = np.log(dataset.gain.values)
+    at = float(np.log(gain))
+    if not row[0] <= at <= row[-1]:
+        return
+    pole = np.array([np.interp(at, row, branch) for branch in dataset.pole.values.T])
+    pole = pole[(pole.imag > 1e-6 * top) & (np.abs(pole) < 2 * top)]
+    style: dict[str, Any] = {"ls": "none", "marker": "s", "ms": 6, "mfc": "none", "mec": INK, "mew": 1.4}
+    left.plot(pole.real, pole.imag, label="chosen gain", **style)
+    right.plot(gain, np.interp(at, row, np.maximum(dataset.least_damping.values, -0.2)), **style)
 
 
 def _damping_rays(ax: Axes, top: float) -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.conventions import Array
+from flexapod.conventions import LEGS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_hexapod, single_pose
@@ -60,9 +60,7 @@ def machine(hexapod: Hexapod, pose: PoseLike | None = None, *, ax: Axes3D | None
         middle = b[i] + 0.55 * (p[i] - b[i])
         _line(ax, b[i], middle, color=LEG, lw=4.5)
         _line(ax, middle, p[i], color=LEG, lw=2.0)
-        outward = b[i] - b.mean(axis=0)
-        place = b[i] + 0.08 * size * outward / max(float(np.linalg.norm(outward)), 1e-12) - [0, 0, 0.03 * size]
-        ax.text(*place, str(i + 1), color=INK, ha="center", va="center", fontsize=10, fontweight="bold")
+    _numbers(ax, b, size)
     _points(ax, b, BASE)
     _points(ax, p, PLATFORM)
     _triad(ax, Pose(np.zeros(3)), 0.2 * size, names=True)
@@ -133,6 +131,7 @@ def mode(
         _line(ax, b[i], p[i], color=FAINT, lw=0.8, ls="--")
         part = float(strain[i]) / largest
         _line(ax, b[i], moved[i], color=_strain_colour(part), lw=1.6 + 3.4 * abs(part))
+    _numbers(ax, b, size)
     _points(ax, b, BASE)
     _points(ax, moved, PLATFORM)
     ax.set_axis_off()
@@ -206,6 +205,14 @@ def _plate(ax: Axes3D, joints: Array, color: str, alpha: float = 0.22, ls: str =
 
 def _line(ax: Axes3D, start: Array, end: Array, **style: Any) -> None:
     ax.plot(*np.stack([start, end], axis=1), solid_capstyle="round", clip_on=False, **style)
+
+
+def _numbers(ax: Axes3D, b: Array, size: float) -> None:
+    """The numbers of the legs, outside their base joints."""
+    outward = b - b.mean(axis=0)
+    length = np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-12)
+    for number, place in zip(LEGS, b + 0.08 * size * outward / length - [0, 0, 0.03 * size], strict=True):
+        ax.text(*place, number, color=INK, ha="center", va="center", fontsize=10, fontweight="bold")
 
 
 def _points(ax: Axes3D, points: Array, color: str) -> None:

@@ -59,11 +59,11 @@ def frequencies(
     seen = hz > 0
     ax.hlines(y, 0, 1, transform=ax.get_yaxis_transform(), color=FAINT, lw=0.4, alpha=0.5)
     ax.plot(hz[seen], y[seen], "o", ms=8, color=PLATFORM, label="Eq. 5", clip_on=False, zorder=3)
-    if tangent is not None:
-        at = np.abs(np.asarray(tangent)) / TWO_PI
+    at = np.zeros(0) if tangent is None else np.abs(np.asarray(tangent)) / TWO_PI
+    if at.size:
         ax.plot(at, y, "|", ms=17, mew=2.2, color=STRETCHED, label="exact tangent", clip_on=False, zorder=4)
         ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False, labelcolor=INK, fontsize=10)
-    _logarithmic(ax, hz[seen])
+    _logarithmic(ax, np.concatenate([hz, at]))
     names = (
         [f"mode {i}" for i in y] if labels is None else [f"{i}  {label}" for i, label in zip(y, labels, strict=True)]
     )
@@ -78,22 +78,24 @@ def frequencies(
     return ax
 
 
-def _logarithmic(ax: Axes, hz: Array) -> None:
-    """A logarithmic scale with round plain numbers around the frequencies."""
-    from matplotlib.ticker import FixedLocator, NullFormatter, NullLocator
+_STEPS = ((1,), (1, 3), (1, 2, 5), (1, 1.5, 2, 3, 4, 5, 7))  # within a decade, from few to many
 
+
+def _logarithmic(ax: Axes, hz: Array) -> None:
+    """A logarithmic scale around all that is drawn, with three round plain numbers or more."""
+    from matplotlib.ticker import FixedLocator, MaxNLocator, NullFormatter, NullLocator
+
+    hz = hz[np.isfinite(hz) & (hz > 0)]
     if hz.size == 0:
         return
     low, high = hz.min() / 1.15, hz.max() * 1.15
     decades = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
-    wide = high / low > 30
-    ticks = np.outer(decades, (1, 3) if wide else (1, 1.5, 2, 3, 4, 5, 7)).ravel()
-    if high / low > 3000:
-        ticks = decades
-    inside = ticks[(ticks >= low) & (ticks <= high)]
+    rows = [np.outer(decades, steps).ravel() for steps in _STEPS] + [MaxNLocator(6).tick_values(low, high)]
+    inside = [row[(row >= low) & (row <= high)] for row in rows]
+    ticks = next((row for row in inside if row.size >= 3), inside[-1])
     ax.set_xscale("log")
     ax.set_xlim(low, high)
-    ax.xaxis.set_major_locator(FixedLocator(inside))
+    ax.xaxis.set_major_locator(FixedLocator(ticks))
     ax.xaxis.set_minor_locator(NullLocator())
     ax.xaxis.set_minor_formatter(NullFormatter())
-    ax.set_xticks(inside, [f"{tick:,.10g}" for tick in inside])
+    ax.set_xticks(ticks, [f"{tick:.10g}" for tick in ticks])

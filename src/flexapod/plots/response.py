@@ -218,7 +218,7 @@ def _plain_decades(ax: Axes) -> None:
     """Plain numbers at 1, 2, 5 of every decade of the horizontal axis, where they have room."""
     low, high = ax.get_xlim()
     ax.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 3e3 else (1,)))
-    ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:,.10g}"))
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:.10g}"))
     ax.xaxis.set_minor_locator(NullLocator())
 
 

@@ -10,14 +10,13 @@ from typing import TYPE_CHECKING, Any
 import matplotlib
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
+from mpl_toolkits.mplot3d import proj3d
 
 from flexapod.plots import style
 from flexapod.report.study import Drawing
 
 if TYPE_CHECKING:
     from collections.abc import Callable
-
-    from matplotlib.axes import Axes
 
 # Colours that change between light and dark paper, and the names they have in the page's style sheet.
 FOLLOWS = {
@@ -42,10 +41,12 @@ def drawn(draw: Callable[[], Figure], prefix: str, words: str, tight: bool = Fal
         return _inline(figure, prefix, words, _extent(figure, figure.axes[0]) if tight else None)
 
 
-def _extent(figure: Figure, ax: Axes) -> Bbox:
-    """What the lines cover, in inches: 3-D axes would count their empty box."""
+def _extent(figure: Figure, ax: Any) -> Bbox:
+    """What the lines and words cover, in inches: 3-D axes would count their empty box."""
     figure.draw_without_rendering()
-    box = Bbox.union([line.get_window_extent() for line in ax.lines])
+    words = [proj3d.proj_transform(*text.get_position_3d(), ax.get_proj())[:2] for text in ax.texts]
+    places = [Bbox([place, place]) for place in map(ax.transData.transform, words)]
+    box = Bbox.union([*(line.get_window_extent() for line in ax.lines), *(place.padded(8) for place in places)])
     return box.transformed(figure.dpi_scale_trans.inverted()).padded(0.06)
 
 

@@ -59,6 +59,16 @@ class Findings:
         """Largest sensible sampling time, s."""
         return advised_sampling_time(self.omega[-1])
 
+    @property
+    def tangent_differs(self) -> bool:
+        """Whether weight and preload change a frequency so much that Eq. 5 is not to be relied on."""
+        return any(caution.code in ("preload", "unstable") for caution in self.cautions)
+
+    @property
+    def unstable(self) -> bool:
+        """Whether the machine falls away from this pose."""
+        return any(caution.code == "unstable" for caution in self.cautions)
+
     def to_dict(self) -> dict[str, Any]:
         """The findings under names that carry their units; arrays stay arrays, what is not available is None."""
         from flexapod import __version__

@@ -27,9 +27,15 @@ def frame(title: str, body: str) -> str:
     return (
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{escape(title)}</title>\n<style>\n{style}</style>\n</head>\n"
+        f"<title>{escape(title)}</title>\n<style>\n{style}{_running(title)}</style>\n</head>\n"
         f"<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n"
     )
+
+
+def _running(title: str) -> str:
+    """The title at the top of every printed page but the first, as a rule of the style sheet."""
+    text = "".join(f"\\{ord(letter):x} " if letter in '\\"<&\n\r\f' else letter for letter in title)
+    return f'@page {{ @top-left {{ content: "{text}"; }} }}\n@page :first {{ @top-left {{ content: none; }} }}\n'
 
 
 def foot(hexapod: Hexapod) -> str:
@@ -40,7 +46,9 @@ def foot(hexapod: Hexapod) -> str:
     )
 
 
-def rows_table(head: Sequence[str], rows: Iterable[Sequence[str]], note: str = "", kind: str = "") -> str:
+def rows_table(
+    head: Sequence[str], rows: Iterable[Sequence[str]], note: str = "", kind: str = "", caption: str = ""
+) -> str:
     """Rows of HTML fragments, the first of each a row's name; a cell may bring its own <td>. No titles: no head."""
     top = "".join(f'<th scope="col">{title}</th>' for title in head)
     body = ""
@@ -50,7 +58,8 @@ def rows_table(head: Sequence[str], rows: Iterable[Sequence[str]], note: str = "
     below = f'<p class="quiet">{escape(note)}</p>' if note else ""
     above = f"<thead><tr>{top}</tr></thead>" if any(head) else ""
     start = f'<table class="{kind}">' if kind else "<table>"
-    return f'<div class="scroll">{start}{above}<tbody>{body}</tbody></table></div>{below}'
+    over = f"<caption>{escape(caption)}</caption>" if caption else ""
+    return f'<div class="scroll">{start}{over}{above}<tbody>{body}</tbody></table></div>{below}'
 
 
 def _head(study: Study) -> str:
@@ -86,7 +95,7 @@ def _section(section: Section) -> str:
 def _item(item: Table | Bars | Drawing, section: Section) -> str:
     if isinstance(item, Drawing):
         return _figure(item, heading=item.title if item.title != section.title and section.style != "pair" else "")
-    return _bars(item) if isinstance(item, Bars) else _table(item)
+    return _bars(item) if isinstance(item, Bars) else _table(item, item.title if item.title != section.title else "")
 
 
 def _figure(drawing: Drawing, heading: str) -> str:
@@ -97,11 +106,11 @@ def _figure(drawing: Drawing, heading: str) -> str:
     return f"<figure{kind}>{top}{figures.inline(drawing)}{below}</figure>"
 
 
-def _table(table: Table) -> str:
+def _table(table: Table, caption: str) -> str:
     columns = shown_on(table.columns, "page")
     head = [escape(", ".join(filter(None, (column.title, column.unit)))) for column in columns]
     cells = [[_cell(column, i, table.style) for i in range(len(column.values))] for column in columns]
-    return rows_table(head, zip(*cells, strict=True), table.note, table.style)
+    return rows_table(head, zip(*cells, strict=True), table.note, table.style, caption)
 
 
 def _cell(column: Column, i: int, style: str) -> str:

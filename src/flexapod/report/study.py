@@ -49,12 +49,13 @@ class Column:
 
 @dataclass(frozen=True)
 class Table:
-    """Columns, the first of them the names of the rows. style: heat tints shares of 1."""
+    """Columns, the first of them the names of the rows. style: heat tints shares of 1, facts are names and values,
+    narrow has many columns."""
 
     columns: Sequence[Column]
     note: str = ""
     title: str = ""
-    style: Literal["", "heat"] = ""
+    style: Literal["", "heat", "facts", "narrow"] = ""
     on: Shown = "both"
 
 

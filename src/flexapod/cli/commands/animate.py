@@ -48,4 +48,4 @@ def command(
         found = {"design": hexapod.name, "mode": mode, "exaggeration": factor, "file": str(path)}
         common.print_json({**found, "pose_m_deg": pose_numbers(where)})
     else:
-        click.echo(f"Wrote {path}: mode {mode}, motion shown {factor:,.6g} times larger")
+        click.echo(f"Wrote {path}: mode {mode}, motion shown {factor:.6g} times larger")

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import Any
+from inspect import signature
+from typing import Any, NamedTuple
 
 import click
 import numpy as np
@@ -15,7 +16,7 @@ from flexapod.cli.options.control import Options
 from flexapod.cli.output.stages import Report
 from flexapod.control.active_damping import root_locus
 from flexapod.control.controlled_response import controlled_transmissibility
-from flexapod.control.controllers import PID, damping_law
+from flexapod.control.controllers import GAIN_UNIT, PID, damping_law
 from flexapod.control.gain_search import best_gain, default_gains
 from flexapod.control.isolation import h_infinity, lqg
 from flexapod.control.linear_controller import ControlLaw, Controller
@@ -23,7 +24,7 @@ from flexapod.control.plant import Plant
 from flexapod.control.position_control import closed_loop, gain_map
 from flexapod.control.sampled_simulation import Hardware, simulate_control
 from flexapod.control.sampling_rate import sampling_time
-from flexapod.conventions import TWO_PI
+from flexapod.conventions import ROTATIONS, TWO_PI, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.excitation.excitation import Excitation
 from flexapod.excitation.random_phases import random_motion
@@ -31,8 +32,24 @@ from flexapod.excitation.spectra import flat_spectrum
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.modes import natural_modes
 from flexapod.pose import Pose
-from flexapod.report.studies.control import ControlFindings, study
+from flexapod.report.studies.control import ControlFindings, Fact, study
 from flexapod.report.study import Study
+
+_MEASURED = {
+    "acceleration": "acceleration of the platform",
+    "leg_force": "force in each leg",
+    "leg_length": "length of each leg",
+    "leg_rate": "rate of each leg's length",
+    "position": "position of the platform seen from the base",
+    "velocity": "velocity of the platform seen from the base",
+}
+_COMMANDED = {"force": "forces in the legs", "command": "changes of leg length"}
+_WEIGHTS = {
+    "effort": "weight of leg forces",
+    "stroke": "weight of displacement from the base",
+    "depth": "weight of acceleration above the corner",
+    "noise": "sensor noise expected, over the signal",
+}
 
 
 @dataclass(frozen=True)
@@ -40,8 +57,10 @@ class _Made:
     """A law with what was looked at to choose it."""
 
     law: ControlLaw
+    facts: list[Fact]
     gains: xr.Dataset | None = None
     locus: xr.Dataset | None = None
+    gain: float | None = None
 
 
 def compute(options: Options, report: Report) -> Study:
@@ -68,9 +87,23 @@ def _find(hexapod: Hexapod, pose: Pose, options: Options, report: Report) -> Con
     response = controlled_transmissibility(
         hexapod, pose, controller=sampled, omega=np.geomspace(0.03 * omega[0], top, 500), joint=options.joint
     )
-    run = None if options.shake is None else _run(hexapod, pose, sampled, options, report)
+    run, shaking = None, []
+    if options.shake is not None:
+        shaken = _shaken(natural_modes(hexapod, pose, joint=options.joint).omega, options)
+        run, shaking = _run(hexapod, pose, sampled, shaken, options, report), _shaking(shaken, options)
     return ControlFindings(
-        pose, ideal, real, recommended, response, made.gains, made.locus, run, options.axes.split(",")[0]
+        pose=pose,
+        ideal=ideal,
+        sampled=real,
+        recommended=recommended,
+        response=response,
+        gains=made.gains,
+        locus=made.locus,
+        run=run,
+        axis=options.axes.split(",")[0].strip(),
+        law=[Fact("measures", "measured", ", ".join(_MEASURED[name] for name in continuous.measures)), *made.facts],
+        shaking=shaking,
+        gain=made.gain,
     )
 
 
@@ -83,7 +116,9 @@ def _made(hexapod: Hexapod, pose: Pose, tangent: Linearisation, options: Options
     weights = {name: value for name, value in (("effort", options.effort), ("noise", options.noise)) if value}
     measure = tuple(options.measure.split(","))
     design: Any = lqg if options.law == "lqg" else h_infinity
-    return _Made(design(hexapod, pose, measure=measure, joint=options.joint, **weights))
+    used = {name: weights.get(name, p.default) for name, p in signature(design).parameters.items() if name in _WEIGHTS}
+    facts = [Fact(name, _WEIGHTS[name], value) for name, value in used.items()]
+    return _Made(design(hexapod, pose, measure=measure, joint=options.joint, **weights), facts)
 
 
 def _damping(hexapod: Hexapod, pose: Pose, tangent: Linearisation, options: Options, dt: float) -> _Made:
@@ -100,7 +135,12 @@ def _damping(hexapod: Hexapod, pose: Pose, tangent: Linearisation, options: Opti
             lambda g: damping_law(kind, g, leak).on(tangent).sampled(dt, delay=options.delay),
             default_gains(plant, kind)[::5],
         )
-    return _Made(damping_law(kind, gain, leak), locus=root_locus(hexapod, pose, kind, leak=leak, joint=options.joint))
+    how = "gain" if options.gain is not None else "gain, that with the most damping when sampled"
+    facts = [Fact("gain", how, gain, GAIN_UNIT[kind])]
+    if kind == "force":
+        facts.append(Fact("leak_rad_s", "leak", leak, "rad/s"))
+    locus = root_locus(hexapod, pose, kind, leak=leak, joint=options.joint)
+    return _Made(damping_law(kind, gain, leak), facts, locus=locus, gain=gain)
 
 
 def _pid(hexapod: Hexapod, pose: Pose, options: Options) -> _Made:
@@ -122,17 +162,65 @@ def _pid(hexapod: Hexapod, pose: Pose, options: Options) -> _Made:
         if all(r.size > 1 for r in rows)
         else None
     )
-    return _Made(law, gains=gains)
+    return _Made(law, _pid_facts(law), gains=gains)
 
 
-def _run(hexapod: Hexapod, pose: Pose, controller: Controller, options: Options, report: Report) -> xr.Dataset:
-    omega = natural_modes(hexapod, pose, joint=options.joint).omega
+def _pid_facts(law: PID) -> list[Fact]:
+    units = ("1", "s", "1/s") if law.actuator == "command" else ("N/m", "N s/m", "N/(m s)")
+    if law.actuator == "force" and law.space == "task":
+        units = ("1/s\u00b2", "1/s", "1/s\u00b3")
+    names = {"kp": "proportional gain", "kd": "derivative gain", "ki": "integral gain"}
+    facts = [
+        Fact(key, words, float(getattr(law, key)), "" if unit == "1" else unit)
+        for (key, words), unit in zip(names.items(), units, strict=True)
+    ]
+    facts += [Fact("space", "acts in", f"{law.space} space"), Fact("actuator", "commands", _COMMANDED[law.actuator])]
+    if law.bandwidth is not None:
+        facts.append(Fact("bandwidth_rad_s", "filter of the derivative", law.bandwidth, "rad/s"))
+    return facts
+
+
+class _Shaken(NamedTuple):
+    """The band of the base's acceleration, rad/s, its axes, and how long it lasts, s."""
+
+    low: float
+    high: float
+    axes: list[str]
+    duration: float
+
+
+def _shaken(omega: Array, options: Options) -> _Shaken:
     low, high = (0.2 * omega[0], 2.0 * omega[-1]) if options.band is None else (TWO_PI * hz for hz in options.band)
-    spectrum = flat_spectrum(options.shake, float(low), float(high))  # type: ignore[arg-type]
+    axes = [axis.strip() for axis in options.axes.split(",")]
+    return _Shaken(float(low), float(high), axes, options.duration or 60 * TWO_PI / float(omega[0]))
+
+
+def _shaking(shaken: _Shaken, options: Options) -> list[Fact]:
+    """What the run was, in words and numbers."""
+    turning = any(axis in ROTATIONS for axis in shaken.axes)
+    found = [
+        Fact("rms_acceleration", "RMS acceleration of each axis", options.shake or 0.0,
+             "m/s\u00b2, rad/s\u00b2" if turning else "m/s\u00b2"),
+        Fact("axes", "axes of the base", ", ".join(shaken.axes)),
+        Fact("band_hz_from", "flat from", shaken.low / TWO_PI, "Hz"),
+        Fact("band_hz_to", "to", shaken.high / TWO_PI, "Hz"),
+        Fact("duration_s", "duration", shaken.duration, "s"),
+        Fact("seed", "seed", options.seed),
+    ]  # fmt: skip
+    if options.force_limit:
+        found.append(Fact("force_limit_N", "largest force of an actuator", options.force_limit, "N"))
+    if options.sensor_noise:
+        found.append(Fact("sensor_noise", "RMS noise of the measurement, in its unit", options.sensor_noise))
+    return found
+
+
+def _run(
+    hexapod: Hexapod, pose: Pose, controller: Controller, shaken: _Shaken, options: Options, report: Report
+) -> xr.Dataset:
+    spectrum = flat_spectrum(options.shake, shaken.low, shaken.high)  # type: ignore[arg-type]
     base = Excitation()
-    for number, axis in enumerate(options.axes.split(",")):
-        base = base + random_motion(axis.strip(), spectrum, seed=options.seed + number)
-    duration = options.duration or 60 * TWO_PI / float(omega[0])
+    for number, axis in enumerate(shaken.axes):
+        base = base + random_motion(axis, spectrum, seed=options.seed + number)
     noise: dict[str, Any] = {str(controller.measures[0]): options.sensor_noise} if options.sensor_noise else {}
     hardware = Hardware(options.force_limit or float("inf"), noise, options.seed)
     return simulate_control(
@@ -140,7 +228,7 @@ def _run(hexapod: Hexapod, pose: Pose, controller: Controller, options: Options,
         pose,
         controller=controller,
         base_motion=base,
-        duration=duration,
+        duration=shaken.duration,
         hardware=hardware,
         progress=lambda share: report("run on the moving base", share),
         joint=options.joint,

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -17,15 +17,28 @@ from flexapod.conventions import TWO_PI, printed_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
 from flexapod.pose import Pose
-from flexapod.report.numbers import DASH, pose_numbers, pose_words, shown
+from flexapod.report.numbers import pose_numbers, pose_words, shown
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 
 RMS = ("rms_acceleration", "predicted_rms_acceleration", "rms_displacement")
 
 
+class Fact(NamedTuple):
+    """A number of the law or of the shaking: its key in JSON, what it is, its value and its unit."""
+
+    key: str
+    words: str
+    value: float | str
+    unit: str = ""
+
+
 @dataclass(frozen=True)
 class ControlFindings:
-    """What was computed about a control law. ideal, sampled: its closed loops; gains, locus, run: where made."""
+    """What was computed about a control law.
+
+    ideal, sampled: its closed loops; gains, locus, run: where made. law, shaking: what was given or chosen. gain: of a
+    decentralised law. axis: the one drawn in time.
+    """
 
     pose: Pose
     ideal: ClosedLoop
@@ -36,6 +49,9 @@ class ControlFindings:
     locus: xr.Dataset | None = None
     run: xr.Dataset | None = None
     axis: str = "z"
+    law: Sequence[Fact] = ()
+    shaking: Sequence[Fact] = ()
+    gain: float | None = None
 
     @property
     def dt(self) -> float:
@@ -49,7 +65,7 @@ def study(hexapod: Hexapod, f: ControlFindings) -> Study:
         _drawing("gains", "Which gains", "gain_map", f.gains, "Each pair of gains by the distance of its poles to the "
                  "natural frequencies and by its worst damping."),
         _drawing("locus", "Root locus", "root_locus", f.locus, "Poles over the gain, from the machine's own (crosses) "
-                 "to the zeros (circles), and the least damping."),
+                 "to the zeros (circles), and the least damping. Square: the gain chosen.", chosen=f.gain),
         _drawing("transmissibility", "Transmissibility", "isolation", f.response, "Displacement of the platform per "
                  "displacement of the base, of the tangent, with the sampled controller.", axes=("x", "z")),
         _drawing("run", "On the moving base", "controlled_run", f.run, "The full equations of motion on a shaking "
@@ -58,13 +74,14 @@ def study(hexapod: Hexapod, f: ControlFindings) -> Study:
     ]  # fmt: skip
     there = [drawing for drawing in drawings if drawing is not None]
     sections = [Section(drawing.title, [drawing, *_run_table(f, drawing.name)]) for drawing in there]
+    law = Section("The law", [_facts(f.law, "The law")])
     return Study(
         hexapod=hexapod,
         subject="control",
         about=f"{f.ideal.controller.name} at {pose_words(f.pose)}, on the exact tangent.",
         data=_data(hexapod, f),
         rows=_rows(f),
-        sections=[Section("Closed loop", [_poles(f)]), *sections],
+        sections=[law, *sections, Section("Closed loop", [_poles(f)])],
         cautions=cautions(f),
         files={**{f"control-{drawing.name}.png": drawing.draw for drawing in there}, "control.html": None},
     )
@@ -107,7 +124,7 @@ def _rows(f: ControlFindings) -> list[Row]:
         Row("without sampling", f.ideal.worst_damping, digits=3, on="page"),
         Row("Sampling time", 1e3 * f.dt, "ms", 3, on="page"),
         Row("at most", 1e3 * f.recommended, "ms", 3, on="page"),
-        Row("RMS acceleration, control over none", *_lowered(f), on="page"),
+        *_lowered(f),
         Row("natural frequencies", "  ".join(f"{w:.5g}" for w in loop.omega), "rad/s", on="terminal"),
         Row("sampled every", f"{1e3 * f.dt:.4g}", advised, on="terminal"),
         Row("worst damping ratio", f"{loop.worst_damping:.4g}",
@@ -120,11 +137,18 @@ def _rows(f: ControlFindings) -> list[Row]:
     return rows
 
 
-def _lowered(f: ControlFindings) -> tuple[str, str]:
+def _lowered(f: ControlFindings) -> list[Row]:
     if f.run is None:
-        return DASH, "not run"
+        return []
     rms = f.run.rms_acceleration.sel(axis=f.axis)
-    return shown(float(rms.sel(case="controlled") / rms.sel(case="passive")), 3), f"along {f.axis}"
+    ratio = float(rms.sel(case="controlled") / rms.sel(case="passive"))
+    return [Row("RMS acceleration, control over none", ratio, digits=3, note=f"along {f.axis}", on="page")]
+
+
+def _facts(facts: Sequence[Fact], title: str) -> Table:
+    values = [fact.value if isinstance(fact.value, str) else f"{fact.value:.6g}" for fact in facts]
+    texts = [" ".join(filter(None, (value, fact.unit))) for value, fact in zip(values, facts, strict=True)]
+    return Table([Column("", [fact.words for fact in facts]), Column("", texts)], title=title, style="facts")
 
 
 def _poles(f: ControlFindings) -> Table:
@@ -161,7 +185,8 @@ def _run_table(f: ControlFindings, name: str) -> list[Table]:
     for case, title in (("passive", "no control"), ("controlled", "control")):
         columns.append(Column(title, rms("rms_acceleration", case)))
         columns.append(Column("tangent", rms("predicted_rms_acceleration", case)))
-    return [Table(columns, "Root mean square absolute acceleration.", "RMS absolute acceleration")]
+    found = Table(columns, "Root mean square absolute acceleration.", "RMS absolute acceleration")
+    return [_facts(f.shaking, "The shaking"), found]
 
 
 def _data(hexapod: Hexapod, f: ControlFindings) -> dict[str, Any]:
@@ -181,6 +206,7 @@ def _data(hexapod: Hexapod, f: ControlFindings) -> dict[str, Any]:
         "near": [int(k) for k in loop.near],
         "worst_damping": loop.worst_damping,
         "worst_damping_continuous": f.ideal.worst_damping,
+        "law": {fact.key: fact.value for fact in f.law},
         "cautions": [caution.text for caution in cautions(f)],
         "files": [],
     }
@@ -189,6 +215,7 @@ def _data(hexapod: Hexapod, f: ControlFindings) -> dict[str, Any]:
     if f.run is not None:
         run = f.run
         data["run"] = {
+            "shaking": {fact.key: fact.value for fact in f.shaking},
             "axis": run.axis.values.tolist(),
             "saturated": run.attrs["saturated"],
             **{f"{name}_{case}": run[name].sel(case=case).values for name in RMS for case in ("controlled", "passive")},

@@ -17,6 +17,8 @@ from flexapod.plots.style import SHORTENED, STRETCHED
 from flexapod.report.findings import Findings
 from flexapod.report.influence import MOVE, leading
 from flexapod.report.numbers import brief, file_name, percent, pose_words, shown
+from flexapod.report.studies import inputs
+from flexapod.report.studies.inputs import limits
 from flexapod.report.study import Bars, Column, Drawing, Row, Section, Study, Table
 
 MODES = [str(number) for number in range(1, 7)]
@@ -51,25 +53,51 @@ def study(f: Findings) -> Study:
         about=f"Dynamic stability of a flexible hexapod at {pose_words(f.pose)}; {model}{changed}.",
         data=f.to_dict(),
         rows=_rows(f),
-        sections=[*filter(None, sections), Section("What the numbers mean", (), MEANING)],
+        sections=[*filter(None, sections), inputs.section(f.hexapod), Section("What the numbers mean", (), MEANING)],
         cautions=f.cautions,
         files={f"{file_name(f.hexapod.name)}.html": None},
     )
 
 
 def _rows(f: Findings) -> list[Row]:
-    hertz, c = f.omega[0] / TWO_PI, f.conditioning
+    c = f.conditioning
     force = None if f.rest is None else float(np.abs(f.rest.leg_force).max())
     scaled = f"in metres, {shown(c.scaled)} with moments over {shown(c.length, 3)} m"
+    index = [
+        Row("Dynamic stability index", f.omega[0], "rad/s", 5, f"= {_hertz(f.omega[0])}", on="page"),
+        Row("Dynamic stability index", f.omega[0], "rad/s", 6, f"= {_hertz(f.omega[0])}", on="terminal"),
+    ]
+    beside = _with_weight(f)
     return [
-        Row("Dynamic stability index", f.omega[0], "rad/s", 5, on="page"),
-        Row("Dynamic stability index", f.omega[0], "rad/s", 6, f"= {shown(hertz, 5)} Hz", on="terminal"),
-        Row("which is", hertz, "Hz", 5, on="page"),
+        *((*beside, *index) if f.tangent_differs else (*index, *beside)),
+        Row("Limits at this pose", *_verdict(f)),
         Row("Condition number of H", c.metres, "in metres", on="page"),
         Row("Condition number of H", c.metres, "", 5, scaled, on="terminal"),
         Row("Largest static leg force", force, "not available" if force is None else "N", on="page"),
         Row("Sampling time at most", 1e3 * f.sampling_time, "ms", 3),
     ]
+
+
+def _hertz(omega: float) -> str:
+    return f"{shown(omega / TWO_PI, 5)} Hz"
+
+
+def _with_weight(f: Findings) -> list[Row]:
+    """The lowest frequency that weight and preload leave, first of all numbers where it is not the index."""
+    if f.damped is None:
+        return []
+    label = "Lowest frequency with weight and preload"
+    if f.unstable:
+        return [Row(label, "none", note="not stable at rest")]
+    lowest = float(f.damped.omega.min())
+    return [Row(label, lowest, "rad/s", 5, f"= {_hertz(lowest)}")]
+
+
+def _verdict(f: Findings) -> tuple[str, str]:
+    if not limits(f.hexapod):
+        return "none set", ""
+    exceeded = [caution for caution in f.cautions if caution.code == "limit"]
+    return (f"{len(exceeded)} exceeded", "") if exceeded else ("kept", "")
 
 
 def _machine(f: Findings) -> Section:
@@ -175,16 +203,7 @@ def _legs(f: Findings) -> Section:
 
 
 def _limits(f: Findings) -> str:
-    limits = f.hexapod.limits
-    found = []
-    if limits.leg_length is not None:
-        pairs = np.reshape(limits.leg_length, (-1, 2)) * 1e3
-        found.append("length " + ", ".join(f"{brief(low)} to {brief(high)} mm" for low, high in pairs))
-    for name, most in (("universal", limits.universal_angle), ("spherical", limits.spherical_angle)):
-        if most is not None:
-            found.append(f"{name} joint {brief(float(np.degrees(most)), 3)}\u00b0")
-    if limits.leg_distance is not None:
-        found.append(f"distance of leg axes at least {brief(1e3 * limits.leg_distance)} mm")
+    found = limits(f.hexapod)
     return f"Limits: {'; '.join(found)}." if found else "The design sets no limits."
 
 

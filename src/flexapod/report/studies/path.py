@@ -90,7 +90,7 @@ def cautions(f: PathFindings) -> list[Caution]:
 
 def _rows(f: PathFindings) -> list[Row]:
     index, bound, force = f.along, f.along.bound, float(f.loads.peak_force.max())
-    where = f"rad/s at {index.minimum_time:.4g} s, {index.minimum_pose!r}"
+    where = f"rad/s at {index.minimum_time:.4g} s, {pose_words(index.minimum_pose)}"
     travel = f"{1e3 * float(f.loads.stroke.max()):.4g} mm, force up to {force:.5g} N"
     rows = [
         Row("Least index on the path", index.minimum, "rad/s", on="page"),

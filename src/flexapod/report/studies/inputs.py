@@ -1,0 +1,114 @@
+"""What a machine was computed from, number by number, so that a page can be checked, and the machine made again."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from flexapod.conventions import LEGS, ROTATIONS, TRANSLATIONS, Array
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.schema import KEYS
+from flexapod.design.units import printed, si_unit
+from flexapod.pose import Pose
+from flexapod.report.study import Column, Section, Table
+
+WORDS = (
+    "The design that was computed, after all changes. Joints of the base and axes of its universal joints are in the "
+    "base frame, joints and body of the platform in the platform frame, parts of legs in the axes of their leg: mass "
+    "centres from their joint. Inertias are about the body's own mass centre."
+)
+_INERTIA = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
+
+
+def section(hexapod: Hexapod) -> Section:
+    """The part of a page that lists a design."""
+    tables = [_joints(hexapod), _legs(hexapod), _bodies(hexapod), _further(hexapod)]
+    return Section("Inputs", tables, [WORDS])
+
+
+def number(value: float) -> str:
+    """A number as it was given: nine digits, without zeros at the end."""
+    return f"{value + 0.0:.9g}"
+
+
+def _texts(values: ArrayLike) -> list[str]:
+    return [number(float(value)) for value in np.asarray(values)]
+
+
+def _joints(hexapod: Hexapod) -> Table:
+    columns = [Column("leg", LEGS)]
+    for title, points, scale, unit in (
+        ("base", hexapod.base_joints, 1e3, "mm"),
+        ("platform", hexapod.platform_joints, 1e3, "mm"),
+        ("axis", hexapod.universal_axes, 1.0, ""),
+    ):
+        rows = np.round(scale * points, 9)
+        columns += [Column(f"{title} {axis}", _texts(rows[:, k]), unit) for k, axis in enumerate(TRANSLATIONS)]
+    return Table(columns, title="Joints, and axes of the universal joints", style="narrow", on="page")
+
+
+def _legs(hexapod: Hexapod) -> Table:
+    """Every number that each leg has for itself."""
+    values = hexapod.values()
+    keys = [key for key, value in values.items() if key.startswith("legs.") and np.shape(value) == (6,)]
+    keys = [key for key in keys if not key.endswith(".mass")]  # those stand with the bodies
+    rows, names = _alike([values[key] for key in keys], LEGS)
+    columns = [Column("leg", names)]
+    for key, column in zip(keys, rows, strict=True):
+        unit = printed(si_unit(KEYS[key].dimension)).replace("m2", "m\u00b2")
+        columns.append(Column(key.removeprefix("legs.").replace(".", ", "), _texts(column), unit))
+    return Table(columns, title="Legs", style="narrow", on="page")
+
+
+def _alike(columns: Sequence[Array], names: Sequence[str]) -> tuple[list[Array], list[str]]:
+    """The rows of all legs; one row where the legs are all the same."""
+    if all((column == column[0]).all() for column in columns):
+        return [column[:1] for column in columns], ["1 to 6"]
+    return list(columns), list(names)
+
+
+def _bodies(hexapod: Hexapod) -> Table:
+    platform = (np.array([hexapod.platform_mass]), hexapod.platform_mass_center[None], hexapod.platform_inertia[None])
+    names, masses, centres, inertias = ["platform with payload"], *([part] for part in platform)
+    for side in ("lower", "upper"):
+        part = getattr(hexapod.legs, side)
+        kept, legs = _alike([part.mass, part.mass_center, part.inertia], LEGS)
+        names += [f"leg {leg}, {side} part" for leg in legs]
+        for found, value in zip((masses, centres, inertias), kept, strict=True):
+            found.append(value)
+    centre, inertia = np.round(1e3 * np.concatenate(centres), 9), np.concatenate(inertias)
+    columns = [Column("body", names), Column("mass", _texts(np.concatenate(masses)), "kg")]
+    columns += [Column(f"centre {axis}", _texts(centre[:, k]), "mm") for k, axis in enumerate(TRANSLATIONS)]
+    columns += [Column(f"J {name}", _texts(inertia[:, i, j]), "kg m\u00b2") for name, (i, j) in _INERTIA.items()]
+    return Table(columns, title="Bodies", style="narrow", on="page")
+
+
+def _further(hexapod: Hexapod) -> Table:
+    facts = {"gravity": f"({', '.join(_texts(hexapod.gravity))}) m/s\u00b2"}
+    facts["home"] = "none" if hexapod.home is None else _pose(hexapod.home)
+    facts["limits"] = "; ".join(limits(hexapod)) or "none"
+    columns = [Column("", list(facts)), Column("", list(facts.values()))]
+    return Table(columns, title="Gravity, home and limits", style="facts", on="page")
+
+
+def _pose(pose: Pose) -> str:
+    place = ", ".join(f"{axis} {x}" for axis, x in zip(TRANSLATIONS, _texts(pose.position), strict=True))
+    turn = np.round(np.degrees(pose.rpy), 9)
+    return f"{place} m; " + ", ".join(f"{axis} {x}\u00b0" for axis, x in zip(ROTATIONS, _texts(turn), strict=True))
+
+
+def limits(hexapod: Hexapod) -> list[str]:
+    """The limits of a design in words; nothing where it sets none."""
+    given = hexapod.limits
+    found = []
+    if given.leg_length is not None:
+        pairs = np.round(np.reshape(given.leg_length, (-1, 2)) * 1e3, 9)
+        found.append("length " + ", ".join(f"{number(low)} to {number(high)} mm" for low, high in pairs))
+    for name, most in (("universal", given.universal_angle), ("spherical", given.spherical_angle)):
+        if most is not None:
+            found.append(f"{name} joint {number(round(float(np.degrees(most)), 9))}\u00b0")
+    if given.leg_distance is not None:
+        found.append(f"distance of leg axes at least {number(round(1e3 * given.leg_distance, 9))} mm")
+    return found
