@@ -238,10 +238,12 @@ def test_files_hold_the_numbers_and_where_they_come_from(tmp_path, ending):
 
     table = pandas.read_parquet(path) if ending == ".parquet" else pandas.read_csv(path, comment="#")
     assert len(table) == 6
-    assert list(table)[:7] == [*AXES, "omega_1"]
-    row = table[(table.x == 0.1) & (table.z == 0.9)]
+    titles = ["x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad", "omega_1_rad_per_s", "omega_mode_1_rad_per_s"]
+    assert list(table)[:8] == titles
+    assert list(table)[-2:] == ["within_limits", "status"]
+    row = table[(table.x_m == 0.1) & (table.z_m == 0.9)]
     # CSV: pandas writes the shortest text that reads back as the same number, and reads it to an ulp by default
-    assert row.omega_mode_6.item() == pytest.approx(float(found.omega.sel(x=0.1, z=0.9, mode=6)), rel=1e-15)
+    assert row.omega_mode_6_rad_per_s.item() == pytest.approx(float(found.omega.sel(x=0.1, z=0.9, mode=6)), rel=1e-15)
     text = path.read_text(encoding="utf-8") if ending == ".csv" else str(_metadata(path))
     assert I.digest in text
     assert "omega rad/s" in text

@@ -14,6 +14,7 @@ from pkgutil import iter_modules
 import click
 
 from flexapod.cli import commands
+from flexapod.cli.output.encoding import speak_plainly
 from flexapod.errors import FlexapodError
 
 #: Names of the commands: the modules of `commands`.
@@ -42,6 +43,7 @@ def group(ctx: click.Context) -> None:
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line and return its exit code: 0, or 2 for a wrong command line or design."""
     given = sys.argv[1:] if arguments is None else arguments
+    speak_plainly()
     try:
         group.main(given, prog_name="flexapod", standalone_mode=False)
     except click.ClickException as error:

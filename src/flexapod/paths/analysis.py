@@ -122,7 +122,9 @@ def path_index(
     Notes
     -----
     The index and its use as a bound for paths are those of [1]_, conclusion 1. The weights of the trajectory are joined
-    by straight lines in time; the weighted mean is the integral of weight times index over that of the weight.
+    by straight lines in time; the weighted mean is the integral of weight times index over that of the weight, by
+    Simpson's rule over the samples. Where the index has a kink between samples (two modes cross), that costs the mean
+    some 1e-4 of its value with the default samples; more samples lower it with their square.
 
     References
     ----------

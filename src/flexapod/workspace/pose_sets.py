@@ -20,6 +20,20 @@ from flexapod.pose import Pose
 from flexapod.workspace.box import BITS, Box
 from flexapod.workspace.sobol import PIECE, Sobol
 
+MOST = 2**40  # poses of a set: a year of a computer's work
+
+
+def in_words(poses: int) -> str:
+    """A number of poses of any size, as text."""
+    return str(poses) if poses < 10**15 else f"some 10^{(poses.bit_length() - 1) * 30103 // 100000}"
+
+
+def checked(poses: int) -> int:
+    """A number of poses that a set can have. Raises ArgumentError."""
+    if poses > MOST:
+        raise ArgumentError(f"{in_words(poses)} poses are too many; a set may have 2^40, some 10^12. Take fewer.")
+    return poses
+
 
 class PoseSet:
     """Poses by number, for sweeps: made by `random_poses`, `low_discrepancy`, `pose_grid` or `pose_path`.
@@ -80,7 +94,8 @@ class _BoxPoses(PoseSet):
     box: Box
 
     def __init__(self, box: Box, samples: int, seed: int) -> None:
-        self.box, self.shape, self.seed = box, (whole(samples, "samples"),), whole(seed, "seed", 0)
+        self.box, self.shape = box, (checked(whole(samples, "samples")),)
+        self.seed = whole(seed, "seed", 0)
 
     def describe(self) -> dict[str, Any]:
         return {"kind": self.kind, "count": self.count, "seed": self.seed, "box": self.box.ranges()}
@@ -136,6 +151,7 @@ class GridPoses(PoseSet):
         self.axes = axes
         self.dims = tuple(name for name in AXES if axes[name].size > 1) or ("pose",)
         self.shape = tuple(axes[name].size for name in self.dims) if self.dims != ("pose",) else (1,)
+        checked(self.count)
         self.box = Box(*((axes[name].min(), axes[name].max()) for name in AXES))
 
     def rows(self, start: int, stop: int) -> Array:
@@ -150,7 +166,7 @@ class GridPoses(PoseSet):
         return out.reshape(-1, 6)[start - first * run : stop - first * run]
 
     def describe(self) -> dict[str, Any]:
-        return {"kind": "grid", "axes": {name: self.axes[name].tolist() for name in AXES}}
+        return {"kind": "grid", "axes": {name: _axis_described(self.axes[name]) for name in AXES}}
 
 
 class GivenPoses(PoseSet):
@@ -174,11 +190,24 @@ class GivenPoses(PoseSet):
         return {**self.describe(), "digest": content}
 
 
+def _axis_described(axis: Array) -> Any:
+    """The values of an axis as plain data, even ones briefly."""
+    if axis.size > 2 and np.array_equal(axis, np.linspace(axis[0], axis[-1], axis.size)):
+        return {"first": float(axis[0]), "last": float(axis[-1]), "count": axis.size}
+    return axis.tolist()
+
+
+def _axis_of(axis: Any) -> Array:
+    if isinstance(axis, Mapping):
+        return np.linspace(axis["first"], axis["last"], axis["count"])
+    return np.asarray(axis, dtype=float)
+
+
 def described(description: Mapping[str, Any]) -> PoseSet | None:
     """The set that `PoseSet.describe` described; None for poses that were given one by one."""
     kind = description["kind"]
     if kind == "grid":
-        return GridPoses({name: np.asarray(values) for name, values in description["axes"].items()})
+        return GridPoses({name: _axis_of(values) for name, values in description["axes"].items()})
     if kind in ("random", "sobol"):
         make = RandomPoses if kind == "random" else SobolPoses
         return make(Box(**description["box"]), description["count"], description["seed"])

@@ -16,6 +16,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.mechanics.joint_limits import neutral_directions
+from flexapod.tables import normal_unit
 from flexapod.workspace.limit_margins import is_limited
 
 
@@ -140,6 +141,23 @@ def kernel_limits(hexapod: Hexapod) -> _core.SweepLimits:
         spherical_angle=np.inf if limits.spherical_angle is None else limits.spherical_angle,
         leg_distance=-np.inf if limits.leg_distance is None else limits.leg_distance,
     )
+
+
+def memory(poses: int, quantities: tuple[str, ...]) -> int:
+    """Bytes that a sweep takes: coordinates, status, and quantities."""
+    columns = (np.dtype(QUANTITIES[name].dtype).itemsize * len(table_titles(name)) for name in quantities)
+    return poses * (49 + sum(columns))
+
+
+def table_titles(name: str) -> tuple[str, ...]:
+    """Titles of the columns of a quantity in a table, without their unit: `omega_mode_1` to `omega_mode_6`."""
+    trailing = QUANTITIES[name].trailing
+    return tuple(f"{name}_{trailing}_{k}" for k in range(1, 7)) if trailing else (name,)
+
+
+def titled(title: str, unit: str) -> str:
+    """A title with its unit as files name it: `x_m`, `omega_1_rad_per_s`."""
+    return title if unit in ("", "1") else f"{title}_{normal_unit(unit)}"
 
 
 def attributes(name: str) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,7 @@ import numpy as np
 from flexapod.checks import thread_count
 from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import PoseError
+from flexapod.errors import ArgumentError, PoseError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.workspace.pose_sets import GridPoses, PoseSet, six_numbers
 from flexapod.workspace.quantities import (
@@ -19,6 +20,7 @@ from flexapod.workspace.quantities import (
     attributes,
     chosen,
     evaluate,
+    memory,
     provenance,
     statuses,
 )
@@ -110,12 +112,27 @@ def sweep(
     """
     points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities, hexapod)
     as_joint(joint)
+    _check_memory(points.count, wanted)
     rows = points.rows(0, points.count)
     found = evaluate(hexapod, rows, wanted, joint, thread_count(threads))
     status = found["status"]
     if status[0] == _not_finite() and (status == status[0]).all():
         raise PoseError(f"all {points.count} poses hold NaN or infinity; at least one must be finite.")
     return dataset(points, rows, found, provenance(hexapod, joint))
+
+
+def _check_memory(count: int, quantities: tuple[str, ...]) -> None:
+    """Raises ArgumentError where the results are larger than the computer's memory, before any is asked for."""
+    try:
+        there = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    except (AttributeError, ValueError):  # not on Windows
+        return
+    needed = memory(count, quantities)
+    if needed > there:
+        raise ArgumentError(
+            f"{count} poses take {needed // 2**30} GiB, and this computer has {there // 2**30} GiB of memory. Take "
+            "fewer, or stream them to the disk with flexapod.workspace.SweepStore."
+        )
 
 
 def _not_finite() -> int:

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -34,6 +35,8 @@ if TYPE_CHECKING:
 
     from flexapod.design.hexapod import Hexapod
     from flexapod.pose import Pose
+
+_ENOUGH = 10_000  # columns of what is no terminal: no number is cut
 
 
 class DesignName(click.ParamType):
@@ -216,10 +219,13 @@ def plain(value: Any) -> Any:
 
 
 def console() -> Console:
-    """Where tables are printed: as wide as the terminal, plain text when the output is not one."""
+    """Where tables are printed: as wide as the terminal; where it is none, plain text as wide as it needs to be."""
     from rich.console import Console
 
-    return Console(highlight=False)
+    console = Console(highlight=False)
+    if not console.is_terminal and "COLUMNS" not in os.environ:
+        console.width = _ENOUGH
+    return console
 
 
 def print_warnings(texts: Iterable[str]) -> None:

@@ -18,9 +18,15 @@ from flexapod.mechanics.kinematics import home_pose
 from flexapod.tables import naming, parse_table, read_text
 from flexapod.workspace.box import Box
 from flexapod.workspace.pose_sets import PoseSet
+from flexapod.workspace.quantities import QUANTITIES as SWEPT
+from flexapod.workspace.quantities import table_titles
 from flexapod.workspace.sampling import pose_grid
 
-_FORM = "Give rows of six columns x,y,z,roll,pitch,yaw (m, degrees), with or without these titles."
+_MOST_VALUES = 10**7  # of one axis of a grid
+_FORM = (
+    "Give rows of six columns x,y,z,roll,pitch,yaw (m, degrees), with or without these titles; titles may name other "
+    "units, as x_mm or roll_rad, and stand in any order."
+)
 
 
 def box_of(hexapod: Hexapod, texts: Iterable[str], around: tuple[float, float] | None) -> Box:
@@ -44,40 +50,59 @@ def grid_of(hexapod: Hexapod, texts: Iterable[str]) -> PoseSet:
     axes: dict[str, Any] = {}
     for name, value in _parts("--grid", texts).items():
         numbers = value.split(":")
-        if len(numbers) not in (1, 3) or (len(numbers) == 3 and not numbers[2].strip().isdigit()):
+        count = numbers[2].strip() if len(numbers) == 3 else "1"
+        if len(numbers) not in (1, 3) or not (count.isascii() and count.isdigit()):
             raise click.UsageError(
                 f"--grid {name}={value} is no axis; write first:last:count, such as {name}=-0.1:0.1:21, or one value."
             )
         ends = [_number("--grid", name, text) for text in numbers[:2]]
-        if len(numbers) == 3 and int(numbers[2]) < 1:
-            raise click.UsageError(f"--grid {name}={value} has no value; its count must be at least 1.")
-        axes[name] = np.linspace(ends[0], ends[1], int(numbers[2])) if len(numbers) == 3 else ends[0]
+        if len(count) > len(str(_MOST_VALUES)) or not 1 <= int(count) <= _MOST_VALUES:
+            raise click.UsageError(
+                f"--grid {name}={value if len(value) < 60 else value[:57] + '...'} has the wrong number of values; its "
+                f"count must be at least 1 and at most {_MOST_VALUES}."
+            )
+        axes[name] = np.linspace(ends[0], ends[1], int(count)) if len(numbers) == 3 else ends[0]
     return pose_grid(**_with_home(hexapod, "--grid", axes))
 
 
 def read_poses(path: Path) -> Array:
-    """Rows x y z (m) roll pitch yaw (deg) of a .npy file, or of a .csv file with or without a line of names."""
-    if path.suffix != ".npy":
-        return _read_csv(path)
-    try:
-        rows = np.load(path, allow_pickle=False).astype(np.float64)
-    except (OSError, ValueError) as error:
-        raise click.UsageError(f"{path} cannot be read: {error}. {_FORM}") from None
-    if rows.ndim != 2 or rows.shape[1] != 6:
-        raise click.UsageError(f"{path} has shape {rows.shape}. {_FORM}")
-    rows[:, 3:] = np.radians(rows[:, 3:])
+    """Poses, rows x y z (m) roll pitch yaw (rad), of a .npy file (m, degrees), or of a .csv file."""
+    rows = _read_npy(path) if path.suffix == ".npy" else _read_csv(path)
+    if not len(rows):
+        raise click.UsageError(f"{path} is empty: it holds no pose. {_FORM}")
     return rows
 
 
+def _read_npy(path: Path) -> Array:
+    try:
+        rows = np.load(path, allow_pickle=False, mmap_mode="r")
+    except (OSError, ValueError, EOFError) as error:
+        raise click.UsageError(f"{path} cannot be read: {error}. {_FORM}") from None
+    if not isinstance(rows, np.ndarray) or rows.dtype.kind not in "fiu":
+        kind = f"numbers of type {rows.dtype}" if isinstance(rows, np.ndarray) else "several arrays"
+        raise click.UsageError(f"{path} holds {kind}; it must hold real numbers. {_FORM}")
+    if rows.ndim != 2 or rows.shape[1] != 6:
+        raise click.UsageError(f"{path} has shape {rows.shape}. {_FORM}")
+    found = np.array(rows, dtype=np.float64)
+    found[:, 3:] = np.radians(found[:, 3:])
+    return found
+
+
 def _read_csv(path: Path) -> Array:
+    """Columns by their names. In a table that `sweep` wrote, whose other columns are left out, angles name their unit.
+
+    Tables of sweeps once had radians there under the names that stand for degrees in files of poses.
+    """
     text = read_text(path)
+    swept = ["status", *(title for name in SWEPT for title in table_titles(name))]
     with naming(path):
-        table = parse_table(text, {axis: axis for axis in AXES}, _FORM, titles=AXES)
+        table = parse_table(text, {name: name for name in (*AXES, *swept)}, _FORM, titles=AXES)
         columns = {column.name: column for column in table.columns}
         if missing := [axis for axis in AXES if axis not in columns]:
             raise ArgumentError(f"there is no column {', '.join(missing)}. {_FORM}")
         units = {axis: QUANTITIES["angle" if axis in ROTATIONS else "length"] for axis in AXES}
-        default = {axis: "deg" if axis in ROTATIONS else "m" for axis in AXES}
+        bare = None if len(columns) > len(AXES) else "deg"
+        default = {axis: bare if axis in ROTATIONS else "m" for axis in AXES}
         return np.column_stack([table.numbers(columns[a], units[a], default[a], finite=False) for a in AXES])
 
 

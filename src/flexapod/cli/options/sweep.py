@@ -76,7 +76,8 @@ poses_options = common.stack(
         "--poses",
         type=click.Path(path_type=Path, exists=True, dir_okay=False),
         default=None,
-        help="Poses of a .csv or .npy file: x, y, z (m), roll, pitch, yaw (degrees).",
+        help="Poses of a .csv or .npy file: x, y, z (m), roll, pitch, yaw (degrees). A CSV may name other units, as "
+        "x_mm, roll_rad; one that --out wrote is read as well.",
     ),
     click.option(
         "--points",

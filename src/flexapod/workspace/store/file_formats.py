@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.conventions import AXES
+from flexapod.conventions import AXES, unit_of
 from flexapod.errors import OutputError
 from flexapod.optional import needed
-from flexapod.workspace.quantities import QUANTITIES
+from flexapod.workspace.pose_sets import in_words
+from flexapod.workspace.quantities import QUANTITIES, memory, table_titles, titled
 
 if TYPE_CHECKING:
     import pandas
@@ -31,6 +32,7 @@ def save(sweep: xr.Dataset, path: str | Path) -> None:
     """
     path = Path(path)
     write = _writer(path)
+    _check_place(path)
     making = path.with_name(f".{path.name}.{os.getpid()}{path.suffix}")
     try:
         write(sweep, making)
@@ -44,14 +46,22 @@ def save(sweep: xr.Dataset, path: str | Path) -> None:
 def check_file(path: Path, poses: int, quantities: tuple[str, ...]) -> None:
     """Raises OutputError, before anything is computed, for a file that would be too large or cannot be."""
     _writer(path)
-    if not path.parent.is_dir():
-        raise OutputError(f"{path.parent} is no directory, so {path.name} cannot be written in it. Make it first.")
-    size = poses * (49 + sum(8 * (6 if QUANTITIES[name].trailing else 1) for name in quantities))
+    _check_place(path)
+    size = memory(poses, quantities)
     if size > MOST_BYTES:
         raise OutputError(
-            f"{poses} poses take {size / 2**30:.1f} GiB in memory; a {path.suffix} file is written in one piece, up to "
-            f"{MOST_BYTES / 2**30:.0f} GiB. Stream to a store instead: {path.with_suffix(ZARR).name}"
+            f"{in_words(poses)} poses take {size // 2**30} GiB in memory; a {path.suffix} file is written whole, up to "
+            f"{MOST_BYTES // 2**30} GiB. Stream to a store instead: {path.with_suffix(ZARR).name}"
         )
+
+
+def _check_place(path: Path) -> None:
+    if not path.parent.is_dir():
+        raise OutputError(f"{path.parent} is no directory, so {path.name} cannot be written in it. Make it first.")
+    if path.is_dir():
+        raise OutputError(f"{path} is a directory. Choose another name.")
+    if path.exists() and not path.stat().st_mode & 0o222:
+        raise OutputError(f"{path} is there and may not be written to. Choose another name, or make it writable.")
 
 
 def _writer(path: Path) -> Callable[[xr.Dataset, Path], None]:
@@ -86,27 +96,40 @@ def _about(sweep: xr.Dataset) -> dict[str, str]:
     )
     codes = sweep["status"].attrs
     words = [f"{k} {word}" for k, word in zip(codes["flag_values"], codes["flag_meanings"].split(), strict=True)]
-    return {**{str(key): str(value) for key, value in sweep.attrs.items()}, "units": units, "status": ", ".join(words)}
+    attrs = {str(key): str(value) for key, value in sweep.attrs.items()}
+    if "poses" in attrs:
+        attrs["poses"] = _brief(json.loads(attrs["poses"]))
+    return {**attrs, "units": units, "status": ", ".join(words)}
+
+
+def _brief(poses: dict[str, Any]) -> str:
+    """What the poses are, in a line: the values of an axis of a grid are those of its column."""
+    axes = {
+        name: axis if isinstance(axis, dict) or len(axis) < 2 else {"values": len(axis)}
+        for name, axis in poses.get("axes", {}).items()
+    }
+    return json.dumps({**poses, **({"axes": axes} if axes else {})})
 
 
 def rows(sweep: xr.Dataset) -> pandas.DataFrame:
-    """A row for each pose: coordinates, every quantity (those of six in six columns, as omega_mode_1), status."""
+    """A row for each pose: coordinates, every quantity, those of six in six columns, status.
+
+    Titles end in the unit: x_m, roll_rad, omega_1_rad_per_s, omega_mode_1_rad_per_s.
+    """
     import pandas
 
     status = sweep["status"]
     found: dict[str, Any] = {}
     for name in AXES:
-        found[name] = sweep[name].broadcast_like(status).transpose(*status.dims).values.ravel()
+        column = sweep[name].broadcast_like(status).transpose(*status.dims)
+        found[titled(name, unit_of(name))] = column.values.ravel()
     for key, variable in sweep.data_vars.items():
         name = str(key)
         if name == "status":
             continue
-        values = np.asarray(variable.values)
-        if variable.ndim == status.ndim:
-            found[name] = values.ravel()
-        else:
-            for k, column in enumerate(values.reshape(-1, 6).T, start=1):
-                found[f"{name}_{variable.dims[-1]}_{k}"] = column
+        titles, unit = table_titles(name), QUANTITIES[name].unit
+        for title, values in zip(titles, np.asarray(variable.values).reshape(-1, len(titles)).T, strict=True):
+            found[titled(title, unit)] = values
     return pandas.DataFrame({**found, "status": status.values.ravel()})
 
 

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 BLOCK_BYTES = 2**26
+MOST_BLOCKS = 2**22
 MARK_EVERY = 1.0  # s: at most so much work is done again after a power cut
 SAMPLES = 2**20  # poses of a box
 
@@ -136,6 +137,11 @@ class SweepStore:
         keep = _streams_poses(points) and (keep_poses or isinstance(points, GivenPoses))
         most = _poses_per_block(wanted, keep) if chunk is None else whole(chunk, "chunk")
         job = _job(path, hexapod, points, wanted, joint, cut=blocks(points.shape, most), keep=keep)
+        if job.blocks.count > MOST_BLOCKS:
+            raise OutputError(
+                f"{points.count} poses in blocks of {most} are {job.blocks.count} blocks, each with a file for every "
+                f"quantity; a store may have {MOST_BLOCKS}. Leave chunk out, or make it larger."
+            )
         make_store(job)
         return cls(job, set())
 
