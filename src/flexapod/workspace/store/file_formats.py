@@ -32,7 +32,7 @@ def save(sweep: xr.Dataset, path: str | Path) -> None:
     """
     path = Path(path)
     write = _writer(path)
-    _check_place(path)
+    _refuse_locked(path)
     making = path.with_name(f".{path.name}.{os.getpid()}{path.suffix}")
     try:
         write(sweep, making)
@@ -46,7 +46,9 @@ def save(sweep: xr.Dataset, path: str | Path) -> None:
 def check_file(path: Path, poses: int, quantities: tuple[str, ...]) -> None:
     """Raises OutputError, before anything is computed, for a file that would be too large or cannot be."""
     _writer(path)
-    _check_place(path)
+    if not path.parent.is_dir():
+        raise OutputError(f"{path.parent} is no directory, so {path.name} cannot be written in it. Make it first.")
+    _refuse_locked(path)
     size = memory(poses, quantities)
     if size > MOST_BYTES:
         raise OutputError(
@@ -55,11 +57,8 @@ def check_file(path: Path, poses: int, quantities: tuple[str, ...]) -> None:
         )
 
 
-def _check_place(path: Path) -> None:
-    if not path.parent.is_dir():
-        raise OutputError(f"{path.parent} is no directory, so {path.name} cannot be written in it. Make it first.")
-    if path.is_dir():
-        raise OutputError(f"{path} is a directory. Choose another name.")
+def _refuse_locked(path: Path) -> None:
+    """Raises OutputError for a file that is not to be written to: it could be replaced all the same."""
     if path.exists() and not path.stat().st_mode & 0o222:
         raise OutputError(f"{path} is there and may not be written to. Choose another name, or make it writable.")
 
