@@ -29,6 +29,7 @@ from .excitation.sines import harmonic as harmonic
 from .excitation.sines import sine_sweep as sine_sweep
 from .excitation.spectra import vc_curve as vc_curve
 from .mechanics.assembly import forward_kinematics as forward_kinematics
+from .mechanics.assembly import forward_kinematics_all as forward_kinematics_all
 from .mechanics.dynamics import equations_of_motion as equations_of_motion
 from .mechanics.dynamics import forward_dynamics as forward_dynamics
 from .mechanics.dynamics import inverse_dynamics as inverse_dynamics

@@ -167,6 +167,13 @@ class Pose(metaclass=Suggesting):
         six = vectors(np.stack(numbers, axis=-1), "pose", 6)
         return Pose(six[..., :3], rpy_matrix(np.radians(six[..., 3:]) if degrees else six[..., 3:]))
 
+    @classmethod
+    def trusted(cls, position: Array, matrix: Array) -> Pose:
+        """The poses of numbers that are known to be poses, or NaN where there is none: nothing is checked."""
+        pose = Pose.__new__(Pose)
+        pose.position, pose.matrix = np.broadcast_to(position, position.shape), np.broadcast_to(matrix, matrix.shape)
+        return pose
+
     @property
     def rotation(self) -> Rotation:
         """Orientation as a scipy `Rotation`, flattened over the batch axes."""
@@ -199,7 +206,7 @@ class Pose(metaclass=Suggesting):
         return hash((self.shape, (self.position + 0.0).tobytes(), (self.matrix + 0.0).tobytes()))  # -0.0 is 0.0
 
     def __getitem__(self, index: Any) -> Pose:
-        return Pose(self.position[index], self.matrix[index])
+        return Pose.trusted(self.position[index], self.matrix[index])
 
     @property
     def packed(self) -> Array:

@@ -58,6 +58,6 @@ def test_a_way_without_a_smooth_path_is_said_so(machine, monkeypatch):
     pytest.importorskip("ompl")
     monkeypatch.setattr("flexapod.paths.planning_task.WAYPOINTS", (8,))
     monkeypatch.setattr("flexapod.paths.planning_task._MARGINS", (0.005,))
-    monkeypatch.setattr(PlanningTask, "worst", lambda task, path, samples=400: np.array([-0.1, 0.2]))
+    monkeypatch.setattr(PlanningTask, "margin", lambda task, path: -0.1)
     with pytest.raises(fx.errors.PathError, match=r"a way was found, but no smooth path along it .* misses by 1"):
         fx.plan_path(machine, fx.Pose([0, 0, 0.89]), fx.Pose.from_rpy(0.05, 0, 0.9), 90.0)

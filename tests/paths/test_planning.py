@@ -152,3 +152,46 @@ def test_no_way_within_reach_is_said_with_what_stands_in_it(machine, monkeypatch
     tight = fx.PathRequirements(130.0, reach=0.002, turn=0.01)
     with pytest.raises(fx.errors.PathError, match=r"no path was found .* of poses sampled .* have that index"):
         fx.plan_path(machine, START, GOAL, tight)
+
+
+# --- low bounds -------------------------------------------------------------------------------------------------------
+
+
+def kept(hexapod, plan, points=20_001):
+    """Whether a path keeps its bound at many points, all on one side of the singular poses."""
+    poses = plan.path(np.linspace(plan.path.start, plan.path.start + plan.path.duration, points)).pose
+    index = fx.sweep(hexapod, poses, quantities=["omega_1"], threads=1)["omega_1"].values
+    sign = np.linalg.slogdet(fx.force_transformation(hexapod, poses))[0]
+    return index.min() >= plan.requirements.index * (1 - 1e-9) and (sign == sign[0]).all()
+
+
+def test_a_low_bound_lets_no_path_through_singular_poses(machine):
+    """The straight line between these poses passes two singular ones; at a few hundred points its index is > 0.1."""
+    a = fx.Pose.from_rpy(-0.00141843, 0.235985, 0.845271, 17.693, 19.792, 12.298, degrees=True)
+    b = fx.Pose.from_rpy(0.105097, 0.251246, 0.731466, 15.162, -27.468, -6.2811, degrees=True)
+    plan = fx.plan_path(machine, a, b, fx.PathRequirements(1.0))
+    assert plan.rough is not None
+    assert plan.margin >= 0
+    assert plan.least_index >= 1.0
+    assert kept(machine, plan)
+    assert plan.straight_least_index < 1e-3
+    fx.path_index(machine, plan.path)  # raises where it passes a singular pose
+
+
+DRAWN = 12
+
+
+def test_no_drawn_plan_breaks_its_bound(machine):
+    rng, planned = np.random.default_rng(11), 0
+    for _ in range(DRAWN):
+        places, turns = machine.home.position + rng.uniform(-0.25, 0.25, (2, 3)), rng.uniform(-35, 35, (2, 3))
+        ends = fx.Pose.from_rpy(*places.T, *turns.T, degrees=True)
+        needs = fx.PathRequirements(10 ** rng.uniform(-1.5, 1.5), limits=False)
+        try:
+            plan = fx.plan_path(machine, ends[0], ends[1], needs)
+        except (fx.errors.PathError, fx.SingularPoseError):
+            continue
+        planned += 1
+        assert plan.margin >= 0
+        assert kept(machine, plan)
+    assert planned > DRAWN // 4

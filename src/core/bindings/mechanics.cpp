@@ -3,6 +3,8 @@
 #include "bindings/arrays.hpp"
 #include "bindings/bind.hpp"
 #include "kernels/isa.hpp"
+#include "model/assemblies.hpp"
+#include "threads/parallel_for.hpp"
 
 namespace flexapod {
 namespace {
@@ -28,6 +30,33 @@ auto forward_kinematics_(const Input& design, const Input& lengths, const Input&
   const size_t n = lengths.size() / 6;
   const auto* wanted = reinterpret_cast<batch::LegRows>(rows(lengths, n, 6, "lengths"));
   return numpy(batch::forward_kinematics(machine_of(design), n, wanted, motions(start, n, "start")));
+}
+
+/// All assemblies for n sets of lengths: the set of each, poses, length errors; and for each set whether they are all.
+nb::tuple all_assemblies(const assemblies::Search& search, const Input& lengths, int threads) {
+  const size_t n = lengths.size() / 6;
+  const auto* wanted = reinterpret_cast<batch::LegRows>(rows(lengths, n, 6, "lengths"));
+  if (threads < 1) throw std::invalid_argument("threads is " + std::to_string(threads) + "; it must be >= 1");
+  std::vector<assemblies::Found> found(n);
+  {
+    const nb::gil_scoped_release release;
+    in_blocks(n, 1, threads, [&](size_t first, size_t last) {
+      for (size_t i = first; i < last; ++i) found[i] = search.assemblies(wanted[i]);
+    });
+  }
+  size_t total = 0;
+  for (const auto& each : found) total += each.poses.size();
+  Array<std::int64_t> sets({total});
+  Array<double> poses({total, pose_size}), errors({total});
+  Array<bool> complete({n});
+  double *pose = poses.data(), *error = errors.data();
+  std::int64_t* set = sets.data();
+  for (size_t i = 0; i < n; ++i) {
+    complete.data()[i] = found[i].complete;
+    for (const FoundPose& each : found[i].poses)
+      *set++ = std::int64_t(i), batch::write(pose, each.pose), *error++ = each.error;
+  }
+  return numpy(std::tuple{std::move(sets), std::move(poses), std::move(errors), std::move(complete)});
 }
 
 auto forward_dynamics_(const Input& design, Joint joint, const Input& platform, const Input& base,
@@ -83,6 +112,11 @@ void bind_mechanics(nb::module_& m) {
   m.def("leg_distances", &of_geometry<batch::leg_distances>);
   m.def("shared_joints", &shared_joints_);
   m.def("forward_kinematics", &forward_kinematics_);
+  nb::class_<assemblies::Search>(m, "AssemblySearch")
+      .def("__init__", [](assemblies::Search* self,
+                          const Input& design) { new (self) assemblies::Search(machine_of(design).design); })
+      .def_prop_ro("paths", &assemblies::Search::paths)
+      .def("find", &all_assemblies);
   m.def("force_transformation", &of_geometry<batch::force_transformation>);
   m.def("spring_matrix", &of_geometry<batch::spring_matrix>);
   nb::list legs;

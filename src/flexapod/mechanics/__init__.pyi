@@ -1,4 +1,7 @@
+from .assembly import Assemblies as Assemblies
+from .assembly import FoundPose as FoundPose
 from .assembly import forward_kinematics as forward_kinematics
+from .assembly import forward_kinematics_all as forward_kinematics_all
 from .dynamics import EquationsOfMotion as EquationsOfMotion
 from .dynamics import equations_of_motion as equations_of_motion
 from .dynamics import forward_dynamics as forward_dynamics

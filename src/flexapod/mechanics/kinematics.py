@@ -13,6 +13,8 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import as_hexapod, states
 from flexapod.pose import MotionLike, Pose, PoseLike
 
+_NO_SIDE = 1e-7  # least singular value of H over its largest, moments over the platform's size: a singular pose
+
 
 class LegRates(NamedTuple):
     """Lengths of the legs and their derivatives in time.
@@ -202,6 +204,23 @@ def condition_number(
     sigma = _singular_values(H)
     with np.errstate(divide="ignore"):
         return (sigma[..., 0] / sigma[..., -1])[()]
+
+
+def det_sign(hexapod: Hexapod, pose: Pose) -> Array:
+    """Sign of det H at poses (n,): those of different signs have a singular pose between them on every way."""
+    return np.linalg.slogdet(np.nan_to_num(force_transformation(hexapod, pose)))[0]
+
+
+def sides(hexapod: Hexapod, pose: Pose) -> np.ndarray:
+    """The same as whole numbers, 0 where H is singular to rounding, and where no leg can take the pose."""
+    H = np.nan_to_num(force_transformation(hexapod, pose)) / np.repeat([1.0, platform_size(hexapod)], 3)[:, None]
+    sigma = np.linalg.svd(H, compute_uv=False)
+    return np.where(sigma[..., -1] > _NO_SIDE * sigma[..., 0], np.linalg.slogdet(H)[0], 0.0).astype(int)
+
+
+def platform_size(hexapod: Hexapod) -> float:
+    """Largest distance of a platform joint from the middle of all, m."""
+    return float(np.linalg.norm(hexapod.platform_joints - hexapod.platform_joints.mean(axis=0), axis=1).max())
 
 
 def _singular_values(H: Array) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.integrate import cumulative_simpson
-from scipy.optimize import brentq, minimize_scalar
+from scipy.optimize import brentq
 
 from flexapod.checks import one_of, positive, whole
 from flexapod.conventions import TRANSLATIONS, Array, JointModel, in_unit
@@ -24,6 +24,7 @@ from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
 
 _ZERO_INDEX = 1e-6  # of the largest index on the path: what a singular pose leaves of the lowest frequency
+_CUTS, _ROUNDS = 16, 11  # a minimum is bracketed by 2/16 of its bracket, 11 times: to 1e-10 of a sample's distance
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,16 +152,18 @@ def path_index(
     values = index(times)
     _all_possible(path, times, values)
     crossings = singular_times(hexapod, path, times)
-    dips = _dips(index, times, values)
-    least_time, least = min([*dips, *zip(times, values, strict=True)], key=lambda point: point[1])
+    low_points = dips(index, times, values)
+    least_time, least = min([*low_points, *zip(times, values, strict=True)], key=lambda point: point[1])
     if least < _ZERO_INDEX * values.max() and not crossings:
         crossings = (float(least_time),)  # touched, not crossed
+    if crossings:
+        least_time, least = crossings[0], 0.0
     if crossings and singular == "raise":
         raise SingularPoseError(
             f"the path passes through a singular pose at t = {crossings[0]:.6g} s, {path(crossings[0]).pose!r}; the "
             "legs cannot hold the platform there. Lead the path round it (see plan_path)."
         )
-    all_times = np.unique(np.concatenate([times, [t for t, _ in dips], crossings]))
+    all_times = np.unique(np.concatenate([times, [t for t, _ in low_points], crossings]))
     dataset = _samples(hexapod, path, all_times, index(all_times), joint)
     mean = float(dataset["cumulative_index"][-1] / np.trapezoid(path.weights, path.times))
     below = () if bound is None else _below(index, all_times, dataset["index"].values, bound)
@@ -197,17 +200,19 @@ def singular_times(hexapod: Hexapod, path: Trajectory, times: Array) -> tuple[fl
     return tuple(np.unique(roots).tolist())
 
 
-def _dips(index: Callable[[ArrayLike], Array], times: Array, values: Array) -> list[tuple[float, float]]:
-    """Every local minimum of the samples, refined between its neighbours: (time, index)."""
+def dips(value: Callable[[ArrayLike], Array], times: Array, values: Array) -> list[tuple[float, float]]:
+    """Every local minimum of the samples, refined between its neighbours: (time, value)."""
     inner = np.flatnonzero((values[1:-1] <= values[:-2]) & (values[1:-1] <= values[2:])) + 1
-    found = []
-    for i in inner:
-        span = (times[i - 1], times[i + 1])
-        best = minimize_scalar(
-            lambda t: index(t)[0], bounds=span, method="bounded", options={"xatol": 1e-9 * (span[1] - span[0])}
-        )
-        found.append((float(best.x), float(best.fun)))
-    return found
+    if not inner.size:
+        return []
+    low, high = times[inner - 1], times[inner + 1]
+    each = np.arange(inner.size)
+    for _ in range(_ROUNDS):  # all at once: the evaluations of one would wait for one another
+        t = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, _CUTS + 1)
+        found = value(t.ravel()).reshape(t.shape)
+        least = found.argmin(axis=1)
+        low, high = t[each, np.maximum(least - 1, 0)], t[each, np.minimum(least + 1, _CUTS)]
+    return list(zip(t[each, least].tolist(), found[each, least].tolist(), strict=True))
 
 
 def _below(

@@ -6,14 +6,15 @@ from collections.abc import Callable
 from typing import Any, Literal, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexapod.checks import one_of, positive
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PathError, SingularPoseError
 from flexapod.mechanics.inputs import single_pose
-from flexapod.mechanics.kinematics import force_transformation
-from flexapod.mechanics.modes import natural_modes
+from flexapod.mechanics.kinematics import det_sign
+from flexapod.paths.analysis import dips, path_index
 from flexapod.paths.chart import Chart
 from flexapod.paths.leg_speed import LegSpeed, duration
 from flexapod.paths.ompl_planner import search
@@ -26,6 +27,7 @@ from flexapod.pose import Pose, PoseLike
 Objective = Literal["length", "time"]
 WAYPOINTS = (8, 12, 18, 26)  # tried in turn: more of them follow a narrow way more closely
 _STEP = 0.02  # between checked points of a line, in platform sizes and rad
+_CHECKED = 800  # instants of a path at which its margins are computed, before their minima are refined
 _MARGINS = (0.005, 0.02, 0.04)  # kept at the samples of the smoothing, so that the bounds hold between them
 
 
@@ -56,8 +58,8 @@ class PlanningTask:
         both = Pose(np.stack([start.position, goal.position]), np.stack([start.matrix, goal.matrix]))
         for pose, name in ((start, "start"), (goal, "goal")):
             self.margins.check(pose, name)
-        sides = np.linalg.slogdet(force_transformation(hexapod, both))[0]
-        if sides[0] != sides[1]:
+        self.side, other = det_sign(hexapod, both)
+        if self.side != other:
             raise SingularPoseError(
                 "start and goal lie on different sides of the singular poses (det H changes its sign), so every path "
                 "between them passes through one. Choose both on the same side."
@@ -72,11 +74,22 @@ class PlanningTask:
         self.low, self.high = self.ends.min(axis=0) - room, self.ends.max(axis=0) + room
 
     def met(self, z: Array) -> np.ndarray:
-        """(n,) whether points (n, 6) meet every requirement."""
-        return self.margins.met(self.chart.poses(z * self.scale))
+        """(n,) whether points (n, 6) meet every requirement, on the side of the singular poses where the ends are."""
+        poses = self.chart.poses(z * self.scale)
+        met = self.margins.met(poses)
+        met[met] = det_sign(self.hexapod, poses[met]) == self.side
+        return met
 
-    def worst(self, path: Trajectory, samples: int = 400) -> Array:
-        return self.margins.worst(path(path.grid(samples)).pose)
+    def margin(self, path: Trajectory) -> float:
+        """The least margin along a path: its minima are refined, and beyond a singular pose it is -1."""
+
+        def worst(t: ArrayLike) -> Array:
+            poses = path(t).pose
+            return np.where(det_sign(self.hexapod, poses) == self.side, self.margins.worst(poses), -1.0)
+
+        times = path.grid(_CHECKED)
+        values = worst(times)
+        return min([float(values.min()), *(value for _, value in dips(worst, times, values))])
 
     def explore(self, seed: int, progress: Callable[[float], object]) -> tuple[Array, int]:
         found = search(self.met, self.ends, self.low, self.high, step=_STEP, seed=seed, progress=progress)
@@ -114,7 +127,7 @@ class PlanningTask:
             first = resampled(rough, count)
             points = smoother.run(first, 4 * count + 1, margin, self.low, self.high, report)
             path = self.path(points)
-            worst = float(self.worst(path, 16 * count).min())
+            worst = self.margin(path)
             if worst >= 0:
                 progress(1.0)
                 return path
@@ -135,9 +148,7 @@ class PlanningTask:
 
     def plan(self, path: Trajectory, straight: Trajectory, rough: Pose | None, batches: int) -> Plan:
         def least(path: Trajectory) -> float:
-            return float(
-                natural_modes(self.hexapod, path(path.grid(800)).pose, joint=self.required.joint).omega[:, 0].min()
-            )
+            return path_index(self.hexapod, path, joint=self.required.joint, singular="keep").minimum
 
         values: dict[str, Any] = {
             "requirements": self.required,
@@ -146,7 +157,7 @@ class PlanningTask:
             "straight_length": straight.length(self.size),
             "least_index": least(path),
             "straight_least_index": least(straight),
-            "margin": float(self.worst(path, 1600).min()),
+            "margin": self.margin(path),
             "batches": batches,
         }
         return Plan(path, straight, rough, **values)
