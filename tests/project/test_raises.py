@@ -114,6 +114,11 @@ PROVOKED = {
     ("condition_number", "ArgumentError"): lambda: fx.condition_number(MACHINE, HOME, characteristic_length=0.0),
     ("forward_kinematics", "ArgumentError"): lambda: fx.forward_kinematics(MACHINE, [0.2, 0.2]),
     ("forward_kinematics", "PoseError"): lambda: fx.forward_kinematics(MACHINE, LEGS, start=BATCH),
+    ("forward_kinematics_all", "KinematicsError"): lambda: fx.forward_kinematics_all(
+        MACHINE, LEGS * [-1, 1, 1, 1, 1, 1]
+    ),
+    ("forward_kinematics_all", "ArgumentError"): lambda: fx.forward_kinematics_all(MACHINE, [0.2, 0.2]),
+    ("forward_kinematics_all", "PoseError"): lambda: fx.forward_kinematics_all(MACHINE, LEGS, start=BATCH),
     ("frequency_grid", "ArgumentError"): lambda: fx.vibration.frequency_grid(MACHINE, omega_min=2.0, omega_max=1.0),
     ("gain_map", "ArgumentError"): lambda: fx.control.gain_map(MACHINE, HOME, kp=[[1.0]], kd=[1.0]),
     ("gain_schedule", "ArgumentError"): lambda: fx.control.gain_schedule(MACHINE, HOME, gains=[2.0, 1.0, 3.0]),
