@@ -263,7 +263,8 @@ def _checked(lengths: ArrayLike) -> tuple[Array, tuple[int, ...], np.ndarray]:
     if wanted.shape[-1] != 6:
         raise ArgumentError(f"lengths has shape {wanted.shape}; its last axis must hold 6 numbers.")
     rows = wanted.reshape(-1, 6)
-    return rows, wanted.shape[:-1], (np.isfinite(rows) & (rows > 0)).all(axis=1)
+    good: np.ndarray = np.all(np.isfinite(rows) & (rows > 0), axis=1)
+    return rows, wanted.shape[:-1], good
 
 
 def _starts(hexapod: Hexapod, rows: Array, shape: tuple[int, ...], good: np.ndarray, start: PoseLike | None) -> Pose:
