@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +11,15 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.joint_limits import check_limits
 from flexapod.mechanics.kinematics import condition_number
 from flexapod.mechanics.modes import near_repeated
+from flexapod.mechanics.plausibility import (
+    POSES,
+    implausible,
+    legs_that_cross,
+    mean_radius,
+    singular_everywhere,
+    soft_legs,
+)
+from flexapod.mechanics.plausibility import Caution as Caution
 from flexapod.pose import Pose
 
 if TYPE_CHECKING:
@@ -24,18 +31,9 @@ GROWS = 1e-9  # of the highest frequency: a pole whose real part is larger belon
 TANGENT_DIFFERS = 0.01  # of a frequency: from here on gravity and preload must not be left out
 
 
-class Caution(NamedTuple):
-    """A caution: a code for programs, words for readers, and the numbers in the words."""
-
-    code: str
-    text: str
-    numbers: Mapping[str, float] = MappingProxyType({})
-
-
 def platform_radius(hexapod: Hexapod) -> float:
     """Mean distance of the platform joints from their centre, m."""
-    p = hexapod.platform_joints
-    return float(np.linalg.norm(p - p.mean(axis=0), axis=1).mean())
+    return mean_radius(hexapod.platform_joints)
 
 
 def unitless_condition(hexapod: Hexapod, pose: Pose) -> float:
@@ -52,39 +50,46 @@ def pose_cautions(
     pose.
     """
     return [
-        *singularity(condition),
+        *singularity(condition, singular_everywhere(hexapod, pose, condition)),
         *_unsupported(condition, damped),
         *_stability(damped),
         *(Caution("limit", f"Limit exceeded: {text}.") for text in check_limits(hexapod, pose).exceeded),
         *_angles_without_home(hexapod),
+        *legs_that_cross(hexapod, pose),
+        *soft_legs(hexapod, pose),
+        *implausible(hexapod),
         *(Caution("design", text) for text in hexapod.warnings),
         *_preload(omega, damped),
         *repeats(omega),
     ]
 
 
-def singularity(condition: float) -> list[Caution]:
-    """Whether a pose is singular or near it, by the condition number of H without units."""
-    if not condition < SINGULAR:
-        return [
-            Caution(
-                "singular",
-                "The pose is singular: the platform can move without stretching any leg, so the index is 0, and no leg "
-                "forces hold it against every load. Leg forces, the tangent and sensitivities are not available here. "
-                "Choose another pose, or move the joints.",
-                {"condition": condition},
-            )
-        ]
-    if condition > NEAR_SINGULAR:
-        return [
-            Caution(
-                "near_singular",
-                f"Near a singular pose: the condition number of H is {condition:.3g} without units, so some load needs "
-                f"leg forces about {condition:.1g} times as large. Keep away from here, or move the joints.",
-                {"condition": condition},
-            )
-        ]
-    return []
+def singularity(condition: float, elsewhere: float | None = None) -> list[Caution]:
+    """Whether a pose is singular or near it, by the condition number of H without units.
+
+    elsewhere: the least of them that was found at other poses, where all are singular or nearly so.
+    """
+    if condition <= NEAR_SINGULAR:
+        return []
+    code, numbers, remedy = "singular", {"condition": condition}, "Choose another pose, or move the joints."
+    text = (
+        "The pose is singular: the platform can move without stretching any leg, so the index is 0, and no leg forces "
+        "hold it against every load. Leg forces, the tangent and sensitivities are not available here."
+    )
+    if condition < SINGULAR:
+        code, remedy = "near_singular", "Keep away from here, or move the joints."
+        text = (
+            f"Near a singular pose: the condition number of H is {condition:.3g} without units, so some load needs leg "
+            f"forces about {condition:.1g} times as large."
+        )
+    if elsewhere is not None:
+        numbers["elsewhere"] = elsewhere
+        remedy = (
+            f"No pose helps: at all of {POSES} others that were tried the condition number is {elsewhere:.1g} or more. "
+            "The joints are placed so that the machine is singular everywhere, as those of two similar hexagons are: "
+            "move them."
+        )
+    return [Caution(code, f"{text} {remedy}", numbers)]
 
 
 def repeats(omega: Array) -> list[Caution]:

@@ -1,4 +1,4 @@
-"""`flexapod check`: is a file a hexapod, and is it within its limits at a pose?"""
+"""`flexapod check`: is a file a hexapod, is what was read what was meant, and is it within its limits at a pose?"""
 
 from __future__ import annotations
 
@@ -20,15 +20,18 @@ if TYPE_CHECKING:
 @common.set_option
 @common.json_option
 def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...], as_json: bool) -> None:
-    """Check DESIGN: every key and value, and, at the pose given or at home, its limits.
+    """Check DESIGN: every key and value, and, at the pose given or at home, its limits. What was read is printed back.
 
     Exit code 2 means that DESIGN is no hexapod; warnings and exceeded limits are printed and leave it at 0.
     """
+    from flexapod.cli.output import read_back
+
     hexapod = common.load_design(design, changes)
     where = common.pose_or_none(hexapod, pose)
     found = {"design": hexapod.name, "digest": hexapod.digest, "warnings": hexapod.warnings, **_at(hexapod, where)}
-    found["ok"] = not (found["warnings"] or found["singularity"] or found["limits_exceeded"])
+    found["ok"] = not (found["warnings"] or found["cautions"] or found["limits_exceeded"])
     if as_json:
+        found |= {"values": hexapod.values(), "radii_of_gyration_m": read_back.gyration(hexapod)}
         common.print_json(found)
     else:
         _show(hexapod, where, found)
@@ -36,27 +39,36 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
 
 def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
     """What holds at a pose; null without one."""
-    keys = ("pose_m_deg", "leg_lengths_m", "leg_distance_m", "condition_number", "singularity", "limits_exceeded")
-    if pose is None:
-        return dict.fromkeys(keys)
-    from flexapod.mechanics import joint_limits, kinematics
+    from flexapod.mechanics import joint_limits, kinematics, plausibility
     from flexapod.mechanics.cautions import singularity, unitless_condition
 
+    keys = ("pose_m_deg", "leg_lengths_m", "leg_distance_m", "condition_number", "singularity", "limits_exceeded")
+    odd = [caution.text for caution in plausibility.implausible(hexapod)]
+    if pose is None:
+        return {**dict.fromkeys(keys), "cautions": odd}
     condition = unitless_condition(hexapod, pose)
+    found = singularity(condition, plausibility.singular_everywhere(hexapod, pose, condition))
+    singular = [caution.text for caution in found if caution.code == "singular" or "elsewhere" in caution.numbers]
     values = (
         pose_numbers(pose),
         kinematics.inverse_kinematics(hexapod, pose),
         joint_limits.leg_distance(hexapod, pose),
         kinematics.condition_number(hexapod, pose),
-        [caution.text for caution in singularity(condition) if caution.code == "singular"],
+        singular,
         joint_limits.check_limits(hexapod, pose).exceeded,
     )
-    return dict(zip(keys, values, strict=True))
+    at_pose = [*plausibility.legs_that_cross(hexapod, pose), *plausibility.soft_legs(hexapod, pose)]
+    cautions = [*odd, *singular, *(caution.text for caution in at_pose)]
+    return {**dict(zip(keys, values, strict=True)), "cautions": cautions}
 
 
 def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:
+    from flexapod.cli.output import read_back
+
     out = common.console()
     out.print(repr(hexapod), markup=False, soft_wrap=True)
+    for line in ("What was read, in SI units and degrees:", *read_back.lines(hexapod)):
+        out.print(line, markup=False, soft_wrap=True)
     if pose is None:
         out.print("No home pose and no --pose: limits were not checked.")
     else:
@@ -66,5 +78,5 @@ def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:
             f"  legs {lengths.min():.4g} to {lengths.max():.4g} m, axes at least {found['leg_distance_m']:.4g} m apart"
         )
         out.print(f"  condition number of H {found['condition_number']:.4g} (in metres)")
-    common.print_warnings((*(found["singularity"] or ()), *found["warnings"], *(found["limits_exceeded"] or ())))
+    common.print_warnings((*found["cautions"], *found["warnings"], *(found["limits_exceeded"] or ())))
     out.print("[bold green]OK[/bold green]" if found["ok"] else "A valid design, with warnings.")
