@@ -9,6 +9,7 @@ from tests.helpers.support import relative
 
 import flexapod as fx
 from flexapod.design.universal_axes import ACROSS, tangent_axes
+from flexapod.optimisation.design_map import DesignMap
 
 CASES = Path(__file__).parents[1] / "data" / "cases" / "tangential-struts"
 RIGHT = {  # rad/s, computed apart from Flexapod for legs that do not spin
@@ -88,6 +89,6 @@ def test_a_search_over_circles_keeps_axes_across_across():
         base_half_angle=10, platform_half_angle=10, degrees=True,
     )  # fmt: skip
     assert (np.abs(base.universal_axes[:, 2]) > 0.9).all()  # nearly flat: all legs lie along their tangents
-    search = fx.optimisation.design_map.DesignMap(base, [fx.optimisation.JointCircle("base", radius=(0.5, 2.0))])
+    search = DesignMap(base, [fx.optimisation.JointCircle("base", radius=(0.5, 2.0))])
     steps = [search.hexapod_at(np.array([r])).universal_axes for r in np.linspace(0.6, 1.9, 40)]
     assert all(relative(axes, base.universal_axes) == 0 for axes in steps)

@@ -38,8 +38,11 @@ def _wrong_unit(key: str, stem: str, unit: str, rule: Key | None) -> NoReturn:
     if rule is None or rule.dimension is None:
         raise DesignError(f"{key} carries the unit {unit!r}; {stem} has none. Write {stem} = ...")
     is_a = f"is no unit of {rule.dimension}" if unit in ALL_UNITS else "is not a unit Flexapod knows"
+    article = "an" if rule.dimension[0] in "aeiou" else "a"
     allowed = ", ".join(f"{stem.split('.')[-1]}_{known}" for known in UNITS[rule.dimension])
-    raise DesignError(f"{key}: {unit!r} {is_a}; {stem} is a {rule.dimension}. Use {stem} (SI) or one of: {allowed}.")
+    raise DesignError(
+        f"{key}: {unit!r} {is_a}; {stem} is {article} {rule.dimension}. Use {stem} (SI) or one of: {allowed}."
+    )
 
 
 def unknown_key(table: str, key: str) -> NoReturn:

@@ -16,7 +16,7 @@ from flexapod.design.packing import PLACES
 from flexapod.design.schema import KEYS
 from flexapod.design.shorthands import rod
 from flexapod.design.value_checks import check_value
-from flexapod.errors import DesignError, shown
+from flexapod.errors import DesignError, shown, told_apart
 
 
 class Value:
@@ -273,9 +273,9 @@ class Limits(Value):
             wrong = np.flatnonzero(pairs[:, 0] >= pairs[:, 1])
             if wrong.size:
                 place = f"[{wrong[0]}]" if len(pairs) > 1 else ""
-                low, high = pairs[wrong[0]]
+                low, high = told_apart(*pairs[wrong[0]].tolist(), (6, 6))
                 raise DesignError(
-                    f"limits.leg_length{place} is [{low:.6g}, {high:.6g}] m; the first must be < the second. "
+                    f"limits.leg_length{place} is [{low}, {high}] m; the first must be < the second. "
                     "Give the shortest length first."
                 )
         for name in ("universal_angle", "spherical_angle", "leg_distance"):

@@ -28,6 +28,7 @@ class Key:
     dimension: str | None
     shapes: tuple[tuple[int, ...], ...]
     remedy: str = "Write the number in SI units or put another unit in the key's name."
+    too_large: str = ""  # the remedy for infinity and numbers near it, where it is another
     least: float | None = None
     most: float | None = None
     open_: bool = False
@@ -142,7 +143,8 @@ KEYS: dict[str, Key] = {
         "axial stiffness",
         "stiffness",
         _LEGS,
-        "Use a large finite value for a rigid leg.",
+        "A leg without stiffness holds nothing: give that of actuator, joints and mounts in series.",
+        too_large="Use a large finite value for a rigid leg.",
         least=0.0,
         open_=True,
     ),

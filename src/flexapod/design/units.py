@@ -8,11 +8,13 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+_LB, _LBF = 45359237, 44482216152605  # pound in 1e-8 kg, and its weight in 1e-13 N; both are exact
+
 # dimension -> unit -> (multiply by, divide by). Two numbers, because x / 1000 is rounded once and x * 0.001 is not:
 # `radius_mm = 115` then is bit for bit `radius = 0.115`. The first unit of each dimension is the SI one.
 UNITS: dict[str, dict[str, tuple[float, float]]] = {
-    "length": {"m": (1, 1), "cm": (1, 1e2), "mm": (1, 1e3), "um": (1, 1e6), "in": (254, 1e4)},
-    "mass": {"kg": (1, 1), "g": (1, 1e3), "t": (1e3, 1), "lb": (45359237, 1e8)},
+    "length": {"m": (1, 1), "cm": (1, 1e2), "mm": (1, 1e3), "um": (1, 1e6), "in": (254, 1e4), "ft": (3048, 1e4)},
+    "mass": {"kg": (1, 1), "g": (1, 1e3), "t": (1e3, 1), "lb": (_LB, 1e8)},
     "inertia": {
         "kg_m2": (1, 1),
         "kg_cm2": (1, 1e4),
@@ -20,6 +22,10 @@ UNITS: dict[str, dict[str, tuple[float, float]]] = {
         "g_m2": (1, 1e3),
         "g_cm2": (1, 1e7),
         "g_mm2": (1, 1e9),
+        "lb_in2": (_LB * 254**2, 1e16),
+        "lb_ft2": (_LB * 3048**2, 1e16),
+        "lbf_in_s2": (_LBF * 127, 5e16),
+        "lbf_ft_s2": (_LBF * 3048, 1e17),
     },
     "stiffness": {
         "N_per_m": (1, 1),
@@ -29,14 +35,30 @@ UNITS: dict[str, dict[str, tuple[float, float]]] = {
         "kN_per_m": (1e3, 1),
         "kN_per_mm": (1e6, 1),
         "MN_per_m": (1e6, 1),
+        "lbf_per_in": (_LBF, 254e9),
+        "lbf_per_ft": (_LBF, 3048e9),
     },
-    "damping": {"N_s_per_m": (1, 1), "N_s_per_mm": (1e3, 1), "kN_s_per_m": (1e3, 1)},
+    "damping": {
+        "N_s_per_m": (1, 1),
+        "N_s_per_mm": (1e3, 1),
+        "kN_s_per_m": (1e3, 1),
+        "lbf_s_per_in": (_LBF, 254e9),
+        "lbf_s_per_ft": (_LBF, 3048e9),
+    },
     "angular damping": {
         "N_m_s_per_rad": (1, 1),
         "N_mm_s_per_rad": (1, 1e3),
         "N_m_s_per_deg": (180, math.pi),
+        "lbf_in_s_per_rad": (_LBF * 127, 5e16),
+        "lbf_ft_s_per_rad": (_LBF * 3048, 1e17),
     },
-    "acceleration": {"m_per_s2": (1, 1), "mm_per_s2": (1, 1e3)},
+    "acceleration": {
+        "m_per_s2": (1, 1),
+        "mm_per_s2": (1, 1e3),
+        "ft_per_s2": (3048, 1e4),
+        "in_per_s2": (254, 1e4),
+        "g": (980665, 1e5),
+    },
     "angle": {"rad": (1, 1), "mrad": (1, 1e3), "deg": (math.pi, 180)},
 }
 
@@ -49,11 +71,17 @@ QUANTITIES: dict[str, dict[str, tuple[float, float]]] = {
     "angle": _ANGLES,
     "time": {"s": (1, 1), "ms": (1, 1e3), "us": (1, 1e6), "min": (60, 1), "h": (3600, 1)},
     "frequency": {"rad_per_s": (1, 1), "Hz": (2 * math.pi, 1), "kHz": (2e3 * math.pi, 1), "rpm": (math.pi, 30)},
-    "force": {"N": (1, 1), "mN": (1, 1e3), "kN": (1e3, 1), "MN": (1e6, 1)},
-    "moment": {"N_m": (1, 1), "N_mm": (1, 1e3), "kN_m": (1e3, 1)},
+    "force": {"N": (1, 1), "mN": (1, 1e3), "kN": (1e3, 1), "MN": (1e6, 1), "lbf": (_LBF, 1e13)},
+    "moment": {
+        "N_m": (1, 1),
+        "N_mm": (1, 1e3),
+        "kN_m": (1e3, 1),
+        "lbf_in": (_LBF * 127, 5e16),
+        "lbf_ft": (_LBF * 3048, 1e17),
+    },
     "velocity": {f"{unit}_per_s": factor for unit, factor in _LENGTHS.items()},
     "acceleration": {f"{unit}_per_s2": factor for unit, factor in _LENGTHS.items()}
-    | {"g": (9.80665, 1), "mg": (9.80665, 1e3)},
+    | {"ft_per_s2": (3048, 1e4), "g": (980665, 1e5), "mg": (980665, 1e8)},
     "angular velocity": {f"{unit}_per_s": factor for unit, factor in _ANGLES.items()} | {"rpm": (math.pi, 30)},
     "angular acceleration": {f"{unit}_per_s2": factor for unit, factor in _ANGLES.items()},
 }

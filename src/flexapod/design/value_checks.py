@@ -77,9 +77,11 @@ def _check_each(name: str, given: Array, si: Array, rule: Key, unit: str) -> Non
     limit = bound / float(to_si(1.0, rule.dimension, unit)) if rule.dimension else bound
     value, least = (f"{words} {printed(unit)}".rstrip() for words in told_apart(float(given[index]), limit, (6, 4)))
     must = f"{sign} {least if limit else 0}"
+    remedy = rule.remedy
     if bound == LARGEST:
+        remedy = rule.too_large or remedy
         must = f"smaller than {LARGEST:g} in SI units" if np.isfinite(given).all() else "a finite number"
-    raise DesignError(f"{name}{place} is {value}; it must be {must}. {rule.remedy}")
+    raise DesignError(f"{name}{place} is {value}; it must be {must}. {remedy}")
 
 
 def _symmetric(name: str, given: Array, si: Array, rule: Key, unit: str) -> Array:

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import _core
 from flexapod.conventions import LEG_PAIRS, Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import PoseError
+from flexapod.errors import PoseError, told_apart
 from flexapod.mechanics.inputs import States, pose_or_home, states
 from flexapod.mechanics.kinematics import force_transformation, home_pose, inverse_kinematics
 from flexapod.pose import PoseLike
@@ -237,8 +237,8 @@ def in_words(quantity: LimitedQuantity) -> list[str]:
     words = []
     for i, v in enumerate(value):
         leg = f"leg {i + 1}: " if value.size == 6 else ""
-        if v < low[i]:
-            words.append(f"{leg}{name} {v:.4g} {unit} is below {low[i]:.4g} {unit}")
-        elif v > high[i]:
-            words.append(f"{leg}{name} {v:.4g} {unit} is above {high[i]:.4g} {unit}")
+        if v < low[i] or v > high[i]:
+            where, bound = ("below", low[i]) if v < low[i] else ("above", high[i])
+            told, limit = told_apart(float(v), float(bound))
+            words.append(f"{leg}{name} {told} {unit} is {where} {limit} {unit}")
     return words

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod.checks import number, one_of, positive
 from flexapod.conventions import JOINT_MODELS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import ArgumentError, PathError
+from flexapod.errors import ArgumentError, PathError, told_apart
 from flexapod.mechanics.joint_limits import check_limits, limit_excess
 from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
 from flexapod.pose import Pose
@@ -137,15 +137,16 @@ class Margins:
         index = float(self.frequencies(Pose(pose.position[None], pose.matrix[None]))[0, 0])
         required = self.required
         if not index >= required.index:
+            told, bound = told_apart(index, required.index, (5, 5))
             raise PathError(
-                f"the {name} pose has a lowest natural frequency of {index:.5g} rad/s, below the bound of "
-                f"{required.index:.5g} rad/s; no path from it can keep the bound. Lower the bound, or move the pose."
+                f"the {name} pose has a lowest natural frequency of {told} rad/s, below the bound of "
+                f"{bound} rad/s; no path from it can keep the bound. Lower the bound, or move the pose."
             )
         cond = float(condition_number(self.hexapod, pose))
         if required.condition_number is not None and not cond <= required.condition_number:
+            told, bound = told_apart(cond, required.condition_number, (5, 5))
             raise PathError(
-                f"the {name} pose has cond(H) = {cond:.5g}, above the bound of {required.condition_number:.5g}. "
-                "Raise the bound, or move the pose."
+                f"the {name} pose has cond(H) = {told}, above the bound of {bound}. Raise the bound, or move the pose."
             )
         exceeded = check_limits(self.limited, pose).exceeded
         if exceeded:

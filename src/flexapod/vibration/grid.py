@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from flexapod.checks import positive, whole
 from flexapod.conventions import TWO_PI, Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import ArgumentError, shown
+from flexapod.errors import ArgumentError, shown, told_apart
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import linearise
 from flexapod.pose import PoseLike
@@ -91,7 +91,8 @@ def band(poles: Complex, omega_min: float | None = None, omega_max: float | None
     low = _BELOW * float(size.min()) if omega_min is None else positive(omega_min, "omega_min", "rad/s")
     high = _ABOVE * float(size.max()) if omega_max is None else positive(omega_max, "omega_max", "rad/s")
     if low >= high:
-        raise ArgumentError(f"omega_min is {low:.6g} rad/s; it must be less than omega_max, {high:.6g} rad/s.")
+        one, other = told_apart(low, high, (6, 6))
+        raise ArgumentError(f"omega_min is {one} rad/s; it must be less than omega_max, {other} rad/s.")
     return low, high
 
 

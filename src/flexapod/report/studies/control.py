@@ -15,6 +15,7 @@ from flexapod import plots
 from flexapod.control.closed_loop_poles import ClosedLoop
 from flexapod.conventions import TWO_PI, printed_unit
 from flexapod.design.hexapod import Hexapod
+from flexapod.errors import told_apart
 from flexapod.mechanics.cautions import Caution
 from flexapod.pose import Pose
 from flexapod.report.numbers import pose_numbers, pose_words, shown
@@ -98,8 +99,9 @@ def cautions(f: ControlFindings) -> list[Caution]:
     """What to beware of in the loop."""
     found = []
     if f.dt > f.recommended * (1 + 1e-9):
+        told, advised = told_apart(1e3 * f.dt, 1e3 * f.recommended)
         text = (
-            f"The sampling time of {1e3 * f.dt:.4g} ms is above 2\u03c0/(20 \u03c9) = {1e3 * f.recommended:.4g} ms, "
+            f"The sampling time of {told} ms is above 2\u03c0/(20 \u03c9) = {advised} ms, "
             "with \u03c9 the highest natural frequency; sample faster."
         )
         found.append(Caution("sampling", text, {"dt": f.dt, "recommended": f.recommended}))
