@@ -140,7 +140,7 @@ fx.workspace.SweepStore.create(sys.argv[1], design, poses, chunk=30_000).run()
 def test_killed_and_resumed_is_the_same_to_the_byte(tmp_path):
     path = tmp_path / "map.zarr"
     with subprocess.Popen([sys.executable, "-c", KILLED, path]) as process:
-        while not path.exists() or not store_module.read_attributes(path).get("done"):
+        while not path.exists() or not store_module.read_description(path).done:
             assert process.poll() is None, "the run ended before it could be killed"
             time.sleep(0.01)
         process.send_signal(signal.SIGKILL)

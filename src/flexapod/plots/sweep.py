@@ -113,7 +113,7 @@ def _marks(
     if np.ma.is_masked(numbers):
         legend.append(Patch(color=NO_VALUE, label="no value"))
     if legend:
-        below = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.14), "ncols": 3}
+        below: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.14), "ncols": 3}
         ax.legend(handles=legend, fontsize=8, frameon=False, **below)
 
 

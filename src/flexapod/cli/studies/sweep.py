@@ -108,7 +108,11 @@ def _store(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], optio
     assert options.out is not None
     given: dict[str, Any] = {"quantities": quantities, "joint": options.joint, "chunk": options.chunk}
     if options.resume:
-        return SweepStore.resume(options.out, hexapod, points, **given)
+        store = SweepStore.resume(options.out, hexapod, points, **given)
+        if store.damaged:
+            more = f" and {len(store.damaged) - 1} more" if len(store.damaged) > 1 else ""
+            click.echo(f"damaged or missing in {options.out}, so computed anew: {store.damaged[0]}{more}", err=True)
+        return store
     return SweepStore.create(options.out, hexapod, points, keep_poses=options.keep_poses, **given)
 
 

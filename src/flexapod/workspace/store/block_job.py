@@ -16,8 +16,9 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import OutputError
 from flexapod.optional import needed
 from flexapod.workspace.pose_sets import PoseSet, six_numbers
-from flexapod.workspace.quantities import QUANTITIES, evaluate
+from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.store.blocks import Blocks
+from flexapod.workspace.store.integrity import Layout, array_names
 
 if TYPE_CHECKING:
     import zarr
@@ -36,6 +37,10 @@ class Job(NamedTuple):
     instruction_set: str
     token: str
     threads: int = 1
+
+    @property
+    def layout(self) -> Layout:
+        return Layout(Path(self.path), array_names(self.quantities, self.keep_poses), self.blocks)
 
 
 class Finished(NamedTuple):
@@ -105,13 +110,9 @@ def open_arrays(path: str, token: str) -> dict[str, zarr.Array]:
 
 def flush_block(job: Job, number: int) -> None:
     """Have a block's chunks on the disk itself, so that what is marked as done outlives a power cut."""
-    region = job.blocks[number].region
-    indices = [str(part.start // step) for part, step in zip(region, job.blocks.chunk, strict=True)]
-    for name in (*job.quantities, "status", *(AXES if job.keep_poses else ())):
-        last = ["0"] if name in QUANTITIES and QUANTITIES[name].trailing else []
-        chunk = Path(job.path, name, "c", *indices, *last)
-        sync(chunk)
-        sync(chunk.parent)
+    for file in job.layout.files(number):
+        sync(file)
+        sync(file.parent)
 
 
 def sync(path: Path) -> None:

@@ -26,16 +26,17 @@ class Blocks:
 
     @property
     def count(self) -> int:
-        return prod(self._parts)
+        return prod(self.parts)
 
     @property
-    def _parts(self) -> tuple[int, ...]:
+    def parts(self) -> tuple[int, ...]:
+        """How many blocks there are along each axis."""
         return tuple(-(-n // c) for n, c in zip(self.shape, self.chunk, strict=True))
 
     def __getitem__(self, number: int) -> Block:
         region: list[slice] = []
         rest = number
-        for size, step, parts in zip(self.shape[::-1], self.chunk[::-1], self._parts[::-1], strict=True):
+        for size, step, parts in zip(self.shape[::-1], self.chunk[::-1], self.parts[::-1], strict=True):
             rest, part = divmod(rest, parts)
             region.append(slice(part * step, min((part + 1) * step, size)))
         region.reverse()

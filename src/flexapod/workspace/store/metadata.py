@@ -7,17 +7,27 @@ import os
 import shutil
 from math import prod
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from flexapod.conventions import AXES
-from flexapod.errors import OutputError
+from flexapod.errors import ArgumentError, OutputError
 from flexapod.workspace.pose_sets import GridPoses
 from flexapod.workspace.quantities import PENDING, QUANTITIES, attributes, provenance
 from flexapod.workspace.store.block_job import Job, sync, zarr_package
+from flexapod.workspace.store.blocks import Blocks
+from flexapod.workspace.store.integrity import (
+    ROOT,
+    Layout,
+    array_names,
+    damaged_description,
+    description_files,
+    dtype_of,
+    sealed,
+)
 
-FORMAT = "flexapod sweep 1"
+FORMAT = "flexapod sweep 2"
 
 
 def attributes_of(job: Job) -> dict[str, Any]:
@@ -32,6 +42,7 @@ def attributes_of(job: Job) -> dict[str, Any]:
         "poses": json.dumps(job.points.identity()),
         **volume,
         "quantities": " ".join(job.quantities),
+        "shape": " ".join(map(str, job.blocks.shape)),
         "chunk": " ".join(map(str, job.blocks.chunk)),
         "keeps_poses": int(job.keep_poses),
         "coordinates": " ".join(AXES),
@@ -59,18 +70,18 @@ def _write_metadata(path: Path, job: Job) -> None:
     assert job.points is not None
     points, cut = job.points, job.blocks
     path.mkdir()
-    group = zarr_package().create_group(path, zarr_format=3, attributes={**attributes_of(job), "done": ""})
-    coordinate = {name: "float64" for name in AXES if job.keep_poses}
-    columns = {name: QUANTITIES[name].dtype for name in job.quantities} | {"status": "uint8"} | coordinate
-    for name, dtype in columns.items():
+    zarr = zarr_package()
+    group = zarr.create_group(path, zarr_format=3)
+    for name in job.layout.arrays:
         trailing = QUANTITIES[name].trailing if name in QUANTITIES else ""
+        dtype = dtype_of(name)
         group.create_array(
             name,
             shape=cut.shape + ((6,) if trailing else ()),
             chunks=cut.chunk + ((6,) if trailing else ()),
             dtype=dtype,
-            fill_value={"float64": np.nan, "uint8": PENDING, "bool": False}[dtype],
-            compressors="auto" if name == "status" else None,  # numbers of this kind hardly shrink
+            fill_value={"f": np.nan, "u": PENDING, "b": False}[dtype.kind],
+            compressors=zarr.codecs.Crc32cCodec(),  # a sum of each file; numbers of this kind hardly shrink
             dimension_names=points.dims + ((trailing,) if trailing else ()),
             attributes=_plain(attributes(name)),
         )
@@ -86,6 +97,34 @@ def _write_metadata(path: Path, job: Job) -> None:
                 dimension_names=(name,) if along else (),
                 attributes=_plain(attributes(name)),
             )
+    replace_attributes(path, {**attributes_of(job), "files": description_files(path), "done": ""})
+
+
+def mend_description(job: Job, files: dict[str, str]) -> list[str]:
+    """Put back what describes a store where it is damaged; the names of what was."""
+    path = Path(job.path)
+    damaged = damaged_description(path, files)
+    if damaged:
+        making = path.with_name(f".{path.name}.{job.token}")
+        try:
+            _write_metadata(making, job)
+            for name in damaged:
+                remove(path / name)
+                (path / name).parent.mkdir(parents=True, exist_ok=True)
+                os.replace(making / name, path / name)
+        except OSError as error:
+            raise OutputError(f"{path} cannot be mended: {error.strerror or error}. Choose another store.") from error
+        finally:
+            shutil.rmtree(making, ignore_errors=True)
+    return damaged
+
+
+def remove(path: Path) -> None:
+    """Take away a file, or a directory that stands in its place."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
 
 
 def _plain(attrs: dict[str, Any]) -> dict[str, Any]:
@@ -94,30 +133,73 @@ def _plain(attrs: dict[str, Any]) -> dict[str, Any]:
 
 def replace_attributes(path: Path, attrs: dict[str, Any]) -> None:
     """Put other attributes in the place of those of a store: the old ones are there until the new ones are whole."""
-    file, new = path / "zarr.json", path / "zarr.json.partial"
-    document = json.loads(file.read_bytes())
-    document["attributes"] = attrs
-    with new.open("w", encoding="utf-8") as stream:
-        json.dump(document, stream, indent=2)
-        stream.flush()
-        os.fsync(stream.fileno())
-    os.replace(new, file)
+    file, new = path / ROOT, path / f"{ROOT}.partial"
+    document = {"attributes": sealed(attrs), "zarr_format": 3, "node_type": "group"}
+    try:
+        with new.open("w", encoding="utf-8") as stream:
+            json.dump(document, stream, indent=2)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.replace(new, file)
+    finally:
+        new.unlink(missing_ok=True)  # where the disk was full
     sync(path)
 
 
-def read_attributes(path: str | Path) -> dict[str, Any]:
-    """Attributes of a sweep store. Raises OutputError where there is none."""
-    file = Path(path, "zarr.json")
+class Description(NamedTuple):
+    """What a store says of itself: its attributes, where its numbers lie, and the blocks that are done."""
+
+    attrs: dict[str, Any]
+    layout: Layout
+    done: frozenset[int]
+
+
+def read_description(path: str | Path) -> Description:
+    """What a store says of itself. Raises OutputError where there is none, or where it is damaged."""
+    path = Path(path)
+    attrs = _attributes(path)
     try:
-        attrs = json.loads(file.read_bytes())["attributes"]
+        shape, chunk = (tuple(map(int, attrs[key].split())) for key in ("shape", "chunk"))
+        cut = Blocks(shape, chunk)
+        if not 0 < len(shape) == len(chunk) or min(*shape, *chunk) < 1:
+            raise ValueError(f"blocks of {chunk} of {shape} poses")
+        layout = Layout(path, array_names(_names_in(attrs["quantities"]), bool(attrs["keeps_poses"])), cut)
+        done = frozenset(numbers_in(attrs["done"], cut.count) if "done" in attrs else range(cut.count))
+    except (KeyError, ValueError, TypeError, AttributeError, ArgumentError) as error:
+        raise _broken(path, error) from error
+    return Description(attrs, layout, done)
+
+
+def _names_in(text: Any) -> tuple[str, ...]:
+    """Names of quantities in an attribute."""
+    names = tuple(text.split())
+    if not names or any(name not in QUANTITIES for name in names):
+        raise ValueError(f"quantities {text!r}")
+    return names
+
+
+def _attributes(path: Path) -> dict[str, Any]:
+    try:
+        document = json.loads((path / ROOT).read_bytes())
+        attrs = document["attributes"]
         found = attrs["format"]
-    except FileNotFoundError:
-        raise OutputError(f"there is no sweep at {path} to read or to resume (no {file.name} in it).") from None
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (FileNotFoundError, NotADirectoryError):
+        raise OutputError(f"there is no sweep at {path} to read or to resume (no {ROOT} in it).") from None
+    except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
         raise OutputError(f"{path} is no sweep of Flexapod ({type(error).__name__}: {error}).") from error
     if found != FORMAT:
         raise OutputError(f"{path} has format {found!r}; this version reads {FORMAT!r}.")
+    kind = (document.get("zarr_format"), document.get("node_type"), sorted(document))
+    if kind != (3, "group", ["attributes", "node_type", "zarr_format"]) or sealed(attrs) != attrs:
+        raise _broken(path, "its sum does not agree")
     return dict(attrs)
+
+
+def _broken(path: Path, reason: object) -> OutputError:
+    return OutputError(
+        f"{path} is damaged: {ROOT}, which says what the store holds, is not what was written ({reason}). Put back a "
+        "copy of that file, or remove the store and sweep anew."
+    )
 
 
 _COMPARED = {
@@ -159,10 +241,13 @@ def ranges(numbers: set[int]) -> str:
     return ",".join(text)
 
 
-def numbers_in(text: str) -> set[int]:
-    """The numbers of which `ranges` gives the text."""
+def numbers_in(text: str, count: int) -> set[int]:
+    """The numbers of which `ranges` gives the text. Raises ValueError for another text, or one not below `count`."""
     found: set[int] = set()
     for part in filter(None, text.split(",")):
         first, _, last = part.partition("-")
-        found.update(range(int(first), int(last or first) + 1))
+        low, high = int(first), int(last or first)
+        if not 0 <= low <= high < count:
+            raise ValueError(f"blocks {part} of {count}")
+        found.update(range(low, high + 1))
     return found

@@ -2,7 +2,8 @@
 
 A block counts when its chunks are on the disk and the store's metadata, replaced as a whole after that, name it. So
 nothing that ends a run, a power cut included, leaves half a block that passes for a whole one; and since a block's
-numbers depend on nothing but its number, a run in pieces writes the bytes of a run in one go.
+numbers depend on nothing but its number, a run in pieces writes the bytes of a run in one go. Whatever damages a store
+later is found by sums (`integrity.py`): it is told where it is read, and computed anew where the run is taken up.
 """
 
 from __future__ import annotations
@@ -29,13 +30,15 @@ from flexapod.workspace.quantities import QUANTITIES, chosen
 from flexapod.workspace.region import RegionLike, poses_of
 from flexapod.workspace.store.block_job import Job, Workers, zarr_package
 from flexapod.workspace.store.blocks import Blocks, blocks
+from flexapod.workspace.store.integrity import damage, damaged_description
 from flexapod.workspace.store.metadata import (
     attributes_of,
     make_store,
-    numbers_in,
+    mend_description,
     ranges,
-    read_attributes,
+    read_description,
     refuse_other,
+    remove,
     replace_attributes,
 )
 from flexapod.workspace.store.one_writer import one_writer, remove_partial
@@ -70,6 +73,8 @@ class SweepStore:
     ----------
     state : Progress
         How far it is: poses that are done, in all, and done before this run, and poses of this run by status.
+    damaged : tuple of str
+        Files that `resume` found missing or not as they were written. Their blocks are no longer done.
 
     See Also
     --------
@@ -87,8 +92,8 @@ class SweepStore:
     26.4
     """
 
-    def __init__(self, job: Job, done: set[int]) -> None:
-        self.job, self.done = job, done
+    def __init__(self, job: Job, done: set[int], files: dict[str, str], damaged: tuple[str, ...] = ()) -> None:
+        self.job, self.done, self._files, self.damaged = job, done, files, damaged
         self.state = self._progress(self._poses_done(), Counter())
 
     @classmethod
@@ -143,7 +148,7 @@ class SweepStore:
                 f"quantity; a store may have {MOST_BLOCKS}. Leave chunk out, or make it larger."
             )
         make_store(job)
-        return cls(job, set())
+        return cls(job, set(), read_description(path).attrs["files"])
 
     @classmethod
     def resume(
@@ -172,20 +177,29 @@ class SweepStore:
         Returns
         -------
         SweepStore
-            The store, with what is done.
+            The store, with what is done. Every file is read and compared with its sum: blocks of which a file is
+            missing or damaged are computed again by `run`.
 
         Raises
         ------
         OutputError
             If there is no store, or the design, the poses, the quantities, the joint model, the version or the
-            processor's instructions are not those it was begun with.
+            processor's instructions are not those it was begun with; or if what it says of itself is damaged.
         """
         points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities, hexapod)
-        attrs = read_attributes(path)
-        cut = Blocks(points.shape, tuple(map(int, attrs["chunk"].split())))
-        job = _job(path, hexapod, points, wanted, joint, cut=cut, keep=bool(attrs["keeps_poses"]))
+        attrs, layout, done = read_description(path)
+        keep = bool(attrs["keeps_poses"])
+        job = _job(path, hexapod, points, wanted, joint, cut=Blocks(points.shape, layout.blocks.chunk), keep=keep)
         refuse_other(path, attrs, attributes_of(job), chunk)
-        return cls(job, numbers_in(attrs.get("done", "")) if "done" in attrs else set(range(cut.count)))
+        with one_writer(job.path):
+            files = mend_description(job, attrs["files"])
+            unsound = job.layout.damaged(range(job.blocks.count), thorough=True)
+            for number in unsound:
+                for file in job.layout.files(number):
+                    remove(file)
+        whole = set(range(job.blocks.count)) - unsound.keys()  # marked as done or not: a power cut comes between
+        wrong = (*files, *(name for number in sorted(done & unsound.keys()) for name in unsound[number]))
+        return cls(job, whole, attrs["files"], wrong)
 
     @property
     def complete(self) -> bool:
@@ -244,6 +258,7 @@ class SweepStore:
                 self._mark()
             except OSError as error:
                 with suppress(OSError):
+                    self._make_room()
                     self._mark()
                 if isinstance(error, OutputError):
                     raise
@@ -263,10 +278,18 @@ class SweepStore:
     def _progress(self, before: int, seen: Counter[int]) -> Progress:
         return Progress(before + seen.total(), prod(self.job.blocks.shape), before, dict(seen))
 
+    def _make_room(self) -> None:
+        """Take away what is not whole, so that even a full disk takes down which blocks are done."""
+        remove_partial(self.job.path)
+        for number in range(self.job.blocks.count):
+            if number not in self.done:
+                for file in self.job.layout.files(number):
+                    file.unlink(missing_ok=True)
+
     def _mark(self) -> None:
         """Write down which blocks are done; when all are, that the store is complete."""
-        attrs = attributes_of(self.job) | ({} if self.complete else {"done": ranges(self.done)})
-        replace_attributes(Path(self.job.path), attrs)
+        attrs = {**attributes_of(self.job), "files": self._files}
+        replace_attributes(Path(self.job.path), attrs if self.complete else {**attrs, "done": ranges(self.done)})
 
 
 def _job(
@@ -310,7 +333,8 @@ def open_sweep(path: str | Path) -> xr.Dataset:
     Raises
     ------
     OutputError
-        If there is no such store.
+        If there is no such store, or it is damaged. Sizes of files are looked at when it is opened, and every file is
+        compared with its sum when it is read.
 
     See Also
     --------
@@ -329,7 +353,14 @@ def open_sweep(path: str | Path) -> xr.Dataset:
     """
     import xarray as xr
 
-    read_attributes(path)
-    zarr_package()
-    found = xr.open_zarr(path, consolidated=False, chunks=None)
-    return found[[name for name in (*QUANTITIES, "status") if name in found]]
+    zarr = zarr_package()
+    from flexapod.workspace.store.guarded import Guarded
+
+    attrs, layout, done = read_description(path)
+    files = damaged_description(layout.path, attrs["files"])
+    files += [file for names in layout.damaged(sorted(done), thorough=False).values() for file in names]
+    if files:
+        raise damage(layout.path, files)
+    guarded = Guarded(zarr.storage.LocalStore(layout.path, read_only=True), layout, done)
+    found = xr.open_zarr(guarded, consolidated=False, chunks=None)
+    return found[[*(name for name in QUANTITIES if name in layout.arrays), "status"]]
