@@ -12,6 +12,7 @@ from flexapod import _core
 from flexapod._suggestions import Suggesting, suggests
 from flexapod.conventions import Array
 from flexapod.errors import FlexapodError, PoseError, shown
+from flexapod.rotations import FIXED, angles_of_matrix, checked_matrices, matrix_of_angles, rpy_matrix
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -34,30 +35,12 @@ def vectors(value: ArrayLike, name: str, width: int = 3, error_type: type[Flexap
     return array
 
 
-_ROTATION = (
-    "give a scipy Rotation or matrices of shape (..., 3, 3). From angles: Pose.from_rpy(x, y, z, roll, pitch, yaw)."
-)
-
-
-def _rotation_matrices(rotation: Any) -> Array:
-    matrix = rotation.as_matrix() if hasattr(rotation, "as_matrix") else rotation
-    try:
-        matrix = np.array(matrix, dtype=np.float64)  # a copy: a pose does not change with its maker's arrays
-    except (TypeError, ValueError) as error:
-        raise PoseError(f"rotation is {shown(rotation)}; {_ROTATION}") from error
-    if matrix.ndim < 2 or matrix.shape[-2:] != (3, 3):
-        raise PoseError(f"rotation has shape {matrix.shape}; {_ROTATION}")
-    skew = np.abs(matrix @ np.swapaxes(matrix, -1, -2) - np.eye(3)).max(initial=0.0)
-    if not skew < 1e-9 or np.any(np.linalg.det(matrix) < 0):
-        raise PoseError("rotation is not a rotation matrix: R R^T must be the identity to 1e-9 and det R be +1.")
-    return matrix
-
-
 _WORDS = dict.fromkeys("xyz", "position") | {
-    **dict.fromkeys(("roll", "pitch", "yaw", "angles", "euler", "orientation"), "rpy (roll, pitch, yaw), or rotation"),
+    **dict.fromkeys(("roll", "pitch", "yaw", "orientation"), "rpy (roll, pitch, yaw), or rotation"),
+    **dict.fromkeys(("euler", "as_euler"), "angles(order)"),
     **dict.fromkeys(("quaternion", "quat", "as_quat"), "rotation.as_quat()"),
     **dict.fromkeys(("as_matrix", "rotation_matrix", "R"), "matrix"),
-    **dict.fromkeys(("from_euler", "from_angles", "from_xyzrpy"), "from_rpy"),
+    **dict.fromkeys(("from_euler", "from_xyzrpy"), "from_rpy, or from_angles for other orders of rotation"),
     "from_rotation": "Pose(position, rotation)",
 }
 
@@ -117,7 +100,7 @@ class Pose(metaclass=Suggesting):
                 "position has six numbers; it must have three, x, y, z in m. With angles: "
                 "Pose.from_rpy(x, y, z, roll, pitch, yaw)."
             ) from None
-        R = np.eye(3) if rotation is None else _rotation_matrices(rotation)
+        R = np.eye(3) if rotation is None else checked_matrices(rotation)
         try:
             shape = np.broadcast_shapes(p.shape[:-1], R.shape[:-2])
         except ValueError:
@@ -166,6 +149,65 @@ class Pose(metaclass=Suggesting):
             raise PoseError(f"x, y, z, roll, pitch and yaw must be numbers, or arrays that fit: {error}") from error
         six = vectors(np.stack(numbers, axis=-1), "pose", 6)
         return Pose(six[..., :3], rpy_matrix(np.radians(six[..., 3:]) if degrees else six[..., 3:]))
+
+    @classmethod
+    def from_angles(
+        cls,
+        position: ArrayLike,
+        angles: ArrayLike,
+        order: str = FIXED,
+        *,
+        degrees: bool = False,
+        pivot: ArrayLike = (0.0, 0.0, 0.0),
+    ) -> Pose:
+        """Make a pose from a position and three angles of any order, turned about any point of the body.
+
+        Parameters
+        ----------
+        position : array_like
+            Position of the reference point before the body is turned, m, (..., 3).
+        angles : array_like
+            Angles about the axes of `order`, the first turn first, (..., 3), rad.
+        order : str
+            Axes of the three turns in SciPy's words: "xyz" about fixed axes (roll, pitch, yaw), "XYZ" about moving
+            axes, "ZXZ" for Euler's angles, and so on.
+        degrees : bool
+            Whether the angles are given in degrees.
+        pivot : array_like
+            Point of the body, in its own axes, m, (..., 3), that the turn leaves in place: the reference point goes to
+            position + (E - R) pivot.
+
+        Returns
+        -------
+        Pose
+            One pose, or as many as the numbers' common shape has.
+
+        Raises
+        ------
+        PoseError
+            For an unknown order, what is not a finite number, or shapes that do not fit.
+        """
+        place, turn, point = vectors(position, "position"), vectors(angles, "angles"), vectors(pivot, "pivot")
+        matrix = matrix_of_angles(np.radians(turn) if degrees else turn, order)
+        try:
+            return cls(place + point - np.einsum("...ij,...j->...i", matrix, point), matrix)
+        except ValueError:
+            raise PoseError("position, angles and pivot do not fit: their leading axes must be equal or 1.") from None
+
+    def angles(self, order: str = FIXED, *, degrees: bool = False) -> Array:
+        """Give the three angles, rad or degrees, (..., 3), that `from_angles` takes for this orientation."""
+        found = self.rpy if order == FIXED else angles_of_matrix(self.matrix, order)
+        return np.degrees(found) if degrees else found
+
+    def position_about(self, pivot: ArrayLike) -> Array:
+        """Give the position, m, (..., 3), that `from_angles` takes with this pivot for the same pose."""
+        point = vectors(pivot, "pivot")
+        return self.position - point + np.einsum("...ij,...j->...i", self.matrix, point)
+
+    def displaced(self, by: PoseLike) -> Pose:
+        """Give the pose displaced by another: positions add, and `by` turns it about the outer frame's axes."""
+        by = as_pose(by, "by")
+        return Pose(self.position + by.position, by.matrix @ self.matrix)
 
     @classmethod
     def trusted(cls, position: Array, matrix: Array) -> Pose:
@@ -221,35 +263,6 @@ class Pose(metaclass=Suggesting):
         return f"Pose(x={x:.6g} y={y:.6g} z={z:.6g} m, roll={roll:.5g} pitch={pitch:.5g} yaw={yaw:.5g} deg)"
 
 
-def rpy_matrix(rpy: ArrayLike) -> Array:
-    """Rotation matrices (..., 3, 3) of roll, pitch, yaw (..., 3) in rad about the fixed axes x, y, z, in this order."""
-    angles = np.asarray(rpy, dtype=np.float64)
-    (cr, cp, cy), (sr, sp, sy) = (np.moveaxis(f(angles), -1, 0) for f in (np.cos, np.sin))
-    rows = [
-        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-        [-sp, cp * sr, cp * cr],
-    ]
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-
-
-def skew(vector: ArrayLike) -> Array:
-    """Matrices (..., 3, 3) with skew(a) b = a x b, of vectors (..., 3)."""
-    x, y, z = np.moveaxis(np.asarray(vector, dtype=np.float64), -1, 0)
-    zero = np.zeros_like(x)
-    rows = ([zero, -z, y], [z, zero, -x], [-y, x, zero])
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-
-
-def rotation_from_vector(vector: ArrayLike) -> Array:
-    """Rotation matrices (..., 3, 3) of rotation vectors (..., 3) in rad (Rodrigues), without loading SciPy."""
-    v = np.asarray(vector, dtype=np.float64)
-    angle = np.linalg.norm(v, axis=-1, keepdims=True)
-    K = skew(v / np.where(angle > 0, angle, 1.0))
-    turned = angle[..., None]
-    return np.eye(3) + np.sin(turned) * K + (1 - np.cos(turned)) * K @ K
-
-
 def as_pose(value: Any, name: str = "pose") -> Pose:
     """A Pose from a Pose, or from x, y, z (m), roll, pitch, yaw (rad) as (..., 6) numbers; or PoseError."""
     if isinstance(value, Pose):
@@ -260,12 +273,6 @@ def as_pose(value: Any, name: str = "pose") -> Pose:
         )
     six = vectors(value, name, 6)
     return Pose(six[..., :3], rpy_matrix(six[..., 3:]))
-
-
-def orthonormal(matrix: Array) -> Array:
-    """The rotation nearest to a matrix that is one to rounding."""
-    u, _, vt = np.linalg.svd(matrix)
-    return u @ vt
 
 
 #: Name, numbers and shape of each part of a motion as the core has it, in its order; the first two are the pose.

@@ -18,6 +18,7 @@ ORDER = [
     "checks",
     "optional",
     "tables",
+    "rotations",
     "pose",
     "design",
     "mechanics",

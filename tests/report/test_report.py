@@ -14,11 +14,11 @@ import flexapod as fx
 from flexapod import plots
 from flexapod.cli import main
 from flexapod.plots import style
-from flexapod.pose import rotation_from_vector
 from flexapod.report import gather
 from flexapod.report import page as whole
 from flexapod.report.numbers import brief, shown
 from flexapod.report.studies.machine import study
+from flexapod.rotations import rotation_from_vector
 
 matplotlib.use("Agg")
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.pose import rotation_from_vector
+from flexapod.rotations import rotation_from_vector
 from flexapod.simulation.integrator import equations
 from flexapod.simulation.run import SimulationRun
 

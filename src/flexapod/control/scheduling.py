@@ -21,7 +21,8 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError, SingularPoseError
 from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, single_pose, wrench
 from flexapod.mechanics.linearisation import linearise
-from flexapod.pose import Pose, PoseLike, rpy_matrix
+from flexapod.pose import Pose, PoseLike
+from flexapod.rotations import rpy_matrix
 from flexapod.workspace.pose_sets import PoseSet
 from flexapod.workspace.region import RegionLike, poses_of
 from flexapod.workspace.sweeping import coordinates

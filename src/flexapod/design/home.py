@@ -12,7 +12,8 @@ from flexapod.conventions import Array
 from flexapod.design.schema import KEYS
 from flexapod.design.value_checks import check_value
 from flexapod.errors import DesignError, shown
-from flexapod.pose import Pose, PoseLike, as_pose, rpy_matrix
+from flexapod.pose import Pose, PoseLike, as_pose
+from flexapod.rotations import rpy_matrix
 
 
 def home_of(values: Mapping[str, Any]) -> Home | None:

@@ -14,7 +14,8 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, KinematicsError, PoseError, shown
 from flexapod.mechanics.inputs import as_hexapod
 from flexapod.mechanics.kinematics import home_pose, platform_size, sides
-from flexapod.pose import Pose, PoseLike, as_pose, orthonormal, unpack, vectors
+from flexapod.pose import Pose, PoseLike, as_pose, unpack, vectors
+from flexapod.rotations import orthonormal
 
 _TOLERANCE = 1e-11  # of the longest leg: what a length may be off
 _POSE = Pose((0.0, 0.0, 0.0)).packed.size  # numbers of a pose in the core

@@ -18,7 +18,8 @@ from flexapod.mechanics.springs import spring_matrix
 from flexapod.mechanics.state_space import StateSpace, state_space_of
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.optional import needed
-from flexapod.pose import PoseLike, skew, unpack
+from flexapod.pose import PoseLike, unpack
+from flexapod.rotations import skew
 
 if TYPE_CHECKING:
     import control

@@ -12,7 +12,8 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import as_joint, single_pose, states
 from flexapod.mechanics.modes import natural_modes
 from flexapod.mechanics.springs import BY_LEG, spring_matrix
-from flexapod.pose import PoseLike, skew
+from flexapod.pose import PoseLike
+from flexapod.rotations import skew
 
 
 class EnergyShares(NamedTuple):

@@ -15,7 +15,8 @@ from flexapod.mechanics.assembly import forward_kinematics
 from flexapod.mechanics.dynamics import inverse_dynamics
 from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, pose_or_home, single_pose, states, wrench
 from flexapod.mechanics.kinematics import inverse_kinematics
-from flexapod.pose import Pose, PoseLike, as_pose, orthonormal, unpack
+from flexapod.pose import Pose, PoseLike, as_pose, unpack
+from flexapod.rotations import orthonormal
 
 
 class Equilibrium(NamedTuple):

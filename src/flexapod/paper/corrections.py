@@ -27,7 +27,8 @@ from flexapod.paper.reference_answers import Answer, answers, disagreement
 from flexapod.paper.scatter import CASES
 from flexapod.paper.vibration import PRINTED
 from flexapod.plots.style import BLUE, ORANGE
-from flexapod.pose import Motion, Pose, rpy_matrix
+from flexapod.pose import Motion, Pose
+from flexapod.rotations import rpy_matrix
 from flexapod.workspace.sampling import random_poses
 from flexapod.workspace.sweeping import sweep
 

@@ -29,7 +29,7 @@ from flexapod.mechanics.modes import advised_sampling_time
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.frequencies import home
 from flexapod.plots.style import ORANGE, dress, new_figure
-from flexapod.pose import skew
+from flexapod.rotations import skew
 
 DESIGN = "mukherjee-ii"
 FRICTION = 3000.0  # N s/m in each leg: damping ratios of 1 to 30 %

@@ -9,7 +9,8 @@ from numpy.polynomial import polynomial
 
 from flexapod.conventions import Array
 from flexapod.errors import PathError
-from flexapod.pose import Motion, Pose, skew
+from flexapod.pose import Motion, Pose
+from flexapod.rotations import skew
 
 _WIDEST = 0.9 * pi  # of a turn from the middle orientation: the rotation vector's chart ends at pi
 

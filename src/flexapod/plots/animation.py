@@ -24,7 +24,8 @@ from flexapod.mechanics.mode_shapes import describe_modes
 from flexapod.mechanics.modes import natural_modes
 from flexapod.optional import needed
 from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, VIEW, entitle
-from flexapod.pose import Pose, PoseLike, as_pose, rotation_from_vector
+from flexapod.pose import Pose, PoseLike, as_pose
+from flexapod.rotations import rotation_from_vector
 
 if TYPE_CHECKING:
     from matplotlib.animation import AbstractMovieWriter

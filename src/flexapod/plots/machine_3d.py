@@ -13,7 +13,8 @@ from flexapod.mechanics.inputs import as_hexapod, single_pose
 from flexapod.mechanics.kinematics import force_transformation
 from flexapod.mechanics.modes import NaturalModes
 from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, SHORTENED, STRETCHED, TRIAD, VIEW
-from flexapod.pose import Pose, PoseLike, rotation_from_vector
+from flexapod.pose import Pose, PoseLike
+from flexapod.rotations import rotation_from_vector
 
 if TYPE_CHECKING:
     from mpl_toolkits.mplot3d.axes3d import Axes3D

@@ -11,7 +11,8 @@ from flexapod.conventions import AXES, LEGS, Array, Complex, JointModel, in_mixe
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import ZERO, single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
-from flexapod.pose import Pose, PoseLike, skew
+from flexapod.pose import Pose, PoseLike
+from flexapod.rotations import skew
 from flexapod.vibration.grid import asked, grid_around
 from flexapod.vibration.harmonic import SteadyResponse, complex_poles, loss_factors, steady_response
 
