@@ -228,7 +228,7 @@ class Pose(metaclass=Suggesting):
         """Roll, pitch, yaw in rad, (..., 3): fixed axes x, y, z; pitch within +-pi/2, yaw 0 where pitch is +-pi/2."""
         R = self.matrix
         pitch = np.arctan2(-R[..., 2, 0], np.hypot(R[..., 0, 0], R[..., 1, 0]))
-        level = np.hypot(R[..., 0, 0], R[..., 1, 0]) > 1e-12
+        level = ~(np.hypot(R[..., 0, 0], R[..., 1, 0]) <= 1e-12)  # NaN stays NaN
         yaw = np.where(level, np.arctan2(R[..., 1, 0], R[..., 0, 0]), 0.0)
         steep = np.arctan2(-R[..., 1, 2], R[..., 1, 1])
         roll = np.where(level, np.arctan2(R[..., 2, 1], R[..., 2, 2]), steep)

@@ -10,7 +10,7 @@ from flexapod import _core
 from flexapod.conventions import LEG_PAIRS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError, told_apart
-from flexapod.mechanics.inputs import States, pose_or_home, states
+from flexapod.mechanics.inputs import States, states
 from flexapod.mechanics.kinematics import force_transformation, home_pose, inverse_kinematics
 from flexapod.pose import PoseLike
 
@@ -186,14 +186,14 @@ def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLi
     >>> bool(check.ok), check.exceeded[0]
     (False, 'leg 1: length 3.723 m is above 3.261 m')
     """
-    pose = pose_or_home(hexapod, pose)
-    excess = limit_excess(hexapod, pose, base=base)
-    ok = np.ones(pose.shape, dtype=bool)
+    shape = states(hexapod, pose, base).shape
+    ok = np.ones(shape, dtype=bool)
     words: list[str] = []
-    for quantity in excess:
+    for quantity in limit_excess(hexapod, pose, base=base):
         _, value, least, most = quantity
-        ok &= ((value >= least) & (value <= most)).reshape(*pose.shape, -1).all(axis=-1)
-        if not pose.shape:
+        kept = np.asarray((value >= least) & (value <= most))
+        ok &= kept.all(axis=-1) if kept.ndim > len(shape) else kept  # of each leg, or of all of them
+        if not shape:
             words += in_words(quantity)
     return LimitsCheck(ok, tuple(words))
 

@@ -31,6 +31,9 @@ class Trajectory:
         ("free"), or goes on smoothly from the last waypoint, which is the first again ("periodic").
     weights : array_like, optional
         How much each waypoint matters in the means of `path_index`, (n,), >= 0; 1 by default.
+    origin : Pose or array_like, optional
+        Pose that the waypoints are measured from, such as `home_pose(hexapod)` for a motion about home: positions add,
+        and angles turn it about the base's axes. Left out, waypoints are poses in the base frame.
 
     Attributes
     ----------
@@ -68,9 +71,17 @@ class Trajectory:
     """
 
     def __init__(
-        self, waypoints: PoseLike, times: ArrayLike, *, ends: Ends = "rest", weights: ArrayLike | None = None
+        self,
+        waypoints: PoseLike,
+        times: ArrayLike,
+        *,
+        ends: Ends = "rest",
+        weights: ArrayLike | None = None,
+        origin: PoseLike | None = None,
     ) -> None:
         poses = as_pose(waypoints, "waypoints")
+        if origin is not None:
+            poses = as_pose(origin, "origin").displaced(poses)
         if len(poses.shape) != 1 or poses.shape[0] < 2:
             raise PathError(f"waypoints has batch axes {poses.shape}; a row of at least two poses is needed.")
         self.waypoints = poses

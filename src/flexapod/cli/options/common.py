@@ -71,14 +71,73 @@ set_option = click.option(
     metavar="KEY=VALUE",
     help="Change a number of the design, as platform.mass=400 or legs.stiffness_N_per_um[2]=10. Repeatable.",
 )
-pose_option = click.option(
-    "--pose",
-    type=float,
-    nargs=6,
-    default=None,
-    metavar="X Y Z ROLL PITCH YAW",
-    help="Pose of the platform in the base frame: m, and degrees about the fixed axes x, y, z. Default: home pose.",
-)
+_TURNS = "flexapod.turns"  # in a context's meta: the order and the pivot of its poses
+
+
+def _keep(context: click.Context, parameter: click.Parameter, value: Any) -> None:
+    if parameter.name == "rotation_order" and value is not None:
+        from flexapod.rotations import check_order
+
+        check_order(value)
+    context.meta.setdefault(_TURNS, {})[parameter.name] = value
+
+
+def turns() -> tuple[str | None, tuple[float, float, float] | None]:
+    """The command line's --rotation-order and --pivot; None each where it is not given."""
+    context = click.get_current_context(silent=True)
+    given = {} if context is None else context.meta.get(_TURNS, {})
+    return given.get("rotation_order"), given.get("pivot")
+
+
+def _as_rpy(context: click.Context, _: click.Parameter, six: tuple[float, ...] | None) -> tuple[float, ...] | None:
+    """x, y, z, roll, pitch, yaw (m, deg) of a pose in the context's order and about its pivot."""
+    given = context.meta[_TURNS]
+    order, pivot = given["rotation_order"], given["pivot"]
+    if six is None or (order is None and pivot is None):
+        return six
+    from flexapod.pose import Pose
+
+    pose = Pose.from_angles(six[:3], six[3:], order or "xyz", degrees=True, pivot=pivot or (0.0, 0.0, 0.0))
+    return (*pose.position.tolist(), *(math.degrees(angle) for angle in pose.rpy.tolist()))
+
+
+def pose_named(*names: str, help: str) -> Callable[[Any], Any]:
+    """An option whose six numbers are a pose, as `rotation_options` beside it say; None where it is not given."""
+    metavar = "X Y Z ROLL PITCH YAW"
+    return click.option(*names, type=float, nargs=6, default=None, metavar=metavar, callback=_as_rpy, help=help)
+
+
+def rotation_options(function: Any) -> Any:
+    """--rotation-order and --pivot, for all options of `pose_named`."""
+    early: dict[str, Any] = {"is_eager": True, "expose_value": False, "callback": _keep}
+    order = click.option(
+        "--rotation-order",
+        metavar="ORDER",
+        help="Axes of the three angles of poses, as SciPy names them: xyz (default) about fixed axes, XYZ about moving "
+        "axes, ZXZ, and so on; the first turn first.",
+        **early,
+    )
+    pivot = click.option(
+        "--pivot",
+        type=float,
+        nargs=3,
+        default=None,
+        metavar="X Y Z",
+        help="Point of the platform, in its frame, m, that the angles of poses turn it about. Default: its origin.",
+        **early,
+    )
+    return order(pivot(function))
+
+
+def pose_option(function: Any) -> Any:
+    """--pose, with what says how it is turned."""
+    pose = pose_named(
+        "--pose",
+        help="Pose of the platform in the base frame: m, and degrees about the fixed axes x, y, z. Default: home pose.",
+    )
+    return pose(rotation_options(function))
+
+
 joint_option = click.option(
     "--joint",
     type=click.Choice(JOINT_MODELS),

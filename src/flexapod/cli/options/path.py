@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -12,8 +12,6 @@ from flexapod.cli.options import common
 
 if TYPE_CHECKING:
     from flexapod.conventions import JointModel
-
-_POSE: dict[str, Any] = {"type": float, "nargs": 6, "default": None, "metavar": "X Y Z ROLL PITCH YAW"}
 
 
 @dataclass(frozen=True)
@@ -25,6 +23,7 @@ class Options:
     joint: JointModel
     as_json: bool
     file: Path | None
+    from_home: bool
     start: tuple[float, ...] | None
     goal: tuple[float, ...] | None
     bound: float | None
@@ -43,8 +42,10 @@ class Options:
 _positive = click.FloatRange(min=0, min_open=True)
 path_options = common.stack(
     click.argument("file", type=click.Path(path_type=Path, dir_okay=False), required=False),
-    click.option("--from", "start", **_POSE, help="Plan from this pose (m, degrees)."),
-    click.option("--to", "goal", **_POSE, help="Plan to this pose (m, degrees)."),
+    common.pose_named("--from", "start", help="Plan from this pose (m, degrees)."),
+    common.pose_named("--to", "goal", help="Plan to this pose (m, degrees)."),
+    common.rotation_options,
+    click.option("--from-home", is_flag=True, help="Measure the poses of FILE, --from and --to from the home pose."),
     click.option("--bound", type=_positive, metavar="RAD_S", help="Least natural frequency that the path should keep."),
     click.option(
         "--ends",

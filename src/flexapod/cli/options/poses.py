@@ -10,10 +10,9 @@ from typing import Any
 import click
 import numpy as np
 
+from flexapod.cli.options import pose_columns
 from flexapod.conventions import AXES, ROTATIONS, Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.units import QUANTITIES
-from flexapod.errors import ArgumentError
 from flexapod.mechanics.kinematics import home_pose
 from flexapod.tables import naming, parse_table, read_text
 from flexapod.workspace.box import Box
@@ -25,7 +24,8 @@ from flexapod.workspace.sampling import pose_grid
 _MOST_VALUES = 10**7  # of one axis of a grid
 _FORM = (
     "Give rows of six columns x,y,z,roll,pitch,yaw (m, degrees), with or without these titles; titles may name other "
-    "units, as x_mm or roll_rad, and stand in any order."
+    "units, as x_mm or roll_rad, and stand in any order; columns rotation_order, pivot_x, pivot_y and pivot_z say "
+    "how they turn."
 )
 
 
@@ -96,14 +96,9 @@ def _read_csv(path: Path) -> Array:
     text = read_text(path)
     swept = ["status", *(title for name in SWEPT for title in table_titles(name))]
     with naming(path):
-        table = parse_table(text, {name: name for name in (*AXES, *swept)}, _FORM, titles=AXES)
-        columns = {column.name: column for column in table.columns}
-        if missing := [axis for axis in AXES if axis not in columns]:
-            raise ArgumentError(f"there is no column {', '.join(missing)}. {_FORM}")
-        units = {axis: QUANTITIES["angle" if axis in ROTATIONS else "length"] for axis in AXES}
-        bare = None if len(columns) > len(AXES) else "deg"
-        default = {axis: bare if axis in ROTATIONS else "m" for axis in AXES}
-        return np.column_stack([table.numbers(columns[a], units[a], default[a], finite=False) for a in AXES])
+        table = parse_table(text, {name: name for name in swept} | pose_columns.TITLES, _FORM, titles=AXES)
+        bare = None if any(column.name not in pose_columns.TITLES for column in table.columns) else "deg"
+        return pose_columns.six(table, _FORM, bare, finite=False)
 
 
 def _parts(option: str, texts: Iterable[str]) -> dict[str, str]:

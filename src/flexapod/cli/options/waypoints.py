@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from flexapod.conventions import AXES, ROTATIONS, TRANSLATIONS
+from flexapod.cli.options import pose_columns
+from flexapod.conventions import AXES
 from flexapod.design.units import QUANTITIES
 from flexapod.errors import ArgumentError
 from flexapod.paths.trajectory import Ends, Trajectory
@@ -14,23 +15,21 @@ from flexapod.pose import Pose
 from flexapod.tables import naming, parse_table, read_text
 
 COLUMNS = ("t", *AXES)
-NAMES = {"t": "t", "time": "t", "weight": "weight", **{axis: axis for axis in AXES}}
+NAMES = {"t": "t", "time": "t", "weight": "weight", **pose_columns.TITLES}
 FORM = f"Its first line must be {','.join(COLUMNS)} and may end in ,weight (s, m, degrees, or units as in x_mm)."
 
 
-def read(file: Path, ends: Ends) -> Trajectory:
-    """The trajectory in a file. Raises ArgumentError, with the line, if it is not such a file."""
+def read(file: Path, ends: Ends, origin: Pose | None = None) -> Trajectory:
+    """The trajectory in a file, from an origin. Raises ArgumentError, with the line, if it is not such a file."""
     text = read_text(file)
     with naming(file):
         table = parse_table(text, NAMES, FORM)
         columns = {column.name: column for column in table.columns}
-        if missing := [name for name in COLUMNS if name not in columns]:
-            raise ArgumentError(f"there is no column {', '.join(missing)}. {FORM}")
+        if "t" not in columns:
+            raise ArgumentError(f"there is no column t. {FORM}")
         times = table.numbers(columns["t"], QUANTITIES["time"])
-        place = [table.numbers(columns[name], QUANTITIES["length"]) for name in TRANSLATIONS]
-        turn = [table.numbers(columns[name], QUANTITIES["angle"], "deg") for name in ROTATIONS]
         weights = table.numbers(columns["weight"]) if "weight" in columns else None
-        return Trajectory(Pose.from_rpy(*place, *turn), times, ends=ends, weights=weights)
+        return Trajectory(pose_columns.six(table, FORM), times, ends=ends, weights=weights, origin=origin)
 
 
 def written(path: Trajectory) -> str:

@@ -5,17 +5,20 @@ from __future__ import annotations
 import math
 
 import click
+import numpy as np
 
 from flexapod.cli.options import common, waypoints
 from flexapod.cli.options.path import Options
 from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
+from flexapod.errors import PoseError, SingularPoseError
 from flexapod.paths.analysis import path_index
 from flexapod.paths.leg_speed import LegSpeed
 from flexapod.paths.loads import path_loads
 from flexapod.paths.plan import Plan, plan_slice
 from flexapod.paths.planning import plan_path
 from flexapod.paths.requirements import PathRequirements
+from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
 from flexapod.report.studies.path import PathFindings, study
 from flexapod.report.study import Study
@@ -41,8 +44,11 @@ def _is_file(options: Options) -> bool:
 
 def _given(hexapod: Hexapod, options: Options) -> PathFindings:
     assert options.file is not None
-    path = waypoints.read(options.file, options.ends)  # type: ignore[arg-type]
-    index = path_index(hexapod, path, bound=options.bound, joint=options.joint)
+    path = waypoints.read(options.file, options.ends, _origin(hexapod, options))  # type: ignore[arg-type]
+    try:
+        index = path_index(hexapod, path, bound=options.bound, joint=options.joint)
+    except (SingularPoseError, PoseError) as error:
+        raise type(error)(f"{error}{_hint(hexapod, path, options)}") from error
     return PathFindings(path, index, path_loads(hexapod, path, joint=options.joint), _size(hexapod))
 
 
@@ -57,10 +63,11 @@ def _planned(hexapod: Hexapod, options: Options, report: Report) -> PathFindings
         limits=options.limits,
         joint=options.joint,
     )
+    origin = _origin(hexapod, options)
     plan: Plan = plan_path(
         hexapod,
-        _pose(options.start),
-        _pose(options.goal),
+        _pose(options.start, origin),
+        _pose(options.goal, origin),
         needed,
         objective=options.objective,  # type: ignore[arg-type]
         timing=_timing(options),
@@ -75,8 +82,30 @@ def _planned(hexapod: Hexapod, options: Options, report: Report) -> PathFindings
     return PathFindings(plan.path, index, loads, plan.size, beside, plan, plan_slice(hexapod, plan))
 
 
-def _pose(six: tuple[float, ...]) -> Pose:
-    return Pose.from_rpy(*six[:3], *(math.radians(angle) for angle in six[3:]))
+def _pose(six: tuple[float, ...], origin: Pose | None) -> Pose:
+    pose = Pose.from_rpy(*six[:3], *(math.radians(angle) for angle in six[3:]))
+    return pose if origin is None else origin.displaced(pose)
+
+
+def _origin(hexapod: Hexapod, options: Options) -> Pose | None:
+    """What poses are measured from: the home pose with --from-home, or else the base."""
+    if options.from_home and hexapod.home is None:
+        raise click.UsageError(f"{hexapod.name!r} names no home pose for --from-home. Add [home] to the design.")
+    return hexapod.home if options.from_home else None
+
+
+def _hint(hexapod: Hexapod, path: Trajectory, options: Options) -> str:
+    """What may be wrong with a path that lies about the base's origin instead of the home pose."""
+    home, places = hexapod.home, path.waypoints.position
+    if options.from_home or home is None or np.linalg.norm(home.position) == 0:
+        return ""
+    from_base, from_home = (np.linalg.norm(places - place, axis=1).max() for place in (0.0, home.position))
+    if from_base >= 0.5 * from_home:
+        return ""
+    return (
+        f" The waypoints lie about the base's origin, {np.linalg.norm(home.position):.4g} m from the home pose; if "
+        "they are measured from home, give --from-home."
+    )
 
 
 def _timing(options: Options) -> LegSpeed | float:
