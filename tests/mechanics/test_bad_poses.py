@@ -251,3 +251,15 @@ def test_all_errors_are_flexapods_and_value_errors():
     for error in (fx.DesignError, fx.PoseError, fx.KinematicsError, fx.SingularPoseError):
         assert issubclass(error, fx.FlexapodError)
         assert issubclass(error, ValueError)
+
+
+def test_limits_of_batches_of_any_shape():
+    """None at all, and one pose on many bases: a base that moves along changes nothing, one that stays does."""
+    for change in ({}, {"limits.leg_distance": 0.01, "limits.leg_length": None}, {"limits": None}):
+        hexapod = HEXAPOD.replace(change)
+        assert fx.check_limits(hexapod, fx.Pose(np.empty((0, 3)))).ok.shape == (0,)
+        bases = fx.Pose([[0, 0, 0], [0, 0, 2.0]])
+        assert fx.check_limits(hexapod, HOME, base=bases).ok.shape == (2,)
+        carried = fx.Pose(bases.position + HOME.position)
+        assert fx.check_limits(hexapod, carried, base=bases).ok.tolist() == [True, True]
+    assert fx.check_limits(HEXAPOD, HOME, base=bases).ok.tolist() == [True, False]

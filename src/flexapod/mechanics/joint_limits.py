@@ -10,9 +10,9 @@ from flexapod import _core
 from flexapod.conventions import LEG_PAIRS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError, told_apart
-from flexapod.mechanics.inputs import States, states
+from flexapod.mechanics.inputs import States, pose_or_home, states
 from flexapod.mechanics.kinematics import force_transformation, home_pose, inverse_kinematics
-from flexapod.pose import PoseLike
+from flexapod.pose import PoseLike, as_pose
 
 
 class JointAngles(NamedTuple):
@@ -186,7 +186,8 @@ def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLi
     >>> bool(check.ok), check.exceeded[0]
     (False, 'leg 1: length 3.723 m is above 3.261 m')
     """
-    shape = states(hexapod, pose, base).shape
+    one = not pose_or_home(hexapod, pose).shape and (base is None or not as_pose(base, "base").shape)
+    shape = () if one else states(hexapod, pose, base).shape
     ok = np.ones(shape, dtype=bool)
     words: list[str] = []
     for quantity in limit_excess(hexapod, pose, base=base):
