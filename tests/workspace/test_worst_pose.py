@@ -1,11 +1,14 @@
 """The worst pose within a design's limits, at corners of a box, and where a universal joint locks."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import flexapod as fx
 from flexapod.workspace.limit_margins import LimitMargins
 
+CASES = Path(__file__).parents[1] / "data" / "cases"
 BASE, CUBIC, POSITIONER = (fx.load(name) for name in ("motion-base", "cubic-isolator", "precision-positioner"))
 
 
@@ -26,7 +29,13 @@ def reachable(design, box, samples, seed, joint="universal"):
     return found.omega_1.values[found.within_limits.values]
 
 
-@pytest.mark.parametrize(("design", "box"), LIMITED, ids=lambda value: getattr(value, "name", ""))
+SHARED = fx.load(CASES / "faults" / "octahedron-3-3.toml")  # every joint is that of two legs
+SHARED = SHARED.replace({"limits.leg_distance": 0.75 * fx.mechanics.leg_distance(SHARED)})
+
+
+@pytest.mark.parametrize(
+    ("design", "box"), [*LIMITED, (SHARED, around(SHARED, 0.1, 25))], ids=lambda value: getattr(value, "name", "")
+)
 def test_margins_say_what_check_limits_says(design, box):
     margins = LimitMargins(design)
     rows = fx.random_poses(box, 400, seed=4).rows(0, 400)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 
 from flexapod import _core
-from flexapod.conventions import AXES, LEGS, Array
+from flexapod.conventions import AXES, LEG_PAIRS, LEGS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, numbers
 from flexapod.errors import PoseError
@@ -40,7 +39,7 @@ class LimitMargins:
 
     A margin is a share of what it is taken from: of the greatest leg length, of 1 - cos of the largest angle, of the
     least distance between legs. Those >= 0 are kept. Each is a smooth function of the pose: the least distance between
-    legs is that of every two legs which do not share a joint. `names` says what each margin limits.
+    legs is that of every two of them. `names` says what each margin limits.
     """
 
     def __init__(self, hexapod: Hexapod) -> None:
@@ -90,12 +89,9 @@ def _bounds(hexapod: Hexapod) -> Iterator[_Bound]:
             yield _Bound(f"least length of leg {leg}", i, 1, least, most)
             yield _Bound(f"greatest length of leg {leg}", i, -1, most, most)
     if limits.leg_distance:
-        for k, (i, j) in enumerate(combinations(range(6), 2)):
-            if not any(
-                np.array_equal(joints[i], joints[j]) for joints in (hexapod.base_joints, hexapod.platform_joints)
-            ):
-                words = f"distance of legs {LEGS[i]} and {LEGS[j]}"
-                yield _Bound(words, 6 + k, 1, limits.leg_distance, limits.leg_distance)
+        for k, (i, j) in enumerate(LEG_PAIRS):
+            words = f"distance of legs {LEGS[i]} and {LEGS[j]}"
+            yield _Bound(words, 6 + k, 1, limits.leg_distance, limits.leg_distance)
     for kind, first, most in (("universal", 21, limits.universal_angle), ("spherical", 27, limits.spherical_angle)):
         if most is not None and most < np.pi:
             for i, leg in enumerate(LEGS):
