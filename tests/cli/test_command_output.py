@@ -44,7 +44,7 @@ def test_an_interrupt_is_not_a_fault(run, monkeypatch):
     def stopped(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("flexapod.mechanics.modes.natural_modes", stopped)
+    monkeypatch.setattr("flexapod.mechanics.at_rest.pose_state", stopped)
     code, out, err = run("modes", "mukherjee-i")
     assert (code, out, err) == (130, "", "\nInterrupted.\n")
 

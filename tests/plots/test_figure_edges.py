@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 
 import flexapod as fx
 from flexapod import plots
+from flexapod.mechanics import at_rest
 from flexapod.mechanics.cautions import Caution, pose_cautions
 from flexapod.plots import machine_3d, response
 from flexapod.plots import path as plots_path
@@ -101,10 +102,10 @@ def test_a_pose_that_no_leg_forces_hold_is_said_to_be(monkeypatch):
     pose = fx.home_pose(hexapod)
     omega = fx.natural_modes(hexapod, pose).omega
 
-    def refused(*given):
+    def refused(*given, **options):
         raise fx.SingularPoseError("no leg forces hold it")
 
-    monkeypatch.setattr(findings, "hold", refused)
+    monkeypatch.setattr(at_rest, "linearise", refused)
     found = report(hexapod, pose)
     assert found.rest is None
     assert found.damped is None
@@ -133,3 +134,32 @@ def test_a_path_that_leaves_the_limits_says_when():
     assert any("The path leaves the design's limits for" in one.text and "first at" in one.text for one in words)
     figure = plots_path.index_along(found.along, None)
     assert "bound" not in [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+
+
+def test_frequencies_that_fall_over_are_words_and_marks_stay_inside():
+    """The exact tangent of a heavy isolator: marks below all of Eq. 5, and two modes without a frequency."""
+    hexapod = fx.load("cubic-isolator").replace({"platform.mass": 200})
+    pose = fx.Pose.from_rpy(0.004, 0, 0.0346, 0, 2, 0, degrees=True)
+    omega = fx.natural_modes(hexapod, pose).omega
+    poles = fx.linearise(hexapod, pose).modes().pole
+    ax = fx.plots.frequencies(omega, ax=Figure().add_subplot(), tangent=poles)
+    low, high = ax.get_xlim()
+    marks = np.concatenate([line.get_xdata() for line in ax.get_lines()])
+    assert np.isfinite(marks).sum() == 10
+    assert ((marks > low) & (marks < high))[np.isfinite(marks)].all()
+    assert [text.get_text() for text in ax.texts] == ["falls over", "falls over"]
+    still = fx.plots.frequencies(omega, ax=Figure().add_subplot(), tangent=np.append(1j * omega[:5], -3.0))
+    assert [text.get_text() for text in still.texts] == ["does not vibrate"]
+
+
+def test_the_report_puts_the_tangent_beside_the_mode_that_moves_alike():
+    hexapod = fx.load("cubic-isolator").replace({"platform.mass": 200})
+    found = report(hexapod, fx.Pose.from_rpy(0.004, 0, 0.0346, 0, 2, 0, degrees=True))
+    section = next(one for one in machine.study(found).sections if one.title == "Natural frequencies")
+    columns = {column.title: column.values for column in section.items[1].columns}
+    rows = dict(zip(columns["mostly"], columns["tangent"], strict=True))
+    assert (rows["x"], rows["y"]) == ("falls over", "falls over")
+    assert rows["z"] == pytest.approx(2.04137, rel=1e-5)
+    assert rows["roll"] == pytest.approx(20.4144, rel=1e-5)
+    assert found.to_dict()["tangent"]["of_undamped_mode"] == [3, 1, 2, 5, 4, 6]
+    assert found.to_dict()["stability"] == machine.study(found).rows[0].value == "falls over"

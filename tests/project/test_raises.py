@@ -41,6 +41,7 @@ CALLS = {
         h, p, controller=fx.control.VelocityFeedback(1e3), omega=[1.0]
     ),
     "describe_modes": fx.describe_modes,
+    "pose_state": fx.mechanics.pose_state,
     "energy": fx.energy,
     "energy_shares": fx.mechanics.energy_shares,
     "equations_of_motion": fx.equations_of_motion,

@@ -2,6 +2,8 @@ from .assembly import Assemblies as Assemblies
 from .assembly import FoundPose as FoundPose
 from .assembly import forward_kinematics as forward_kinematics
 from .assembly import forward_kinematics_all as forward_kinematics_all
+from .at_rest import PoseState as PoseState
+from .at_rest import pose_state as pose_state
 from .dynamics import EquationsOfMotion as EquationsOfMotion
 from .dynamics import equations_of_motion as equations_of_motion
 from .dynamics import forward_dynamics as forward_dynamics
@@ -22,6 +24,8 @@ from .kinematics import leg_rates as leg_rates
 from .linearisation import DampedModes as DampedModes
 from .linearisation import Linearisation as Linearisation
 from .linearisation import linearise as linearise
+from .mode_pairs import ModePairs as ModePairs
+from .mode_pairs import pair_modes as pair_modes
 from .mode_shapes import EnergyShares as EnergyShares
 from .mode_shapes import ModeDescription as ModeDescription
 from .mode_shapes import describe_modes as describe_modes

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from flexapod.conventions import Array
+from flexapod import _core
+from flexapod.conventions import AXES, Array, Complex
 from flexapod.design.hexapod import Hexapod
+from flexapod.mechanics.inputs import states
 from flexapod.mechanics.joint_limits import check_limits
 from flexapod.mechanics.kinematics import condition_number
-from flexapod.mechanics.modes import near_repeated
+from flexapod.mechanics.linearisation import DampedModes
+from flexapod.mechanics.mode_pairs import ModePairs
+from flexapod.mechanics.mode_shapes import ModeDescription, twist_of_center
+from flexapod.mechanics.modes import mode_clusters
 from flexapod.mechanics.plausibility import (
     POSES,
     implausible,
@@ -22,13 +29,24 @@ from flexapod.mechanics.plausibility import (
 from flexapod.mechanics.plausibility import Caution as Caution
 from flexapod.pose import Pose
 
-if TYPE_CHECKING:
-    from flexapod.mechanics.linearisation import DampedModes
-
 SINGULAR = 1e12  # condition number without units from which H is singular to rounding
 NEAR_SINGULAR = 100.0  # a leg force up to a hundred times the load; stiffness 1e4 times less in some direction
 GROWS = 1e-9  # of the highest frequency: a pole whose real part is larger belongs to a motion that grows
 TANGENT_DIFFERS = 0.01  # of a frequency: from here on gravity and preload must not be left out
+ALONG_AXIS = np.radians(2.0)  # a leg that is nearer to its universal joint's axis spins at each small motion
+
+
+class Tangent(NamedTuple):
+    """Modes of the exact tangent at a pose, in words too, and which undamped mode each is like."""
+
+    modes: DampedModes
+    words: list[ModeDescription]
+    pairs: ModePairs
+
+
+def listed(words: Sequence[str]) -> str:
+    """Words as a list in a sentence: a, b and c."""
+    return " and ".join(filter(None, (", ".join(words[:-1]), words[-1])))
 
 
 def platform_radius(hexapod: Hexapod) -> float:
@@ -41,25 +59,41 @@ def unitless_condition(hexapod: Hexapod, pose: Pose) -> float:
     return float(condition_number(hexapod, pose, characteristic_length=platform_radius(hexapod)))
 
 
+def is_singular(condition: float) -> bool:
+    """Whether a pose is singular to rounding, by the condition number of H without units."""
+    return not condition < SINGULAR
+
+
+def grows(modes: DampedModes) -> NDArray[np.bool_]:
+    """Which damped modes grow, by more than rounding, (6,)."""
+    return np.asarray(modes.pole.real > GROWS * modes.omega[-1])
+
+
+def stands(modes: DampedModes) -> bool:
+    """Whether the machine stays at rest: no mode grows."""
+    return not grows(modes).any()
+
+
 def pose_cautions(
-    hexapod: Hexapod, pose: Pose, omega: Array, condition: float, damped: DampedModes | None
+    hexapod: Hexapod, pose: Pose, omega: Array, condition: float, tangent: Tangent | None
 ) -> list[Caution]:
     """All cautions about one pose, the gravest first.
 
-    omega: rad/s. condition: of H without units. damped: modes of the exact tangent; None where no leg forces hold the
+    omega: rad/s. condition: of H without units. tangent: modes of the exact tangent; None where no leg forces hold the
     pose.
     """
     return [
         *singularity(condition, singular_everywhere(hexapod, pose, condition)),
-        *_unsupported(condition, damped),
-        *_stability(damped),
+        *_unsupported(condition, tangent),
+        *([] if tangent is None else _stability(hexapod, pose, tangent)),
+        *axes_along_legs(hexapod, pose),
         *(Caution("limit", f"Limit exceeded: {text}.") for text in check_limits(hexapod, pose).exceeded),
         *_angles_without_home(hexapod),
         *legs_that_cross(hexapod, pose),
         *soft_legs(hexapod, pose),
         *implausible(hexapod),
         *(Caution("design", text) for text in hexapod.warnings),
-        *_preload(omega, damped),
+        *([] if tangent is None else _preload(omega, tangent)),
         *repeats(omega),
     ]
 
@@ -97,7 +131,7 @@ def repeats(omega: Array) -> list[Caution]:
     found = []
     for modes in mode_clusters(omega):
         if len(modes) > 1:
-            names = ", ".join(str(i + 1) for i in modes[:-1]) + f" and {modes[-1] + 1}"
+            names = listed([str(i + 1) for i in modes])
             low, high = f"{omega[modes[0]]:.6g}", f"{omega[modes[-1]]:.6g}"
             values = low if low == high else f"{low} to {high}"
             text = (
@@ -109,41 +143,66 @@ def repeats(omega: Array) -> list[Caution]:
     return found
 
 
-def mode_clusters(omega: Array) -> list[list[int]]:
-    """The modes, numbered from 0, with near-repeated ones together: [[0, 1], [2], [3], [4, 5]]."""
-    joined = set(near_repeated(omega))
-    clusters = [[0]]
-    for i in range(5):
-        if (i, i + 1) in joined:
-            clusters[-1].append(i + 1)
-        else:
-            clusters.append([i + 1])
-    return clusters
+def axes_along_legs(hexapod: Hexapod, pose: Pose) -> list[Caution]:
+    """Legs that lie nearly along the axis of their universal joint, which then spins them."""
+    s = states(hexapod, pose)
+    _, sine = _core.leg_fit(hexapod.packed, s.platform, s.base)
+    found = []
+    for leg in np.flatnonzero(sine[0] < np.sin(ALONG_AXIS)):
+        angle = float(np.degrees(np.arcsin(sine[0, leg])))
+        text = (
+            f"Leg {leg + 1} is {angle:.2g} degrees from the axis of its universal joint: the joint spins the leg at "
+            "each small motion of the platform, and the inertia of the spinning leg lowers the frequencies. Give "
+            f"base.universal_axes[{leg}] a direction across the leg."
+        )
+        found.append(Caution("axis_along_leg", text, {"leg": int(leg) + 1, "angle_deg": angle}))
+    return found
 
 
-def _unsupported(condition: float, damped: DampedModes | None) -> list[Caution]:
-    if damped is None and condition < SINGULAR:
+def _unsupported(condition: float, tangent: Tangent | None) -> list[Caution]:
+    if tangent is None and not is_singular(condition):
         return [Caution("unsupported", "No leg forces hold this pose: the tangent is not available.")]
     return []
 
 
-def _stability(damped: DampedModes | None) -> list[Caution]:
-    if damped is None:
-        return []
+def _stability(hexapod: Hexapod, pose: Pose, tangent: Tangent) -> list[Caution]:
+    damped, growing = tangent.modes, grows(tangent.modes)
     found = []
-    for i, (pole, ratio) in enumerate(zip(damped.pole, damped.damping_ratio, strict=True)):
-        numbers = {"mode": i + 1, "damping_ratio": float(ratio)}
-        if pole.real > GROWS * damped.omega[-1]:
-            motion = "falls away" if pole.imag == 0 else "swings ever wider"
-            text = (
-                f"Not stable at rest: tangent mode {i + 1} grows (damping ratio {ratio:.3g}); under its own weight the "
-                f"platform {motion} from this pose. Stiffen the legs or lower the mass centre."
-            )
-            found.append(Caution("unstable", text, numbers))
-        elif pole.imag == 0:
-            text = f"Tangent mode {i + 1} does not vibrate: damping is above critical. Check legs.damping."
-            found.append(Caution("overdamped", text, numbers))
+    if growing.any():
+        ways = listed([_falling(hexapod, pose, tangent, int(i)) for i in np.flatnonzero(growing)])
+        text = (
+            f"Not stable at rest: under its own weight the platform {ways}. What assumes small motions about rest does "
+            "not hold here. Stiffen the legs or lower the mass centre."
+        )
+        numbers = {"modes": int(growing.sum()), "growth": float(damped.pole.real.max())}
+        found.append(Caution("unstable", text, numbers))
+    for i in np.flatnonzero(~growing & (damped.pole.imag == 0) & (damped.omega > GROWS * damped.omega[-1])):
+        name = _named(tangent, int(i))
+        text = f"With damping {name} does not vibrate: it is above critical. Check legs.damping."
+        found.append(Caution("overdamped", text, {"mode": int(i) + 1, "damping_ratio": float(damped.damping_ratio[i])}))
     return found
+
+
+def _named(tangent: Tangent, mode: int) -> str:
+    """The mode of Eq. 5 beside which a damped mode stands, or its own number among the damped ones."""
+    beside = np.flatnonzero(tangent.pairs.damped == mode)
+    return f"mode {beside[0] + 1}" if beside.size else f"tangent mode {mode + 1}"
+
+
+def _falling(hexapod: Hexapod, pose: Pose, tangent: Tangent, mode: int) -> str:
+    """How a mode that grows moves the platform's joints most: by a turn or by a translation of the mass centre."""
+    pole, shape = tangent.modes.pole[mode], tangent.modes.shape[:, mode]
+    axis = AXES[int(np.argmax(_travel(hexapod, pose, shape)))]
+    how = f"tips over in {axis}" if axis in AXES[3:] else f"falls away along {axis}"
+    if pole.imag:
+        how = f"swings ever wider in {axis}"
+    return f"{how} ({_named(tangent, mode)}, e-fold in {1 / pole.real:.2g} s)"
+
+
+def _travel(hexapod: Hexapod, pose: Pose, shape: Complex) -> Array:
+    """Amounts of a twist along and about x, y, z of the mass centre, m: turns times the platform's radius."""
+    twist = np.abs(np.linalg.solve(twist_of_center(hexapod, pose), shape))
+    return np.concatenate([twist[:3], platform_radius(hexapod) * twist[3:]])
 
 
 def _angles_without_home(hexapod: Hexapod) -> list[Caution]:
@@ -159,16 +218,25 @@ def _angles_without_home(hexapod: Hexapod) -> list[Caution]:
     ]
 
 
-def _preload(omega: Array, damped: DampedModes | None) -> list[Caution]:
-    if damped is None:
-        return []
-    change = np.abs(damped.omega / omega - 1.0)
+def _preload(omega: Array, tangent: Tangent) -> list[Caution]:
+    damped, pairs = tangent.modes, tangent.pairs
+    vibrates = pairs.beside((damped.pole.imag > 0) & ~grows(damped)) == 1
+    change = np.where(vibrates, np.abs(pairs.beside(damped.omega) / np.where(omega > 0, omega, np.nan) - 1.0), np.nan)
+    change = np.nan_to_num(change)
     worst = int(np.argmax(change))
-    if change[worst] < TANGENT_DIFFERS:
-        return []
-    text = (
-        f"Weight and preload change mode {worst + 1} from {omega[worst]:.4g} to {damped.omega[worst]:.4g} rad/s. "
-        "Rely on the exact tangent here: Eq. 5 leaves them out."
-    )
-    numbers = {"mode": worst + 1, "omega": float(omega[worst]), "tangent_omega": float(damped.omega[worst])}
-    return [Caution("preload", text, numbers)]
+    found = []
+    if change[worst] >= TANGENT_DIFFERS:
+        new = float(damped.omega[pairs.damped[worst]])
+        text = (
+            f"Weight and preload change mode {worst + 1} from {omega[worst]:.4g} to {new:.4g} rad/s. "
+            "Rely on the exact tangent here: Eq. 5 leaves them out."
+        )
+        numbers = {"mode": worst + 1, "omega": float(omega[worst]), "tangent_omega": new}
+        found.append(Caution("preload", text, numbers))
+    if pairs.alone:
+        which = listed([str(j + 1) for j in pairs.alone])
+        text = (
+            f"Weight, preload and damping change the shapes of the modes: tangent modes {which} are like none of Eq. 5."
+        )
+        found.append(Caution("shapes_differ", text, {"modes": len(pairs.alone)}))
+    return found

@@ -36,7 +36,7 @@ class DampedModes(NamedTuple):
     omega : ndarray
         Moduli of the poles, rad/s, (6,).
     damping_ratio : ndarray
-        Damping ratios, (6,), negative where a mode grows.
+        Damping ratios, (6,), negative where a mode grows, and 0 where only rounding damps it.
     shape : ndarray
         Twists of the platform as columns, complex, (6, 6), scaled so that shape^T M shape = 1 with a real largest part.
     """
@@ -51,6 +51,8 @@ class DampedModes(NamedTuple):
         """Moduli of the poles, Hz, (6,)."""
         return self.omega / TWO_PI
 
+
+_ROUNDING = 1e-13  # of the largest pole: a smaller real part is rounding, and 0
 
 _WORDS = {
     "mass_matrix": "M",
@@ -114,14 +116,16 @@ class Linearisation:
         scale = np.sqrt(np.abs(np.linalg.eigvals(A[6:, :6])).max())  # balances displacements against rates
         balanced = np.block([[zero, scale * one], [A[6:, :6] / scale, A[6:, 6:]]])
         poles, vectors = np.linalg.eig(balanced)
-        chosen = _one_of_each_pair(poles)
+        poles = poles.astype(np.complex128)  # where all are real, they come as real numbers
+        poles.real[np.abs(poles.real) < _ROUNDING * np.abs(poles).max()] = 0.0
+        chosen = _one_of_each_pair(poles, vectors[:6], self.M)
         pole, shape = poles[chosen], vectors[:6, chosen]
         shape = shape / np.sqrt(np.einsum("im,ij,jm->m", shape, self.M, shape))
         largest = shape[np.abs(shape).argmax(axis=0), range(6)]
         shape = shape * np.where(largest.real < 0, -1.0, 1.0)
         omega = np.abs(pole)
         with np.errstate(invalid="ignore"):
-            ratio = -pole.real / omega
+            ratio = -pole.real / omega + 0.0
         return DampedModes(pole, omega, ratio, shape)
 
     def state_space(self) -> StateSpace:
@@ -150,14 +154,21 @@ class Linearisation:
         )
 
 
-def _one_of_each_pair(poles: Array) -> list[int]:
+def _one_of_each_pair(poles: Complex, shapes: Complex, M: Array) -> list[int]:
     """Indices of six poles out of twelve: the upper one of each complex pair, of real ones the slower or the growing.
 
-    Ordered by modulus.
+    Two real poles are a pair by their shapes, which they share. Ordered by modulus.
     """
-    upper = [i for i, p in enumerate(poles) if p.imag > 0]
+    chosen = [i for i, p in enumerate(poles) if p.imag > 0]
     real = sorted((i for i, p in enumerate(poles) if p.imag == 0), key=lambda i: -poles[i].real)
-    return sorted(upper + real[: 6 - len(upper)], key=lambda i: abs(poles[i]))
+    weighted = np.linalg.cholesky(M).T @ shapes
+    overlap = np.abs(weighted.conj().T @ weighted) / np.outer(*2 * [np.linalg.norm(weighted, axis=0)])
+    while real:
+        first = real.pop(0)
+        chosen.append(first)
+        if real:
+            real.remove(max(real, key=lambda i: overlap[first, i]))
+    return sorted(chosen, key=lambda i: abs(poles[i]))
 
 
 def linearise(

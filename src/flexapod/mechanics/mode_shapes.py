@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import _core
-from flexapod.conventions import AXES, Array, JointModel
+from flexapod.conventions import AXES, Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import as_joint, single_pose, states
 from flexapod.mechanics.modes import natural_modes
 from flexapod.mechanics.springs import BY_LEG, spring_matrix
-from flexapod.pose import PoseLike
+from flexapod.pose import Pose, PoseLike
 from flexapod.rotations import skew
 
 
@@ -161,21 +161,37 @@ def describe_modes(
     >>> print(fx.describe_modes(fx.load("motion-base"))[5].text)
     mostly roll (97%), turning about (0, 0, 3.58) m
     """
+    return describe_shapes(hexapod, pose, natural_modes(hexapod, pose, base=base, joint=joint).shape, base, joint)
+
+
+def describe_shapes(
+    hexapod: Hexapod, pose: PoseLike | None, shapes: Array | Complex, base: PoseLike | None, joint: JointModel
+) -> list[ModeDescription]:
+    """Describe shapes, twists of the reference point as columns, (6, n); of a complex one the axis is of its real part.
+
+    They are scaled so that shape^T J_p shape = 1, which puts as much of a complex shape as can be into its real part.
+    """
     pose = single_pose(hexapod, pose)
     s = states(hexapod, pose, base)
-    modes = natural_modes(hexapod, pose, base=base, joint=joint)
     J = _core.equations_of_motion(hexapod.packed, as_joint(joint), s.platform, s.base)[0][0]
-    r = pose.matrix @ hexapod.platform_mass_center
-    shift = np.eye(6)  # twist of the reference point from that of the mass centre
-    shift[:3, 3:] = skew(r)
+    shift = twist_of_center(hexapod, pose)
     J_center = shift.T @ J @ shift
-    center = pose.position + r
-    return [_describe(np.linalg.solve(shift, v), J_center, center) for v in modes.shape.T]
+    center = pose.position + pose.matrix @ hexapod.platform_mass_center
+    return [_describe(np.linalg.solve(shift, v), J_center, center) for v in shapes.T]
 
 
-def _describe(twist: Array, J: Array, mass_center: Array) -> ModeDescription:
-    share = twist * (J @ twist)  # of 1 = twist^T J twist
-    v, w = twist[:3], twist[3:]
+def twist_of_center(hexapod: Hexapod, pose: Pose) -> Array:
+    """(6, 6): the twist of the reference point from that of the mass centre."""
+    shift = np.eye(6)
+    shift[:3, 3:] = skew(pose.matrix @ hexapod.platform_mass_center)
+    return shift
+
+
+def _describe(twist: Array | Complex, J: Array, mass_center: Array) -> ModeDescription:
+    share = (twist.conj() * (J @ twist)).real
+    if np.iscomplexobj(twist):  # of a real one they sum to 1 = twist^T J twist
+        share = share / share.sum()
+    v, w = twist[:3].real, twist[3:].real
     speed, spin = np.linalg.norm(v), np.linalg.norm(w)
     first = int(np.argmax(share))
     others = [i for i in np.argsort(-share) if i != first and share[i] > 0.1]

@@ -179,6 +179,18 @@ def near_repeated(omega: Array, gap: float = 0.01) -> list[tuple[int, int]]:
     return [(i, i + 1) for i in range(5) if omega[i + 1] - omega[i] < gap * omega[i + 1]]
 
 
+def mode_clusters(omega: Array) -> list[list[int]]:
+    """The modes, numbered from 0, with near-repeated ones together: [[0, 1], [2], [3, 4, 5]]."""
+    joined = set(near_repeated(omega))
+    clusters = [[0]]
+    for i in range(5):
+        if (i, i + 1) in joined:
+            clusters[-1].append(i + 1)
+        else:
+            clusters.append([i + 1])
+    return clusters
+
+
 def advised_sampling_time(omega_max: float) -> float:
     """Largest sensible sampling time of a controller, s: a twentieth of a period of the fastest mode (conclusion 3)."""
     return float(TWO_PI / (20 * omega_max))

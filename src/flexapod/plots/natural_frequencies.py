@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from flexapod.conventions import TWO_PI, Array
+from flexapod.mechanics.cautions import GROWS
 from flexapod.plots.style import FAINT, INK, PLATFORM, STRETCHED
 
 if TYPE_CHECKING:
@@ -31,7 +32,8 @@ def frequencies(
     ax : Axes, optional
         Axes to draw on. Default: those of a new figure of pyplot.
     tangent : array_like, optional
-        (6,) frequencies of the exact tangent, rad/s, drawn beside.
+        (6,) frequencies of the exact tangent that belong to the same modes, rad/s, or its poles; NaN: there is none.
+        Of poles that do not vibrate, or grow, the figure says so instead.
     labels : sequence of str, optional
         Words for each mode. Default: its number.
 
@@ -59,11 +61,10 @@ def frequencies(
     seen = hz > 0
     ax.hlines(y, 0, 1, transform=ax.get_yaxis_transform(), color=FAINT, lw=0.4, alpha=0.5)
     ax.plot(hz[seen], y[seen], "o", ms=8, color=PLATFORM, label="Eq. 5", clip_on=False, zorder=3)
-    at = np.zeros(0) if tangent is None else np.abs(np.asarray(tangent)) / TWO_PI
-    if at.size:
-        ax.plot(at, y, "|", ms=17, mew=2.2, color=STRETCHED, label="exact tangent", clip_on=False, zorder=4)
+    if tangent is not None:
+        hz = np.append(hz, _tangent(ax, y, np.asarray(tangent)))
         ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False, labelcolor=INK, fontsize=10)
-    _logarithmic(ax, np.concatenate([hz, at]))
+    _logarithmic(ax, hz)
     names = (
         [f"mode {i}" for i in y] if labels is None else [f"{i}  {label}" for i, label in zip(y, labels, strict=True)]
     )
@@ -76,6 +77,21 @@ def frequencies(
     ax.tick_params(axis="y", length=0)
     ax.tick_params(axis="x", which="both", color=FAINT, labelcolor=INK)
     return ax
+
+
+def _tangent(ax: Axes, rows: NDArray[np.int64], tangent: NDArray[Any]) -> Array:
+    """Draw the tangent's modes: a mark at each frequency, words where there is none. Returns the frequencies, Hz."""
+    pole = tangent if np.iscomplexobj(tangent) else 1j * np.abs(tangent)
+    vibrates = pole.imag > 0
+    hz = np.where(vibrates, np.abs(pole), np.nan) / TWO_PI
+    ax.plot(hz, rows, "|", ms=17, mew=2.2, color=STRETCHED, label="exact tangent", clip_on=False, zorder=4)
+    grows = pole.real > GROWS * np.nanmax(np.abs(pole), initial=0.0)
+    across = ax.get_yaxis_transform()
+    for row, one, grown in zip(rows, pole, grows, strict=True):
+        if np.isfinite(one) and (grown or not one.imag):
+            words = ("swings ever wider" if one.imag else "falls over") if grown else "does not vibrate"
+            ax.text(1.0, row - 0.08, words, transform=across, color=STRETCHED, fontsize=10, ha="right", va="bottom")
+    return hz
 
 
 _STEPS = ((1,), (1, 3), (1, 2, 5), (1, 1.5, 2, 3, 4, 5, 7))  # within a decade, from few to many

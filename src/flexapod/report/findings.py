@@ -9,19 +9,17 @@ import numpy as np
 
 from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import SingularPoseError
-from flexapod.mechanics.cautions import SINGULAR, Caution, mode_clusters, platform_radius, pose_cautions
+from flexapod.mechanics.at_rest import Stability, pose_state
+from flexapod.mechanics.cautions import Caution, Tangent, platform_radius
 from flexapod.mechanics.inputs import as_hexapod, single_pose
 from flexapod.mechanics.joint_limits import JointAngles, joint_angles, leg_distance
 from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
-from flexapod.mechanics.linearisation import DampedModes, linearise
-from flexapod.mechanics.mode_shapes import EnergyShares, ModeDescription, describe_modes, energy_shares
-from flexapod.mechanics.modes import advised_sampling_time, natural_modes
-from flexapod.mechanics.statics import Equilibrium, hold
+from flexapod.mechanics.linearisation import DampedModes
+from flexapod.mechanics.mode_shapes import EnergyShares, ModeDescription, energy_shares
+from flexapod.mechanics.modes import advised_sampling_time, mode_clusters
+from flexapod.mechanics.statics import Equilibrium
 from flexapod.pose import Pose, PoseLike
 from flexapod.report.influence import Influence, influences
-
-_NOTHING = 1e-12  # of the highest frequency: what is below is rounding at a singular pose
 
 
 class Conditioning(NamedTuple):
@@ -34,11 +32,12 @@ class Conditioning(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Findings:
-    """Everything a report shows, in SI units. `rest`, `damped` and `influences` are None at a singular pose."""
+    """Everything a report shows, in SI units. `rest`, `tangent` and `influences` are None at a singular pose."""
 
     hexapod: Hexapod
     pose: Pose
     joint: JointModel
+    stability: Stability
     omega: Array
     shape: Array
     descriptions: list[ModeDescription]
@@ -48,11 +47,16 @@ class Findings:
     angles: JointAngles
     leg_distance: float
     rest: Equilibrium | None
-    damped: DampedModes | None
+    tangent: Tangent | None
     clusters: list[list[int]]
     influences: list[Influence] | None
     cautions: list[Caution]
     changes: tuple[str, ...] = ()  # made to the design of this name, as KEY=VALUE
+
+    @property
+    def damped(self) -> DampedModes | None:
+        """The modes of the exact tangent by modulus."""
+        return None if self.tangent is None else self.tangent.modes
 
     @property
     def sampling_time(self) -> float:
@@ -67,7 +71,7 @@ class Findings:
     @property
     def unstable(self) -> bool:
         """Whether the machine falls away from this pose."""
-        return any(caution.code == "unstable" for caution in self.cautions)
+        return self.stability == "falls over"
 
     def to_dict(self) -> dict[str, Any]:
         """The findings under names that carry their units; arrays stay arrays, what is not available is None."""
@@ -80,6 +84,7 @@ class Findings:
             "changes": self.changes,
             "pose_m_deg": [*self.pose.position, *np.degrees(self.pose.rpy)],
             "joint": self.joint,
+            "stability": self.stability,
             "stability_index_rad_s": self.omega[0],
             "omega_rad_s": self.omega,
             "frequency_hz": self.omega / TWO_PI,
@@ -97,7 +102,7 @@ class Findings:
             "spherical_angle_deg": np.degrees(self.angles.spherical),
             "static_leg_force_n": self.rest.leg_force if self.rest else None,
             "unstretched_length_m": self.rest.unstretched_length if self.rest else None,
-            "tangent": _damped_dict(self.damped) if self.damped else None,
+            "tangent": _tangent_dict(self.tangent) if self.tangent else None,
             "influences": [one._asdict() for one in self.influences] if self.influences else None,
             "warnings": [caution.text for caution in self.cautions],
         }
@@ -155,54 +160,50 @@ def gather(
     (28.05, ['near_repeated'])
     """
     pose = single_pose(as_hexapod(hexapod), pose)
-    omega, shape = natural_modes(hexapod, pose, joint=joint)
+    state = pose_state(hexapod, pose, joint=joint)
+    omega = state.modes.omega
     shares = energy_shares(hexapod, pose, joint=joint)
     length = platform_radius(hexapod) if characteristic_length is None else characteristic_length
     conditioning = Conditioning(
-        float(condition_number(hexapod, pose)),
-        float(condition_number(hexapod, pose, characteristic_length=length)),
+        state.condition_shown(condition_number(hexapod, pose)),
+        state.condition_shown(condition_number(hexapod, pose, characteristic_length=length)),
         length,
     )
-    singular = not conditioning.scaled < SINGULAR
-    if singular:  # what is left of the lowest mode is rounding: say so with plain zeros and infinities
-        conditioning = Conditioning(np.inf, np.inf, length)
-        omega = np.where((np.arange(6) == 0) | (omega < _NOTHING * omega[-1]), 0.0, omega)
+    if state.singular:
         shares = EnergyShares(np.where(omega > 0, shares.strain, np.nan), shares.kinetic)
-    rest, damped = (None, None) if singular else _at_rest(hexapod, pose, joint)
     clusters = mode_clusters(omega)
     return Findings(
         hexapod=hexapod,
         pose=pose,
         joint=joint,
+        stability=state.stability,
         omega=omega,
-        shape=shape,
-        descriptions=describe_modes(hexapod, pose, joint=joint),
+        shape=state.modes.shape,
+        descriptions=state.descriptions,
         shares=shares,
         conditioning=conditioning,
         leg_length=inverse_kinematics(hexapod, pose),
         angles=joint_angles(hexapod, pose),
         leg_distance=float(leg_distance(hexapod, pose)),
-        rest=rest,
-        damped=damped,
+        rest=None if state.linear is None else state.linear.rest,
+        tangent=state.tangent,
         clusters=clusters,
-        influences=None if singular else influences(hexapod, pose, joint, clusters[0]),
-        cautions=pose_cautions(hexapod, pose, omega, conditioning.scaled, damped),
+        influences=None if state.singular else influences(hexapod, pose, joint, clusters[0]),
+        cautions=state.cautions,
         changes=changes,
     )
 
 
-def _at_rest(hexapod: Hexapod, pose: Pose, joint: JointModel) -> tuple[Equilibrium | None, DampedModes | None]:
-    try:
-        return hold(hexapod, pose), linearise(hexapod, pose, joint=joint).modes()
-    except SingularPoseError:
-        return None, None
-
-
-def _damped_dict(damped: DampedModes) -> dict[str, Any]:
+def _tangent_dict(tangent: Tangent) -> dict[str, Any]:
+    """The damped modes by modulus, and for each undamped mode the number of the one that moves as it does."""
+    damped, pairs = tangent.modes, tangent.pairs
     return {
         "omega_rad_s": damped.omega,
         "damped_frequency_rad_s": np.abs(damped.pole.imag),
         "damping_ratio": damped.damping_ratio,
         "pole_real_rad_s": damped.pole.real,
         "pole_imag_rad_s": damped.pole.imag,
+        "descriptions": [mode.text for mode in tangent.words],
+        "of_undamped_mode": [int(j) + 1 if j >= 0 else None for j in pairs.damped],
+        "overlap": pairs.overlap,
     }

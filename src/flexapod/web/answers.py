@@ -118,12 +118,22 @@ class Mode(TypedDict):
     share: OptionalVector
 
 
+class LoneMode(TypedDict):
+    """A damped mode that is like no undamped one: in words, Hz (null: it does not vibrate), damping ratio."""
+
+    text: str
+    frequency: OptionalNumber
+    ratio: float
+
+
 class DampedModes(TypedDict):
-    """Modes of the linearised machine with gravity, preload and damping: rad/s, Hz, damping ratio."""
+    """Damped modes at the places of undamped ones that move alike, rad/s, Hz; ratio < 0: it grows; alone: like none."""
 
     omega: OptionalVector
     frequency: OptionalVector
     ratio: OptionalVector
+    overlap: OptionalVector
+    alone: list[LoneMode]
 
 
 class StaticLegs(TypedDict):
@@ -152,9 +162,10 @@ class Limits(TypedDict):
 
 
 class Snapshot(TypedDict):
-    """The machine at one pose. `shape` and `strain` (share of each leg in the strain energy) have a row per mode."""
+    """The machine at one pose: does it stand? `shape` and `strain` (legs' shares of the energy) have a row per mode."""
 
     pose: list[float]
+    stability: Literal["stable", "falls over", "singular"]
     geometry: Geometry
     omega: OptionalVector
     frequency: OptionalVector

@@ -5,47 +5,47 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod.control.sampling_rate import sampling_time
-from flexapod.conventions import LEGS, TWO_PI, Array
+from flexapod.conventions import LEGS, TWO_PI
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import SingularPoseError
-from flexapod.mechanics import linearisation
-from flexapod.mechanics.cautions import pose_cautions, unitless_condition
+from flexapod.mechanics.at_rest import PoseState, pose_state
+from flexapod.mechanics.cautions import Tangent
 from flexapod.mechanics.joint_limits import in_words, joint_angles, leg_distance, limit_excess
 from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
-from flexapod.mechanics.mode_shapes import describe_modes, energy_shares
-from flexapod.mechanics.modes import natural_modes, near_repeated
+from flexapod.mechanics.mode_shapes import energy_shares
+from flexapod.mechanics.modes import near_repeated
 from flexapod.pose import Pose
-from flexapod.web.answers import DampedModes, Geometry, Limits, Snapshot, StaticLegs
+from flexapod.web.answers import DampedModes, Geometry, Limits, LoneMode, Snapshot, StaticLegs
 from flexapod.web.requests import Question
 
 
 def snapshot(question: Question) -> Snapshot:
     """Geometry, frequencies, modes, forces and limits at a pose. Raises PoseError if a leg cannot reach it."""
     hexapod, pose, joint = question.hexapod, question.pose, question.joint
-    modes = natural_modes(hexapod, pose, joint=joint)
-    described = describe_modes(hexapod, pose, joint=joint)
+    state = pose_state(hexapod, pose, joint=joint)
+    modes = state.modes
+    strain = energy_shares(hexapod, pose, joint=joint).strain
     angles = joint_angles(hexapod, pose)
-    static, damped = _at_rest(question)
     return {
         "pose": list(question.six),
+        "stability": state.stability,
         "geometry": _geometry(hexapod, pose),
         "omega": modes.omega,
         "frequency": modes.omega / TWO_PI,
         "index": modes.omega[0],
-        "condition": float(condition_number(hexapod, pose)),
+        "condition": state.condition_shown(condition_number(hexapod, pose)),
         "shape": modes.shape.T,
-        "modes": [{"text": mode.text, "dominant": mode.dominant, "share": mode.share} for mode in described],
-        "strain": energy_shares(hexapod, pose, joint=joint).strain.T,
-        "damped": None if damped is None else _damped(damped),
+        "modes": [{"text": mode.text, "dominant": mode.dominant, "share": mode.share} for mode in state.descriptions],
+        "strain": np.where(modes.omega > 0, strain, np.nan).T,
+        "damped": None if state.tangent is None else _damped(state.tangent),
         "sampling_time": sampling_time(modes.omega[-1]),
         "legs": {
             "universal": np.round(np.degrees(angles.universal), 9) + 0.0,
             "spherical": np.round(np.degrees(angles.spherical), 9) + 0.0,
-            **static,
+            **_static(question, state),
         },
         "leg_distance": float(leg_distance(hexapod, pose)),
         "limits": _limits(hexapod, pose),
-        "warnings": _warnings(question, modes.omega, damped),
+        "warnings": [one.text for one in state.cautions if one.code not in ("limit", "design")],
         "near_repeated": near_repeated(modes.omega),
     }
 
@@ -62,25 +62,33 @@ def _geometry(hexapod: Hexapod, pose: Pose) -> Geometry:
     }
 
 
-def _at_rest(question: Question) -> tuple[StaticLegs, linearisation.DampedModes | None]:
-    """Static leg forces at the pose, and the modes of the machine linearised there with gravity, preload and damping.
-
-    At a singular pose there are neither.
-    """
+def _static(question: Question, state: PoseState) -> StaticLegs:
+    """Static leg forces at the pose; there are none at a singular one."""
     hexapod, pose = question.hexapod, question.pose
-    try:
-        linear = linearisation.linearise(hexapod, pose, joint=question.joint)
-    except SingularPoseError as error:
+    if state.linear is None:
         length = inverse_kinematics(hexapod, pose)
-        return {"length": length, "force": None, "energy": None, "why": str(error)}, None
-    rest = linear.rest
+        why = next(one.text for one in state.cautions if one.code in ("singular", "unsupported"))
+        return {"length": length, "force": None, "energy": None, "why": why}
+    rest = state.linear.rest
     energy = 0.5 * rest.leg_force**2 / hexapod.legs.stiffness
-    return {"length": rest.leg_length, "force": rest.leg_force, "energy": energy, "why": ""}, linear.modes()
+    return {"length": rest.leg_length, "force": rest.leg_force, "energy": energy, "why": ""}
 
 
-def _damped(modes: linearisation.DampedModes) -> DampedModes:
-    """Frequencies and damping ratios of the damped modes."""
-    return {"omega": modes.omega, "frequency": modes.pole.imag / TWO_PI, "ratio": modes.damping_ratio}
+def _damped(tangent: Tangent) -> DampedModes:
+    """The damped modes in the order of the undamped ones that move alike, and those that are like none."""
+    modes, pairs = tangent.modes, tangent.pairs
+    frequency = np.where(modes.pole.imag > 0, modes.pole.imag, np.nan) / TWO_PI
+    alone: list[LoneMode] = [
+        {"text": tangent.words[j].text, "frequency": float(frequency[j]), "ratio": float(modes.damping_ratio[j])}
+        for j in pairs.alone
+    ]
+    return {
+        "omega": pairs.beside(modes.omega),
+        "frequency": pairs.beside(frequency),
+        "ratio": pairs.beside(modes.damping_ratio),
+        "overlap": pairs.overlap,
+        "alone": alone,
+    }
 
 
 def _limits(hexapod: Hexapod, pose: Pose) -> Limits:
@@ -89,10 +97,3 @@ def _limits(hexapod: Hexapod, pose: Pose) -> Limits:
     words = [word for quantity in quantities for word in in_words(quantity)]
     by_leg = [[word.split(": ", 1)[1] for word in words if word.startswith(f"leg {leg}: ")] for leg in LEGS]
     return {"any": bool(quantities), "ok": not words, "exceeded": words, "by_leg": by_leg}
-
-
-def _warnings(question: Question, omega: Array, damped: linearisation.DampedModes | None) -> list[str]:
-    """The cautions about the pose, without those that the page shows elsewhere: limits, and the design's own."""
-    hexapod, pose = question.hexapod, question.pose
-    found = pose_cautions(hexapod, pose, omega, unitless_condition(hexapod, pose), damped)
-    return [caution.text for caution in found if caution.code not in ("limit", "design")]

@@ -13,6 +13,7 @@ interface Result {
 }
 
 const RESULTS: Result[] = [
+  { name: 'At rest', id: 'stability', unit: '', text: (s) => s.stability },
   { name: 'Index ω₁', id: 'index', unit: 'rad/s', text: (s) => sig(s.index) },
   { name: 'f₁', id: 'frequency', unit: 'Hz', text: (s) => sig(s.frequency[0]) },
   { name: 'cond(H)', id: 'condition', unit: '', text: (s) => sig(s.condition, 4) },
@@ -31,7 +32,8 @@ function limits({ limits: { any, ok, exceeded } }: Snapshot): string {
 
 function spokenWords(s: Snapshot): string {
   const numbers = `Index ${sig(s.index, 4)} radians per second, condition number ${sig(s.condition, 3)}.`
-  return `${numbers} ${s.limits.exceeded.join('. ')}`
+  const state = { stable: '', 'falls over': 'The machine falls over. ', singular: 'Singular pose. ' }[s.stability]
+  return `${state}${numbers} ${s.limits.exceeded.join('. ')}`
 }
 
 export function readout(): HTMLElement {
@@ -49,7 +51,8 @@ export function readout(): HTMLElement {
     if (!s) return
     for (const { id, text, value, element } of cells) {
       value.textContent = text(s)
-      element.classList.toggle('exceeded', id === 'limits' && !s.limits.ok)
+      const wrong = { limits: !s.limits.ok, stability: s.stability !== 'stable' }[id]
+      element.classList.toggle('exceeded', wrong ?? false)
     }
     speak()
   })

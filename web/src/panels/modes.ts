@@ -3,7 +3,7 @@
 import { categories } from '../charts/theme'
 import type { Animation } from '../machine3d/animation'
 import { noTwist, reach, twist } from '../machine3d/twist'
-import { COORDINATES, type OptionalNumber, type Snapshot } from '../state/answers'
+import { COORDINATES, type LoneMode, type OptionalNumber, type Snapshot } from '../state/answers'
 import { page, store } from '../state/store'
 import { slider } from '../widgets/bound'
 import { h } from '../widgets/dom'
@@ -24,7 +24,7 @@ const COLUMNS = [
 ]
 const CAPTION =
   'Six natural frequencies at this pose. Undamped by Eq. 5 of the paper; ' +
-  'damped with gravity and preload by the exact tangent.'
+  'damped with gravity and preload by the exact tangent, beside the mode that moves alike.'
 const HINT = 'Choose a mode to see it move, and which legs and directions it uses. Keys 1 to 6 do the same.'
 const CSV_HEAD = [
   'mode',
@@ -32,6 +32,7 @@ const CSV_HEAD = [
   'frequency_hz',
   'damped_frequency_hz',
   'damping_ratio',
+  'overlap',
   'description',
   ...COORDINATES.map((c) => `kinetic_${c}`),
   ...LEGS.map((n) => `strain_leg_${n}`),
@@ -39,6 +40,19 @@ const CSV_HEAD = [
 
 function pick(mode: number): void {
   store.set({ mode: mode === page.mode ? -1 : mode })
+}
+
+/** Damped frequency and damping ratio of a mode; a mode that grows is told as such. */
+function dampedWords(frequency: OptionalNumber | undefined, ratio: OptionalNumber | undefined): string[] {
+  const words = (ratio ?? 0) < 0 ? 'falls over' : sig(frequency)
+  return [words, sig(ratio == null ? Number.NaN : 100 * ratio, 3)]
+}
+
+/** A damped mode that is like none of the undamped ones. */
+function loneRow(mode: LoneMode): HTMLElement {
+  const element = row(h('span', {}, '–'), ['–', '–', ...dampedWords(mode.frequency, mode.ratio)])
+  element.append(h('td', { class: 'words' }, mode.text))
+  return element
 }
 
 function modeRow(s: Snapshot, i: number): HTMLElement {
@@ -51,8 +65,8 @@ function modeRow(s: Snapshot, i: number): HTMLElement {
     title: `${label} (key ${i + 1})`,
   }
   const play = h('button', { type: 'button', class: 'play', ...attributes }, `${chosen ? '■' : '▶'} ${i + 1}`)
-  const ratio = s.damped ? sig(100 * (s.damped.ratio[i] ?? Number.NaN), 3) : '–'
-  const element = row(play, [sig(s.omega[i]), sig(s.frequency[i]), sig(s.damped?.frequency[i]), ratio])
+  const damped = dampedWords(s.damped?.frequency[i], s.damped?.ratio[i])
+  const element = row(play, [sig(s.omega[i]), sig(s.frequency[i]), ...damped])
   element.append(h('td', { class: 'words' }, s.modes[i].text))
   element.classList.toggle('chosen', chosen)
   element.addEventListener('click', () => pick(i))
@@ -131,7 +145,7 @@ function write(): void {
   const s = page.snapshot
   if (!s) return
   const rows = s.omega.map((w, i) => {
-    const damped = [s.damped?.frequency[i], s.damped?.ratio[i]]
+    const damped = [s.damped?.frequency[i], s.damped?.ratio[i], s.damped?.overlap[i]]
     return [i + 1, w, s.frequency[i], ...damped, s.modes[i].text, ...s.modes[i].share, ...s.strain[i]]
   })
   saveCsv('modes', CSV_HEAD, rows)
@@ -144,7 +158,7 @@ export function modesPanel(animation: Animation): HTMLElement {
     const s = page.snapshot
     if (!s) return
     const focused = document.activeElement instanceof HTMLElement ? document.activeElement.dataset.mode : undefined
-    body.replaceChildren(...s.omega.map((_, i) => modeRow(s, i)))
+    body.replaceChildren(...s.omega.map((_, i) => modeRow(s, i)), ...(s.damped?.alone ?? []).map(loneRow))
     if (focused) body.querySelector<HTMLElement>(`[data-mode="${focused}"]`)?.focus()
   }
   store.on(['snapshot', 'mode'], () => {

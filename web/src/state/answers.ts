@@ -92,11 +92,20 @@ export interface Mode {
   share: OptionalNumber[]
 }
 
-/** Modes of the linearised machine with gravity, preload and damping: rad/s, Hz, damping ratio. */
+/** A damped mode that is like no undamped one: in words, Hz (null: it does not vibrate), damping ratio. */
+export interface LoneMode {
+  text: string
+  frequency: OptionalNumber
+  ratio: number
+}
+
+/** Damped modes at the places of undamped ones that move alike, rad/s, Hz; ratio < 0: it grows; alone: like none. */
 export interface DampedModes {
   omega: OptionalNumber[]
   frequency: OptionalNumber[]
   ratio: OptionalNumber[]
+  overlap: OptionalNumber[]
+  alone: LoneMode[]
 }
 
 /** Leg lengths (m), static forces (N) and spring energies (J). `why` says why there are no forces. */
@@ -125,9 +134,10 @@ export interface Limits {
   by_leg: string[][]
 }
 
-/** The machine at one pose. `shape` and `strain` (share of each leg in the strain energy) have a row per mode. */
+/** The machine at one pose: does it stand? `shape` and `strain` (legs' shares of the energy) have a row per mode. */
 export interface Snapshot {
   pose: number[]
+  stability: 'stable' | 'falls over' | 'singular'
   geometry: Geometry
   omega: OptionalNumber[]
   frequency: OptionalNumber[]

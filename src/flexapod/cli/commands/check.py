@@ -14,6 +14,12 @@ if TYPE_CHECKING:
     from flexapod.pose import Pose
 
 
+#: Cautions that are no fault of a design, or are told beside.
+_LEFT_TO_REPORT = frozenset(
+    {"limit", "design", "no_home", "near_singular", "near_repeated", "preload", "shapes_differ", "overdamped"}
+)
+
+
 @click.command()
 @common.design_argument
 @common.pose_option
@@ -40,26 +46,24 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
 def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
     """What holds at a pose; null without one."""
     from flexapod.mechanics import joint_limits, kinematics, plausibility
-    from flexapod.mechanics.cautions import singularity, unitless_condition
+    from flexapod.mechanics.at_rest import pose_state
 
-    keys = ("pose_m_deg", "leg_lengths_m", "leg_distance_m", "condition_number", "singularity", "limits_exceeded")
-    odd = [caution.text for caution in plausibility.implausible(hexapod)]
+    keys = ("stability", "leg_lengths_m", "leg_distance_m", "condition_number", "singularity", "limits_exceeded")
     if pose is None:
-        return {**dict.fromkeys(keys), "cautions": odd}
-    condition = unitless_condition(hexapod, pose)
-    found = singularity(condition, plausibility.singular_everywhere(hexapod, pose, condition))
-    singular = [caution.text for caution in found if caution.code == "singular" or "elsewhere" in caution.numbers]
+        odd = [caution.text for caution in plausibility.implausible(hexapod)]
+        return {**dict.fromkeys(("pose_m_deg", *keys)), "cautions": odd}
+    state = pose_state(hexapod, pose)
+    told = [one for one in state.cautions if one.code not in _LEFT_TO_REPORT or "elsewhere" in one.numbers]
     values = (
-        pose_numbers(pose),
+        state.stability,
         kinematics.inverse_kinematics(hexapod, pose),
         joint_limits.leg_distance(hexapod, pose),
-        kinematics.condition_number(hexapod, pose),
-        singular,
+        state.condition_shown(kinematics.condition_number(hexapod, pose)),
+        [one.text for one in told if one.code == "singular" or "elsewhere" in one.numbers],
         joint_limits.check_limits(hexapod, pose).exceeded,
     )
-    at_pose = [*plausibility.legs_that_cross(hexapod, pose), *plausibility.soft_legs(hexapod, pose)]
-    cautions = [*odd, *singular, *(caution.text for caution in at_pose)]
-    return {**dict(zip(keys, values, strict=True)), "cautions": cautions}
+    found = dict(zip(keys, values, strict=True))
+    return {"pose_m_deg": pose_numbers(pose), **found, "cautions": [one.text for one in told]}
 
 
 def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:
@@ -73,7 +77,7 @@ def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:
         out.print("No home pose and no --pose: limits were not checked.")
     else:
         lengths = found["leg_lengths_m"]
-        out.print(f"At {pose!r}:", markup=False, soft_wrap=True)
+        out.print(f"At {pose!r}: {found['stability']}", markup=False, soft_wrap=True)
         out.print(
             f"  legs {lengths.min():.4g} to {lengths.max():.4g} m, axes at least {found['leg_distance_m']:.4g} m apart"
         )

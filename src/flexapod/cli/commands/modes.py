@@ -30,13 +30,21 @@ def command(
 
     DESIGN is a packaged design's name (see `flexapod designs`) or the path of a .toml file.
     """
-    from flexapod.mechanics import kinematics, mode_shapes, modes
+    from flexapod.mechanics import kinematics, modes
+    from flexapod.mechanics.at_rest import pose_state
 
     hexapod, where = common.machine(design, changes, pose)
-    omega, shape = modes.natural_modes(hexapod, where, joint=joint)
-    condition = float(kinematics.condition_number(hexapod, where, characteristic_length=characteristic_length))
+    state = pose_state(hexapod, where, joint=joint)
+    omega, shape = state.modes
+    condition = state.condition_shown(
+        kinematics.condition_number(hexapod, where, characteristic_length=characteristic_length)
+    )
     lengths = kinematics.inverse_kinematics(hexapod, where)
-    descriptions = [mode.text for mode in mode_shapes.describe_modes(hexapod, where, joint=joint)]
+    descriptions = [mode.text for mode in state.descriptions]
+    warnings = [caution.text for caution in state.cautions if caution.code != "limit"]
+    exceeded = len(state.cautions) - len(warnings)
+    if exceeded:
+        warnings.append(f"{exceeded} limits are exceeded at this pose; `flexapod check` lists them.")
     if as_json:
         common.print_json(
             {
@@ -44,6 +52,7 @@ def command(
                 "digest": hexapod.digest,
                 "pose_m_deg": pose_numbers(where),
                 "joint": joint,
+                "stability": state.stability,
                 "omega_rad_s": omega,
                 "frequency_hz": omega / TWO_PI,
                 "stability_index_rad_s": omega[0],
@@ -54,13 +63,15 @@ def command(
                 "near_repeated": [[i + 1, j + 1] for i, j in modes.near_repeated(omega)],
                 "mode_shapes": shape,
                 "descriptions": descriptions,
+                "warnings": warnings,
             }
         )
         return
-    _show(f"{hexapod.name} at {where!r}, joint model {joint}", omega, descriptions)
+    _show(f"{hexapod.name} at {where!r}, joint model {joint}: {state.stability}", omega, descriptions)
     scaled = f" (moments over {characteristic_length:g} m)" if characteristic_length else " (in metres)"
     click.echo(f"Condition number of H: {condition:.6g}{scaled}")
     click.echo("Leg lengths: " + "  ".join(f"{length:.6g}" for length in lengths) + " m")
+    common.print_warnings(warnings)
 
 
 def _show(title: str, omega: Array, descriptions: list[str]) -> None:

@@ -11,12 +11,13 @@ from matplotlib.figure import Figure
 
 from flexapod import plots
 from flexapod.conventions import LEGS, TWO_PI, Array
+from flexapod.mechanics.cautions import Tangent, grows
 from flexapod.mechanics.joint_limits import limit_excess
 from flexapod.mechanics.modes import NaturalModes
 from flexapod.plots.style import SHORTENED, STRETCHED
 from flexapod.report.findings import Findings
 from flexapod.report.influence import MOVE, leading
-from flexapod.report.numbers import brief, file_name, percent, pose_words, shown
+from flexapod.report.numbers import DASH, brief, file_name, percent, pose_words, shown
 from flexapod.report.studies import inputs
 from flexapod.report.studies.inputs import limits
 from flexapod.report.study import Bars, Column, Drawing, Row, Section, Study, Table
@@ -69,6 +70,7 @@ def _rows(f: Findings) -> list[Row]:
     ]
     beside = _with_weight(f)
     return [
+        Row("At rest here", f.stability),
         *((*beside, *index) if f.tangent_differs else (*index, *beside)),
         Row("Limits at this pose", *_verdict(f)),
         Row("Condition number of H", c.metres, "in metres", on="page"),
@@ -121,15 +123,19 @@ def _machine(f: Findings) -> Section:
 
 
 def _frequencies(f: Findings) -> Section:
-    tangent = f.damped
+    tangent = f.tangent
     columns = [Column("mode", MODES), Column("rad/s", f.omega, digits=6), Column("Hz", f.omega / TWO_PI, digits=5)]
     if tangent is not None:
-        turning = np.abs(tangent.pole.imag)
+        damped, pairs = tangent.modes, tangent.pairs
+        turning = np.where(damped.pole.imag > 0, damped.pole.imag, np.nan)
         columns += [
-            Column("tangent", tangent.omega, "rad/s", 6),
-            Column("damped", turning, "rad/s", 6, on="page"),
-            Column("damped", turning / TWO_PI, "Hz", 5, on="page"),
-            Column("damping ratio", tangent.damping_ratio, digits=3),
+            Column(
+                "tangent", [_beside(tangent, j) for j in pairs.damped], "rad/s", 6, pairs.beside(grows(damped)) == 1
+            ),
+            Column("alike", [percent(share) for share in pairs.overlap], on="page"),
+            Column("damped", pairs.beside(turning), "rad/s", 6, on="page"),
+            Column("damped", pairs.beside(turning) / TWO_PI, "Hz", 5, on="page"),
+            Column("damping ratio", pairs.beside(damped.damping_ratio), digits=3),
         ]
     columns += [
         Column("mostly", [one.dominant for one in f.descriptions], on="page"),
@@ -137,7 +143,8 @@ def _frequencies(f: Findings) -> Section:
     ]
     note = (
         "First columns: Eq. 5, undamped, without weight or preload. Tangent: the exact linearisation at static "
-        "equilibrium with gravity, preload and damping; modes in ascending order."
+        "equilibrium with gravity, preload and damping, each mode beside the one of Eq. 5 that moves alike: at least "
+        "half of its kinetic energy is in that shape, or in those nearly repeated with it."
     )
     if tangent is None:
         note = "Eq. 5, undamped, without weight or preload. The exact tangent needs a static equilibrium; here is none."
@@ -145,13 +152,37 @@ def _frequencies(f: Findings) -> Section:
     def draw() -> Figure:
         figure = Figure(figsize=(7, 2.7))
         labels = [description.dominant for description in f.descriptions]
-        plots.frequencies(
-            f.omega, ax=figure.add_subplot(), tangent=None if tangent is None else tangent.omega, labels=labels
-        )
+        beside = None if tangent is None else tangent.pairs.beside(tangent.modes.pole)
+        plots.frequencies(f.omega, ax=figure.add_subplot(), tangent=beside, labels=labels)
         return figure
 
     drawing = Drawing("frequencies", "Natural frequencies", draw, wide=True)
-    return Section("Natural frequencies", [drawing, Table(columns, note)])
+    return Section("Natural frequencies", [drawing, Table(columns, note), *_alone(f)])
+
+
+def _beside(tangent: Tangent, mode: int) -> float | str:
+    """The frequency of a damped mode, rad/s, or that it has none."""
+    damped = tangent.modes
+    if mode < 0:
+        return DASH
+    if grows(damped)[mode]:
+        return "falls over" if damped.pole[mode].imag == 0 else "swings ever wider"
+    return float(damped.omega[mode]) if damped.pole[mode].imag > 0 else "no vibration"
+
+
+def _alone(f: Findings) -> list[Table]:
+    """The damped modes that are like none of Eq. 5, with words of their own."""
+    tangent = f.tangent
+    if tangent is None or not tangent.pairs.alone:
+        return []
+    alone = tangent.pairs.alone
+    columns = [
+        Column("tangent mode", [str(j + 1) for j in alone]),
+        Column("frequency", [_beside(tangent, j) for j in alone], "rad/s", 6),
+        Column("damping ratio", tangent.modes.damping_ratio[alone], digits=3),
+        Column("motion", [tangent.words[j].text for j in alone]),
+    ]
+    return [Table(columns, "Modes of the exact tangent by modulus.", "Tangent modes that are like none of Eq. 5")]
 
 
 def _modes(f: Findings) -> Section:

@@ -14,6 +14,9 @@ from matplotlib.figure import Figure
 from flexapod import plots
 from flexapod.conventions import AXES, Array
 from flexapod.design.hexapod import Hexapod
+from flexapod.errors import PoseError
+from flexapod.mechanics.cautions import Caution, axes_along_legs
+from flexapod.pose import as_pose
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 from flexapod.workspace.summary import At, SweepSummary
 from flexapod.workspace.worst import WorstPose
@@ -49,8 +52,21 @@ def study(
         data=data,
         rows=rows,
         sections=[Section(drawing.title, [drawing, *tables])],
+        cautions=_cautions(hexapod, summary, worst),
         dataset=sweep,
     )
+
+
+def _cautions(hexapod: Hexapod, summary: SweepSummary | None, worst: WorstPose | None) -> list[Caution]:
+    """Legs along the axes of their universal joints at the pose of the least index, which may be the reason for it."""
+    least = worst.pose if worst is not None else None if summary is None else summary.worst.pose
+    if least is None or not np.isfinite(least).all():
+        return []
+    try:
+        found = axes_along_legs(hexapod, as_pose(least))
+    except PoseError as error:
+        return [Caution("least_index", f"At the pose of the least index: {error}")]
+    return [Caution(one.code, f"At the pose of the least index: {one.text}", one.numbers) for one in found]
 
 
 def _figure(sweep: xr.Dataset, all_poses: bool) -> Figure:
