@@ -139,7 +139,7 @@ def test_spectra_by_their_names(text):
         (("--random", "z", "ground:low:2"), "spectrum 'ground:low:2' is unknown"),
         (("--random", "z", "flat:1:2"), "flat:RMS:FROM:TO"),
         (("--animate", "run.avi"), "run.avi is neither .gif nor .mp4"),
-        (("--animate", "nowhere/run.gif"), "nowhere is not a directory"),
+        (("--animate", "nowhere/run.gif"), "nowhere is no directory"),
     ],
 )
 def test_what_simulate_refuses(run, arguments, told):

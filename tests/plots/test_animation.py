@@ -118,7 +118,7 @@ def test_bad_arguments(paper, simulation, tmp_path):
         fx.animate_mode(paper, II, 1, gif, exaggeration=0.0)
     with pytest.raises(fx.ArgumentError, match=r"neither \.gif nor \.mp4"):
         fx.animate_mode(paper, II, 1, tmp_path / "a.png")
-    with pytest.raises(fx.ArgumentError, match="not a directory"):
+    with pytest.raises(fx.errors.OutputError, match="is no directory"):
         fx.animate_mode(paper, II, 1, tmp_path / "none" / "a.gif")
     with pytest.raises(fx.PoseError, match="batch"):
         fx.animate_mode(paper, fx.Pose([[0, 0, 0.08]]), 1, gif)

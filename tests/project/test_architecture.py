@@ -18,6 +18,7 @@ ORDER = [
     "checks",
     "optional",
     "tables",
+    "output_files",
     "rotations",
     "pose",
     "design",

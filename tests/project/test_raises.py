@@ -101,6 +101,10 @@ PROVOKED = {
     ("robustness", "MissingExtraError"): without(
         "SALib", lambda: fx.robustness(MACHINE, [fx.Uncertain("legs.stiffness", 0.1)], samples=16, sensitivity=16)
     ),
+    ("animate_mode", "OutputError"): lambda: fx.animate_mode(MACHINE, HOME, 1, "nowhere/never.gif"),
+    ("animate_simulation", "OutputError"): lambda: fx.animate_simulation(
+        fx.simulate(MACHINE, HOME, duration=1e-3), MACHINE, "nowhere/never.gif"
+    ),
     ("animate_mode", "ArgumentError"): lambda: fx.animate_mode(MACHINE, HOME, 7, "never.gif"),
     ("animate_simulation", "ArgumentError"): lambda: fx.animate_simulation(None, MACHINE, "never.gif", frames=1),
     ("closed_loop", "ArgumentError"): lambda: fx.control.closed_loop(MACHINE, HOME, "pid"),

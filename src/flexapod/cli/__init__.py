@@ -14,7 +14,7 @@ from pkgutil import iter_modules
 import click
 
 from flexapod.cli import commands
-from flexapod.cli.output.encoding import speak_plainly
+from flexapod.cli.output import failures, interrupt, streams
 from flexapod.errors import FlexapodError
 
 #: Names of the commands: the modules of `commands`.
@@ -30,6 +30,13 @@ class _Lazy(click.Group):
             return None
         return import_module(f"flexapod.cli.commands.{name}").command
 
+    def invoke(self, ctx: click.Context) -> int:
+        try:
+            super().invoke(ctx)
+        except EOFError as error:  # click would take it for Ctrl-C
+            raise click.ClickException(failures.sentence(error) or "") from error
+        return interrupt.exit_code(ctx)
+
 
 @click.group(cls=_Lazy, invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="flexapod", prog_name="flexapod")
@@ -41,26 +48,44 @@ def group(ctx: click.Context) -> None:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the command line and return its exit code: 0, or 2 for a wrong command line or design."""
+    """Run the command line and return its exit code.
+
+    0; 2 for a wrong command line or design, or what cannot be computed or written; 130 after Ctrl-C, 143 after SIGTERM.
+    """
     given = sys.argv[1:] if arguments is None else arguments
-    speak_plainly()
+    streams.speak_plainly()
     try:
-        group.main(given, prog_name="flexapod", standalone_mode=False)
+        with interrupt.terminable():
+            code = group.main(given, prog_name="flexapod", standalone_mode=False)
+            sys.stdout.flush()
     except click.ClickException as error:
         usage = error.ctx.get_usage() if isinstance(error, click.UsageError) and error.ctx else ""
         return _fail(error.format_message(), given, type(error).__name__, usage)
     except FlexapodError as error:
         return _fail(str(error), given, type(error).__name__)
-    except click.Abort:
-        click.echo("Interrupted.", err=True)
-        return 130
-    return 0
+    except (click.Abort, KeyboardInterrupt):
+        return _fail("Interrupted.", given, "Interrupted", code=130)
+    except interrupt.Terminated:
+        return _fail("Terminated.", given, "Terminated", code=143)
+    except Exception as error:
+        words = failures.sentence(error)
+        if words is None:
+            raise
+        return _fail(words, given, type(error).__name__)
+    return code if isinstance(code, int) else 0
 
 
-def _fail(message: str, given: list[str], kind: str, usage: str = "") -> int:
-    """Say what is wrong on standard error, as JSON where JSON was asked for."""
-    if "--json" in given:
-        click.echo(json.dumps({"error": message, "kind": kind}), err=True)
-    else:
-        click.echo((usage + "\n" if usage else "") + f"Error: {message}", err=True)
-    return 2
+def _fail(message: str, given: list[str], kind: str, usage: str = "", code: int = 2) -> int:
+    """Say what is wrong on standard error, as JSON where JSON was asked for. Returns the exit code."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        streams.give_up(sys.stdout)
+    try:
+        if "--json" in given:
+            click.echo(json.dumps({"error": message, "kind": kind}), err=True)
+        else:
+            click.echo((usage + "\n" if usage else "") + (f"Error: {message}" if code == 2 else message), err=True)
+    except OSError:
+        streams.give_up(sys.stderr)
+    return code

@@ -26,6 +26,7 @@ from flexapod.design.shorthands import circle_table, expand
 from flexapod.design.tables import DEFAULT_GRAVITY, complete, flatten
 from flexapod.design.universal_axes import default_axes
 from flexapod.errors import DesignError, shown
+from flexapod.output_files import write_file
 from flexapod.pose import Pose
 
 _WORDS = {
@@ -352,10 +353,10 @@ class Hexapod(Value, metaclass=Suggesting):
 
         Raises
         ------
-        OSError
+        OutputError
             Where the file cannot be written.
         """
-        Path(path).write_text(self.to_toml(), encoding="utf-8", newline="\n")
+        write_file(path, self.to_toml())
 
     @cached_property
     def packed(self) -> Array:

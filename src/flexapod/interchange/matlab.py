@@ -14,9 +14,9 @@ from scipy.io import savemat
 from flexapod import __version__
 from flexapod.conventions import ROTATIONS, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.interchange.output_files import output_path, write
 from flexapod.mechanics.inputs import ZERO, single_pose
 from flexapod.mechanics.linearisation import linearise
+from flexapod.output_files import output_path, write_file
 from flexapod.pose import PoseLike
 
 #: Kind of a signal: the units of its linear and of its angular parts.
@@ -119,7 +119,7 @@ def write_mat(
         content |= {f"{kind}_names": _cells(names), f"{kind}_units": _cells([_unit(name) for name in names])}
     stream = BytesIO()
     savemat(stream, content, oned_as="column")
-    return write(file, stream.getvalue())
+    return write_file(file, stream.getvalue())
 
 
 def _unit(name: str) -> str:

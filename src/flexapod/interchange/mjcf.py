@@ -14,9 +14,9 @@ from flexapod.checks import positive
 from flexapod.conventions import TWO_PI, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.interchange.multibody import Body, Leg, Machine, at_rest
-from flexapod.interchange.output_files import output_path, write
 from flexapod.interchange.xml_files import add, document
 from flexapod.mechanics.modes import natural_modes
+from flexapod.output_files import output_path, write_file
 from flexapod.pose import PoseLike
 
 STEPS = 50  # of a simulation for each period of the fastest mode
@@ -78,7 +78,7 @@ def write_mjcf(
     >>> fx.interchange.write_mjcf("motion-base.xml", fx.load("motion-base")).name
     'motion-base.xml'
     """
-    return write(output_path(path), mjcf(hexapod, pose, timestep))
+    return write_file(output_path(path), mjcf(hexapod, pose, timestep))
 
 
 def mjcf(hexapod: Hexapod, pose: PoseLike | None = None, timestep: float | None = None) -> str:

@@ -12,8 +12,8 @@ from flexapod import __version__
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.interchange.multibody import Body, Leg, Machine, at_rest
-from flexapod.interchange.output_files import output_path, write
 from flexapod.interchange.xml_files import add, document, say
+from flexapod.output_files import output_path, write_file
 from flexapod.pose import Pose, PoseLike
 
 VERSION = "1.9"
@@ -63,7 +63,7 @@ def write_sdf(path: str | PathLike[str], hexapod: Hexapod, pose: PoseLike | None
     >>> fx.interchange.write_sdf("motion-base.sdf", fx.load("motion-base")).name
     'motion-base.sdf'
     """
-    return write(output_path(path), sdf(at_rest(hexapod, pose)))
+    return write_file(output_path(path), sdf(at_rest(hexapod, pose)))
 
 
 def sdf(machine: Machine) -> str:

@@ -14,8 +14,8 @@ from flexapod import __version__
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.interchange.multibody import Body, Leg, Machine, at_rest
-from flexapod.interchange.output_files import output_path, write
 from flexapod.interchange.xml_files import add, document
+from flexapod.output_files import output_path, write_file
 from flexapod.pose import Pose, PoseLike
 
 UNLIMITED = 1e9  # URDF wants a number for every limit of a sliding joint
@@ -68,9 +68,9 @@ def write_urdf(path: str | PathLike[str], hexapod: Hexapod, pose: PoseLike | Non
     """
     file = output_path(path)
     machine = at_rest(hexapod, pose)
-    write(file, urdf(machine))
+    write_file(file, urdf(machine))
     beside = json.dumps(loops(machine, file.name), indent=2)
-    return file, write(file.with_suffix(".loops.json"), beside + "\n")
+    return file, write_file(file.with_suffix(".loops.json"), beside + "\n")
 
 
 def urdf(machine: Machine) -> str:

@@ -23,6 +23,7 @@ from flexapod.mechanics.inputs import as_hexapod, single_pose
 from flexapod.mechanics.mode_shapes import describe_modes
 from flexapod.mechanics.modes import natural_modes
 from flexapod.optional import needed
+from flexapod.output_files import check_file, completed
 from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, VIEW, entitle
 from flexapod.pose import Pose, PoseLike, as_pose
 from flexapod.rotations import rotation_from_vector
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 __all__ = ["animate_mode", "animate_simulation"]
 
 _TRAVEL = 0.12  # of the machine's size: the largest joint motion shown, where no factor is given
+_WIDEST = 100.0  # sizes of the machine: motions shown larger than this are seen no more
 _FPS = 16
 _PER_PERIOD = 16  # frames of a period that show a vibration
 
@@ -80,6 +82,8 @@ def animate_mode(
         For a batch of poses, or a pose that no leg can take.
     MissingExtraError
         For .mp4 where the extra "video" is not installed.
+    OutputError
+        If the file cannot be written.
 
     See Also
     --------
@@ -155,6 +159,8 @@ def animate_simulation(
         For a dataset, window or enlargement that cannot be shown, or another ending.
     MissingExtraError
         For .mp4 where the extra "video" is not installed.
+    OutputError
+        If the file cannot be written.
 
     See Also
     --------
@@ -210,11 +216,16 @@ class _Film(NamedTuple):
         factor = float(f"{_TRAVEL * size / travel:.2g}") if exaggeration is None else float(exaggeration)
         if not (np.isfinite(factor) and factor > 0):
             raise ArgumentError(f"exaggeration is {exaggeration!r}; it must be finite and > 0. Use 1 for true motion.")
+        if factor * travel > _WIDEST * size:
+            raise ArgumentError(
+                f"exaggeration is {factor:.6g}, which shows motions {factor * travel / size:.3g} times as large as the "
+                f"machine. Give at most {_WIDEST * size / travel:.3g}."
+            )
         figure, draw = _stage(self.top, self.feet, size + 2 * factor * travel)
         entitle(figure, title)
         caption = figure.text(0.5, 0.03, "", ha="center", color=INK, fontsize=10)
         writer, settings = _writer(Path(path))
-        with settings, writer.saving(figure, str(path), dpi=100):
+        with completed(path) as making, settings, writer.saving(figure, str(making), dpi=100):
             for i, (x, x_b) in enumerate(zip(factor * self.platform, factor * self.base, strict=True)):
                 draw(*self.joints(x, x_b))
                 caption.set_text(f"motion shown {factor:.6g} times larger; {notes[i]}")
@@ -278,13 +289,12 @@ def _stage(top: Array, feet: Array, width: float) -> tuple[Figure, Callable[[Arr
 
 
 def check_path(path: Path) -> None:
-    """Raises ArgumentError or MissingExtraError, before anything is computed, for a file that cannot be one."""
-    if not path.parent.is_dir():
-        raise ArgumentError(f"{path.parent} is not a directory; make it first, or choose another path")
+    """Raises ArgumentError, MissingExtraError or OutputError, before the work, for a file that cannot be one."""
     if path.suffix.lower() not in (".gif", ".mp4"):
         raise ArgumentError(f"{path.name} is neither .gif nor .mp4; give the path one of these endings")
     if path.suffix.lower() == ".mp4":
         _ffmpeg()
+    check_file(path)
 
 
 def _ffmpeg() -> str:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flexapod.conventions import AXES, Array
-from flexapod.errors import OutputError
+from flexapod.output_files import write_figure
 from flexapod.plots.style import BLUE, FAINT, INK, LEGEND, NO_VALUE, ORANGE, VALUES
 from flexapod.plots.sweep_axes import (
     LABELS,
@@ -152,14 +152,7 @@ def save(ax: Axes, path: str | Path) -> None:
     --------
     >>> fx.plots.sweep.save(fx.plots.frequencies(np.arange(1.0, 7.0)), "six.png")
     """
-    try:
-        ax.figure.savefig(path, dpi=160)  # type: ignore[union-attr]
-    except OSError as error:
-        raise OutputError(f"{path} cannot be written: {error.strerror or error}. Choose another place.") from error
-    except ValueError as error:
-        if "not supported" not in str(error):
-            raise
-        raise OutputError(f"{path} cannot be written: {error}. Choose .png, .pdf or .svg.") from error
+    write_figure(ax.figure, path)  # type: ignore[arg-type]
 
 
 def auto(sweep: xr.Dataset, level: float | None = None, *, all_poses: bool = False) -> Axes:

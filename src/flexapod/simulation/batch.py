@@ -157,7 +157,7 @@ def _sample_times(times: ArrayLike | None, duration: float | None, samples: int 
         raise ArgumentError("duration is missing, and no recording gives it; give the length in s, or times.")
     end = positive(duration, "duration", "s")
     if samples is None:
-        needed = MOST_SAMPLES if highest <= 0 else int(np.ceil(end / advised_sampling_time(highest)))
+        needed = MOST_SAMPLES if highest <= 0 else int(min(np.ceil(end / advised_sampling_time(highest)), MOST_SAMPLES))
         samples = min(MOST_SAMPLES, max(needed, 1)) + 1
     return np.linspace(0.0, end, whole(samples, "samples", 2))
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.output_files import check_file
 from flexapod.report.numbers import file_name, pose_numbers
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 @common.exaggeration_option
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=common.FILE,
     default=None,
     metavar="FILE",
     help="A .gif, or an .mp4 with the extra 'video'. Default: <design>-mode-<number>.gif here.",
@@ -43,6 +44,7 @@ def command(
     from flexapod.plots.animation import animate_mode
 
     path = Path(f"{file_name(hexapod.name)}-mode-{mode}.gif") if out is None else out
+    check_file(path)
     factor = animate_mode(hexapod, where, mode, path, joint=joint, exaggeration=exaggeration)
     if as_json:
         found = {"design": hexapod.name, "mode": mode, "exaggeration": factor, "file": str(path)}

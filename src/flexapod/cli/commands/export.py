@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.output_files import check_file
 from flexapod.report.numbers import file_name, pose_numbers
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ SUFFIXES = {"mjcf": ".xml", "urdf": ".urdf", "sdf": ".sdf", "mat": ".mat"}
 )
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=common.FILE,
     default=None,
     metavar="FILE",
     help="The file to write; by default it is named after the design.",
@@ -68,7 +69,8 @@ def command(
     given = common.load_design(design, changes)
     where = common.chosen_pose(given, pose)
     hexapod = nearest(given) if nearest_physical else given
-    files = _write(kind, out or Path(f"{file_name(hexapod.name)}{SUFFIXES[kind]}"), hexapod, where, joint)
+    path = check_file(out or Path(f"{file_name(hexapod.name)}{SUFFIXES[kind]}"))
+    files = _write(kind, path, hexapod, where, joint)
     omega, before = (natural_modes(machine, where, joint=joint).omega for machine in (hexapod, given))
     written = [str(file) for file in files]
     found = {

@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from flexapod.cli.options import common
+from flexapod.output_files import write_file
 
 
 @click.command()
@@ -16,7 +17,7 @@ from flexapod.cli.options import common
 @common.pose_named("--start", help="Pose that the search of poses begins at (m, degrees). Default: home pose.")
 @common.rotation_options
 @common.set_option
-@click.option("--out", type=click.Path(path_type=Path, dir_okay=False), metavar="CSV", help="Default: standard output.")
+@click.option("--out", type=common.FILE, metavar="CSV", help="Default: standard output.")
 @common.json_option
 def command(
     design: str,
@@ -45,6 +46,6 @@ def command(
     elif out is None:
         click.echo(to_csv(found), nl=False)
     if out is not None:
-        common.write_file(out, to_csv(found))
+        write_file(out, to_csv(found))
     for note in [] if as_json else found.notes:
         click.echo(f"Warning: {note}", err=True)

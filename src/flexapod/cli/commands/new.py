@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from flexapod.cli.options import common
+from flexapod.output_files import check_file, write_file
 
 
 @click.command()
@@ -17,12 +18,15 @@ def command(file: Path, force: bool, as_json: bool) -> None:
     """Write a commented design file to start from; it is a complete machine, ready to be changed."""
     from flexapod.design.design_file import template
 
+    if not file.name or file.name == "..":
+        raise click.UsageError(f"{str(file)!r} is no name of a file. Give one, such as machine.toml.")
     path = file if file.suffix else file.with_suffix(".toml")
     if path.suffix != ".toml":
         raise click.UsageError(f"{path} does not end in .toml; a design is a TOML file. Name it {path.stem}.toml.")
     if path.exists() and not force:
         raise click.UsageError(f"{path} is there already. Choose another name, or replace it with --force.")
-    common.write_file(path, template(path.stem))
+    check_file(path)
+    write_file(path, template(path.stem))
     if as_json:
         common.print_json({"file": str(path), "name": path.stem})
         return

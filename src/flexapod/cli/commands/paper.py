@@ -11,6 +11,7 @@ import click
 from flexapod.cli.options import common
 from flexapod.cli.output.stages import stages
 from flexapod.conventions import JOINT_MODELS
+from flexapod.output_files import make_directory, write_figure, write_file
 
 if TYPE_CHECKING:
     from flexapod.conventions import JointModel
@@ -30,7 +31,7 @@ class FigureNumber(click.ParamType):
         from flexapod.paper import FIGURES
 
         text = str(value)
-        if not text.isdigit() or int(text) not in FIGURES:
+        if not (text.isascii() and text.isdecimal() and len(text) < 9) or int(text) not in FIGURES:
             self.fail(f"{text!r} is no figure that can be drawn; there are {', '.join(map(str, sorted(FIGURES)))}.")
         return int(text)
 
@@ -43,11 +44,11 @@ class FigureNumber(click.ParamType):
     multiple=True,
     help="Number of a figure in the paper, for this figure without the page. Repeatable.  [default: everything]",
 )
-@click.option("--points", type=click.IntRange(min=100), default=None, metavar="N", help="Poses in a scatter figure.")
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the poses.")
+@click.option("--points", type=common.count(100), default=None, metavar="N", help="Poses in a scatter figure.")
+@click.option("--seed", type=common.SEED, default=0, show_default=True, help="Seed of the poses.")
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=common.DIRECTORY,
     default=Path("out"),
     show_default=True,
     help=f"Directory for {PAGE}, comparison.csv, and of each part NAME.png, .svg, .csv (what is drawn), .json.",
@@ -71,7 +72,7 @@ def command(
     """
     from flexapod.paper import PARTS, Settings, draw
 
-    common.output_directory(out)
+    make_directory(out)
     settings = Settings(points, seed, joint)
     names = [f"figure-{number}" for number in figures] or list(PARTS)
     parts = []
@@ -103,14 +104,14 @@ def _write(part: Part, out: Path) -> None:
     """The part's files."""
     import matplotlib
 
-    common.save_figure(part.figure, out / f"{part.name}.png")
+    write_figure(part.figure, out / f"{part.name}.png")
     with matplotlib.rc_context(_SVG):  # type: ignore[arg-type]
-        common.save_figure(part.figure, out / f"{part.name}.svg")
-    common.write_file(out / f"{part.name}.json", json.dumps(_record(part), indent=2, ensure_ascii=False) + "\n")
+        write_figure(part.figure, out / f"{part.name}.svg")
+    write_file(out / f"{part.name}.json", json.dumps(_record(part), indent=2, ensure_ascii=False) + "\n")
     digits = "%.9g" if len(part.table) < _MANY else "%.5g"
-    common.write_file(out / f"{part.name}.csv", part.table.to_csv(float_format=digits))
+    write_file(out / f"{part.name}.csv", part.table.to_csv(float_format=digits))
     if part.shown is not None:
-        common.write_file(out / f"{part.name}-table.csv", part.shown.to_csv())
+        write_file(out / f"{part.name}-table.csv", part.shown.to_csv())
 
 
 def _record(part: Part) -> dict[str, Any]:
@@ -121,8 +122,8 @@ def _record(part: Part) -> dict[str, Any]:
 def _page(parts: list[Part], out: Path) -> dict[str, Any]:
     from flexapod.report import paper_page
 
-    common.write_file(out / PAGE, paper_page.page(parts))
-    common.write_file(out / "comparison.csv", paper_page.comparison(parts).to_csv())
+    write_file(out / PAGE, paper_page.page(parts))
+    write_file(out / "comparison.csv", paper_page.comparison(parts).to_csv())
     return {"file": str(out / PAGE), "statements": dict(paper_page.verdicts(parts))}
 
 

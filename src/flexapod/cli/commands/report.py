@@ -36,5 +36,6 @@ def command(
     from flexapod.report.studies.machine import study
 
     hexapod, where = common.machine(design, changes, pose)
+    place = common.place(out, as_json)
     found = gather(hexapod, where, joint=joint, characteristic_length=characteristic_length, changes=changes)
-    emit(study(found), common.place(out, as_json), as_json, listed="html")
+    emit(study(found), place, as_json, listed="html")

@@ -31,16 +31,16 @@ from flexapod.cli.output.stages import stages
     help="Where it is in the platform frame (m): each a number or LEAST:LARGEST.",
 )
 @where_options
-@click.option("--samples", type=click.IntRange(2), default=2**14, show_default=True, help="Designs to draw.")
-@click.option("--poses", type=click.IntRange(1), default=256, show_default=True, help="Poses of a workspace.")
+@click.option("--samples", type=common.count(2), default=2**14, show_default=True, help="Designs to draw.")
+@click.option("--poses", type=common.count(1, 10**6), default=256, show_default=True, help="Poses of a workspace.")
 @click.option(
     "--sensitivity",
-    type=click.IntRange(0),
+    type=common.count(0, 10**6),
     default=1024,
     show_default=True,
     help="Base samples of the Sobol analysis, a power of two; 0 leaves it out.",
 )
-@click.option("--seed", type=int, default=0, show_default=True)
+@click.option("--seed", type=common.SEED, default=0, show_default=True)
 @threads_option
 @out_option
 @common.set_option
@@ -54,6 +54,7 @@ def command(design: str, changes: tuple[str, ...], out: Path | None, as_json: bo
     """
     from flexapod.cli.studies.robust import compute
 
+    place = common.place(out, as_json)
     with stages(as_json) as report:
         found = compute(common.load_design(design, changes), given, report)
-    emit(found, common.place(out, as_json), as_json)
+    emit(found, place, as_json)

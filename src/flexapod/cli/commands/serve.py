@@ -68,7 +68,9 @@ def _listen(host: str, port: int) -> socket.socket:
     try:
         bound.bind((host, port))
         bound.listen()
-    except OSError as error:
+    except (OSError, UnicodeError) as error:  # UnicodeError: a name that no host can have
         bound.close()
-        raise click.UsageError(f"cannot listen on {host} port {port}: {error.strerror}. Try --port 0.") from error
+        raise click.UsageError(
+            f"cannot listen on {host} port {port}: {getattr(error, 'strerror', None) or error}. Try --port 0."
+        ) from error
     return bound

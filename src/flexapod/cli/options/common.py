@@ -27,10 +27,9 @@ import click
 from click.shell_completion import CompletionItem
 
 from flexapod.conventions import JOINT_MODELS
+from flexapod.output_files import check_directory, check_file
 
 if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
     from rich.console import Console
 
     from flexapod.design.hexapod import Hexapod
@@ -60,6 +59,50 @@ class Assignment(click.ParamType):
         from flexapod.design.schema import KEYS
 
         return [CompletionItem(f"{key}=") for key in KEYS if key.startswith(incomplete)]
+
+
+class Output(click.ParamType):
+    """A file or directory to be written, tried before anything is computed. check: raises OutputError."""
+
+    name = "path"
+
+    def __init__(self, check: Callable[[Path], object]) -> None:
+        self.check = check
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        path = Path(value)
+        self.check(path)
+        return path
+
+    def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
+        return [CompletionItem(incomplete, type="dir" if self.check is check_directory else "file")]
+
+
+DIRECTORY, FILE = Output(check_directory), Output(check_file)
+
+
+class Finite(click.FloatRange):
+    """A number in a range: neither NaN nor infinite."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        number = float(super().convert(value, param, ctx))
+        if not math.isfinite(number):
+            self.fail(f"{value} is not a finite number.", param, ctx)
+        return number
+
+
+_MOST = 1e30  # of any number, in its unit: its square and cube are finite
+NUMBER = Finite(min=-_MOST, max=_MOST)
+POSITIVE = Finite(min=0, min_open=True, max=_MOST)
+NOT_NEGATIVE = Finite(min=0, max=_MOST)
+SECONDS = Finite(min=0, min_open=True, max=1e9)
+SEED = click.IntRange(0, 2**32 - 1)
+THREADS = click.IntRange(1, 4096)
+
+
+def count(least: int = 1, most: int = 10**7) -> click.IntRange:
+    """How many of something that is held in memory."""
+    return click.IntRange(least, most)
 
 
 design_argument = click.argument("design", type=DesignName())
@@ -104,7 +147,7 @@ def _as_rpy(context: click.Context, _: click.Parameter, six: tuple[float, ...] |
 def pose_named(*names: str, help: str) -> Callable[[Any], Any]:
     """An option whose six numbers are a pose, as `rotation_options` beside it say; None where it is not given."""
     metavar = "X Y Z ROLL PITCH YAW"
-    return click.option(*names, type=float, nargs=6, default=None, metavar=metavar, callback=_as_rpy, help=help)
+    return click.option(*names, type=NUMBER, nargs=6, default=None, metavar=metavar, callback=_as_rpy, help=help)
 
 
 def rotation_options(function: Any) -> Any:
@@ -119,7 +162,7 @@ def rotation_options(function: Any) -> Any:
     )
     pivot = click.option(
         "--pivot",
-        type=float,
+        type=NUMBER,
         nargs=3,
         default=None,
         metavar="X Y Z",
@@ -147,14 +190,14 @@ joint_option = click.option(
 )
 characteristic_length_option = click.option(
     "--characteristic-length",
-    type=click.FloatRange(min=0, min_open=True),
+    type=POSITIVE,
     default=None,
     metavar="M",
     help="Divide the moment rows of H by this length before its condition number is taken.",
 )
 exaggeration_option = click.option(
     "--exaggeration",
-    type=click.FloatRange(min=0, min_open=True),
+    type=POSITIVE,
     default=None,
     metavar="FACTOR",
     help="How many times larger a moving picture shows the motion. Default: so that it is seen well.",
@@ -164,9 +207,7 @@ json_option = click.option("--json", "as_json", is_flag=True, help="Print the re
 
 def out_option(help: str) -> Callable[[Any], Any]:
     """--out DIR: None where it is not given."""
-    return click.option(
-        "--out", type=click.Path(path_type=Path, file_okay=False), default=None, metavar="DIR", help=help
-    )
+    return click.option("--out", type=DIRECTORY, default=None, metavar="DIR", help=help)
 
 
 def stack(*decorators: Callable[[Any], Any]) -> Callable[[Any], Any]:
@@ -220,42 +261,12 @@ def pose_or_none(hexapod: Hexapod, six: tuple[float, ...] | None) -> Pose | None
     return Pose.from_rpy(*six[:3], *(math.radians(angle) for angle in six[3:]))
 
 
-def output_directory(path: Path) -> Path:
-    """The directory, made if it is not there. Raises UsageError where that cannot be."""
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise click.UsageError(f"{path} cannot be made a directory: {error.strerror}. Choose another --out.") from error
-    return path
-
-
 def place(out: Path | None, as_json: bool) -> Path | None:
-    """Where files go: --out, or else the current directory; with --json nowhere unless --out is given."""
-    return None if out is None and as_json else out or Path()
+    """Where files go: --out, or else the current directory; with --json nowhere unless --out is given.
 
-
-def write_file(path: Path, text: str) -> None:
-    """Write text. Raises UsageError where that cannot be."""
-    try:
-        path.write_text(text, encoding="utf-8", newline="\n")
-    except OSError as error:
-        raise click.UsageError(f"{path} cannot be written: {error.strerror}. Choose another place.") from error
-
-
-def save_figure(figure: Figure, path: Path) -> None:
-    """Write a figure to a file of the kind that its name ends with. Raises UsageError where that cannot be."""
-    try:
-        figure.savefig(path, dpi=160)
-    except (OSError, ValueError) as error:
-        raise click.UsageError(f"{path} cannot be written: {error}. Choose another place.") from error
-
-
-def save_netcdf(dataset: xr.Dataset, path: Path) -> None:
-    """Write a dataset as NetCDF. Raises UsageError where that cannot be."""
-    try:
-        dataset.to_netcdf(path)
-    except OSError as error:
-        raise click.UsageError(f"{path} cannot be written: {error.strerror or error}. Choose another place.") from error
+    Raises OutputError, before anything is computed, where nothing can be written.
+    """
+    return None if out is None and as_json else check_directory(out or Path())
 
 
 def print_json(result: Mapping[str, Any]) -> None:

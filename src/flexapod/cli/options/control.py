@@ -49,15 +49,13 @@ class Options:
     out: Path | None
 
 
-_positive = click.FloatRange(min=0, min_open=True)
-
 law_options = common.stack(
     click.argument("law", type=click.Choice(LAWS)),
     click.option(
-        "--kp", type=float, help="Proportional gain of pid, N/m (force, joint space), or as the library says."
+        "--kp", type=common.NUMBER, help="Proportional gain of pid, N/m (force, joint space), or as the library says."
     ),
-    click.option("--kd", type=float, help="Derivative gain of pid, N s/m."),
-    click.option("--ki", type=float, default=0.0, help="Integral gain of pid, N/(m s)."),
+    click.option("--kd", type=common.NUMBER, help="Derivative gain of pid, N s/m."),
+    click.option("--ki", type=common.NUMBER, default=0.0, help="Integral gain of pid, N/(m s)."),
     click.option("--space", type=click.Choice(["joint", "task"]), default="joint", show_default=True, help="Of pid."),
     click.option(
         "--actuator",
@@ -66,13 +64,13 @@ law_options = common.stack(
         show_default=True,
         help="What pid commands: leg forces, or changes of leg length.",
     ),
-    click.option("--bandwidth", type=_positive, metavar="RAD_S", help="Of the filter of pid's derivative."),
+    click.option("--bandwidth", type=common.POSITIVE, metavar="RAD_S", help="Of the filter of pid's derivative."),
     click.option(
         "--gain",
-        type=_positive,
+        type=common.POSITIVE,
         help="Of force (rad/s) or velocity (N s/m). Default: the most damping at the sampling time.",
     ),
-    click.option("--leak", type=click.FloatRange(min=0), metavar="RAD_S", help="Of force. Default: omega_1 / 10."),
+    click.option("--leak", type=common.NOT_NEGATIVE, metavar="RAD_S", help="Of force. Default: omega_1 / 10."),
     click.option(
         "--measure",
         default="acceleration",
@@ -80,27 +78,29 @@ law_options = common.stack(
         metavar="KIND,...",
         help="What lqg and h-infinity see: acceleration, leg_force, leg_length, leg_rate, position, velocity.",
     ),
-    click.option("--effort", type=_positive, help="Weight of leg forces in lqg and h-infinity. Default: 0.1."),
-    click.option("--noise", type=_positive, help="Sensor noise that lqg and h-infinity expect. Default: 0.1."),
+    click.option("--effort", type=common.POSITIVE, help="Weight of leg forces in lqg and h-infinity. Default: 0.1."),
+    click.option("--noise", type=common.POSITIVE, help="Sensor noise that lqg and h-infinity expect. Default: 0.1."),
 )
 run_options = common.stack(
-    click.option("--dt", type=_positive, metavar="S", help="Sampling time. Default: 2 pi/(20 omega_max)."),
-    click.option("--delay", type=click.IntRange(min=0), default=0, help="Samples by which forces come late."),
+    click.option("--dt", type=common.POSITIVE, metavar="S", help="Sampling time. Default: 2 pi/(20 omega_max)."),
+    click.option("--delay", type=common.count(0, 100), default=0, help="Samples by which forces come late."),
     click.option(
-        "--shake", type=_positive, metavar="M_S2", help="Run on a base with this RMS acceleration on each axis."
+        "--shake", type=common.POSITIVE, metavar="M_S2", help="Run on a base with this RMS acceleration on each axis."
     ),
     click.option("--axes", default="x,y,z", show_default=True, metavar="AXIS,...", help="Axes of the base that shake."),
     click.option(
         "--band",
-        type=_positive,
+        type=common.POSITIVE,
         nargs=2,
         default=None,
         metavar="HZ HZ",
         help="Of the shaking. Default: about the modes.",
     ),
-    click.option("--duration", type=_positive, metavar="S", help="Of the run. Default: 60 periods of the lowest mode."),
-    click.option("--force-limit", type=_positive, metavar="N", help="Largest force of an actuator."),
-    click.option("--sensor-noise", type=_positive, help="RMS noise of the first measurement, in its unit."),
-    click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of shaking and noise."),
+    click.option(
+        "--duration", type=common.SECONDS, metavar="S", help="Of the run. Default: 60 periods of the lowest mode."
+    ),
+    click.option("--force-limit", type=common.POSITIVE, metavar="N", help="Largest force of an actuator."),
+    click.option("--sensor-noise", type=common.POSITIVE, help="RMS noise of the first measurement, in its unit."),
+    click.option("--seed", type=common.SEED, default=0, show_default=True, help="Of shaking and noise."),
     common.out_option("Where to write the report and figures. Default: nothing is written."),
 )

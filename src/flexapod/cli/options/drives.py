@@ -69,7 +69,7 @@ drive_options = common.stack(
         metavar="HZ",
         help="Take what is slower than this out of every recording.",
     ),
-    click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Of --random."),
+    click.option("--seed", type=common.SEED, default=1, show_default=True, help="Of --random."),
     click.option("--ramp", type=POSITIVE_TIME, default=None, metavar="SECONDS", help="Let all drives rise smoothly."),
 )
 

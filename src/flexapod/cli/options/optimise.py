@@ -33,7 +33,7 @@ where_options = common.stack(
     common.pose_option,
     click.option(
         "--around",
-        type=float,
+        type=common.NUMBER,
         nargs=2,
         default=None,
         metavar="M DEG",
@@ -46,7 +46,7 @@ where_options = common.stack(
 out_option = common.out_option(
     "Where to write the report (HTML), figures (PNG) and designs (TOML). Default: here; with --json: no files."
 )
-threads_option = click.option("--threads", type=click.IntRange(1), default=None, help="Default: all cores.")
+threads_option = click.option("--threads", type=common.THREADS, default=None, help="Default: all cores.")
 optimise_options = common.stack(
     click.option(
         "--vary",
@@ -74,7 +74,7 @@ optimise_options = common.stack(
         metavar="FILE",
         help="Raise the mean index over the poses of a file (x,y,z,roll,pitch,yaw in m, degrees).",
     ),
-    click.option("--trials", type=click.IntRange(0), default=200, show_default=True, help="Of the global search."),
+    click.option("--trials", type=common.count(0, 10**6), default=200, show_default=True, help="Of the global search."),
     click.option(
         "--study",
         type=click.Path(path_type=Path, dir_okay=False),
@@ -83,11 +83,13 @@ optimise_options = common.stack(
         help="Keep the trials in this SQLite file: to stop, to go on, to share the search between processes.",
     ),
     click.option("--sampler", type=click.Choice(["tpe", "sobol"]), default="tpe", show_default=True),
-    click.option("--seed", type=int, default=0, show_default=True),
-    click.option("--points", type=click.IntRange(1), default=2**12, show_default=True, help="Poses of a trial."),
-    click.option("--verify", type=click.IntRange(2), default=2**17, show_default=True, help="Poses of the last sweep."),
+    click.option("--seed", type=common.SEED, default=0, show_default=True),
+    click.option("--points", type=common.count(1), default=2**12, show_default=True, help="Poses of a trial."),
     click.option(
-        "--refine", type=click.IntRange(0), default=12, show_default=True, help="Points of a front made exact."
+        "--verify", type=common.count(2, 10**8), default=2**17, show_default=True, help="Poses of the last sweep."
+    ),
+    click.option(
+        "--refine", type=common.count(0, 1000), default=12, show_default=True, help="Points of a front made exact."
     ),
     threads_option,
     out_option,

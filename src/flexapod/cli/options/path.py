@@ -39,14 +39,15 @@ class Options:
     out: Path | None
 
 
-_positive = click.FloatRange(min=0, min_open=True)
 path_options = common.stack(
     click.argument("file", type=click.Path(path_type=Path, dir_okay=False), required=False),
     common.pose_named("--from", "start", help="Plan from this pose (m, degrees)."),
     common.pose_named("--to", "goal", help="Plan to this pose (m, degrees)."),
     common.rotation_options,
     click.option("--from-home", is_flag=True, help="Measure the poses of FILE, --from and --to from the home pose."),
-    click.option("--bound", type=_positive, metavar="RAD_S", help="Least natural frequency that the path should keep."),
+    click.option(
+        "--bound", type=common.POSITIVE, metavar="RAD_S", help="Least natural frequency that the path should keep."
+    ),
     click.option(
         "--ends",
         type=click.Choice(["rest", "free", "periodic"]),
@@ -62,12 +63,16 @@ path_options = common.stack(
         show_default=True,
         help="What a planned path has least of; time needs --leg-rate or --leg-acceleration.",
     ),
-    click.option("--duration", type=_positive, metavar="S", help="Duration of a planned path. Default: 1 s."),
-    click.option("--leg-rate", type=_positive, metavar="M_S", help="Fastest rate of a leg; times a planned path."),
-    click.option("--leg-acceleration", type=_positive, metavar="M_S2", help="Largest acceleration of a leg."),
-    click.option("--condition", type=_positive, metavar="C", help="Most that cond(H) may be on a planned path."),
-    click.option("--clearance", type=_positive, metavar="M", help="Least distance of leg axes on a planned path."),
+    click.option("--duration", type=common.SECONDS, metavar="S", help="Duration of a planned path. Default: 1 s."),
+    click.option(
+        "--leg-rate", type=common.POSITIVE, metavar="M_S", help="Fastest rate of a leg; times a planned path."
+    ),
+    click.option("--leg-acceleration", type=common.POSITIVE, metavar="M_S2", help="Largest acceleration of a leg."),
+    click.option("--condition", type=common.POSITIVE, metavar="C", help="Most that cond(H) may be on a planned path."),
+    click.option(
+        "--clearance", type=common.POSITIVE, metavar="M", help="Least distance of leg axes on a planned path."
+    ),
     click.option("--limits/--no-limits", default=True, help="Whether a planned path keeps the design's limits."),
-    click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of the planner's samples."),
+    click.option("--seed", type=common.SEED, default=0, show_default=True, help="Of the planner's samples."),
     common.out_option("Where to write the report, figures and planned waypoints. Default: nothing is written."),
 )

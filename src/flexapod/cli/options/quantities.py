@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from typing import Any, Literal
 
@@ -12,6 +11,7 @@ from flexapod.design.units import QUANTITIES, printed, si_unit
 from flexapod.tables import unit_named
 
 NUMBER = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)", re.ASCII | re.DOTALL)
+_MOST = {"time": 1e9}  # of a dimension, in the unit of its option
 Need = Literal["finite", "> 0", ">= 0"]
 
 
@@ -44,8 +44,10 @@ class Quantity(click.ParamType):
             (up, down), (own_up, own_down) = known[unit], known[self.unit]  # type: ignore[index]
             number = number * up / down * own_down / own_up
         holds = {"finite": True, "> 0": number > 0, ">= 0": number >= 0}[self.need]
-        if not (math.isfinite(number) and holds):
-            fail(f"{name} is {text}; it must be finite{'' if self.need == 'finite' else f' and {self.need}'}.")
+        most = _MOST.get(self.dimension, 1e30)
+        if not (abs(number) <= most and holds):  # NaN too
+            needed = "" if self.need == "finite" else f" and {self.need}"
+            fail(f"{name} is {text}; it must be finite{needed}, and at most {most:g} {printed(self.unit)}.")
         return number
 
 

@@ -9,8 +9,6 @@ import click
 from flexapod.cli.options import common
 from flexapod.conventions import AXES, LEGS
 
-POSITIVE = click.FloatRange(min=0, min_open=True)
-
 response_options = common.stack(
     click.option(
         "--from",
@@ -25,10 +23,10 @@ response_options = common.stack(
     ),
     click.option("--relative", is_flag=True, help="Motion relative to the base instead of absolute motion."),
     click.option(
-        "--omega-min", type=POSITIVE, default=None, metavar="RAD/S", help="Default: a fifth of the lowest mode."
+        "--omega-min", type=common.POSITIVE, default=None, metavar="RAD/S", help="Default: a fifth of the lowest mode."
     ),
     click.option(
-        "--omega-max", type=POSITIVE, default=None, metavar="RAD/S", help="Default: 1.5 times the highest mode."
+        "--omega-max", type=common.POSITIVE, default=None, metavar="RAD/S", help="Default: 1.5 times the highest mode."
     ),
     click.option(
         "--points",
@@ -39,18 +37,18 @@ response_options = common.stack(
     ),
     click.option(
         "--point",
-        type=float,
+        type=common.NUMBER,
         nargs=3,
         default=(0.0, 0.0, 0.0),
         metavar="X Y Z",
         help="Output point, m, platform frame.",
     ),
     click.option(
-        "--loss-factor", type=click.FloatRange(min=0), default=0.0, show_default=True, help="Of the legs' springs."
+        "--loss-factor", type=common.NOT_NEGATIVE, default=0.0, show_default=True, help="Of the legs' springs."
     ),
     click.option(
         "--amplitude",
-        type=POSITIVE,
+        type=common.POSITIVE,
         default=None,
         metavar="M",
         help="Shake the base of the non-linear machine too, by this amplitude (m or rad), at --steps frequencies.",

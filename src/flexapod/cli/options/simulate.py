@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 
 from flexapod.cli.options import common
@@ -31,13 +29,13 @@ simulate_options = common.stack(
         help="The platform is at rest in the room, or moves with the base, when it begins.",
     ),
     click.option("--unloaded", is_flag=True, help="Let gravity ring: the legs are unstretched at the pose."),
-    click.option("--samples", type=click.IntRange(2), default=None, help="Default: 20 a period of the highest mode."),
-    click.option("--rtol", type=float, default=1e-9, show_default=True, help="Relative error of a step."),
+    click.option("--samples", type=common.count(2), default=None, help="Default: 20 a period of the highest mode."),
+    click.option("--rtol", type=common.NUMBER, default=1e-9, show_default=True, help="Relative error of a step."),
     click.option("--reactions", is_flag=True, help="Forces and moments in all joints too."),
     common.out_option("Write figures, .csv and .nc here."),
     click.option(
         "--animate",
-        type=click.Path(path_type=Path, dir_okay=False),
+        type=common.FILE,
         default=None,
         metavar="FILE",
         help="Write a moving picture of the last periods: a .gif, or an .mp4 with the extra 'video'.",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.output_files import check_figure, check_file
 
 if TYPE_CHECKING:
     from flexapod.conventions import JointModel
@@ -50,6 +51,16 @@ class Options:
         return self.out is not None and self.out.suffix.lower() == ".zarr"
 
 
+def _check_figure(path: Path) -> None:
+    check_figure(path)
+    check_file(path)
+
+
+def _check_out(path: Path) -> None:
+    if path.suffix.lower() != ".zarr":  # a store looks for itself
+        check_file(path)
+
+
 poses_options = common.stack(
     click.option(
         "--box",
@@ -60,7 +71,7 @@ poses_options = common.stack(
     ),
     click.option(
         "--around",
-        type=float,
+        type=common.NUMBER,
         nargs=2,
         default=None,
         metavar="M DEG",
@@ -86,7 +97,7 @@ poses_options = common.stack(
         metavar="N",
         help=f"Number of poses in the box.  [default: {DEFAULT_POINTS}]",
     ),
-    click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of the points."),
+    click.option("--seed", type=common.SEED, default=0, show_default=True, help="Seed of the points."),
     click.option(
         "--low-discrepancy", "even", is_flag=True, help="Points of a scrambled Sobol sequence instead of random ones."
     ),
@@ -102,14 +113,14 @@ output_options = common.stack(
     ),
     click.option(
         "--out",
-        type=click.Path(path_type=Path),
+        type=common.Output(_check_out),
         default=None,
         help="Where to write: .zarr (streamed, any size), .nc, .parquet or .csv.",
     ),
     click.option("--resume", is_flag=True, help="Go on with a .zarr store that the same command began."),
     click.option(
         "--chunk",
-        type=click.IntRange(min=1),
+        type=common.count(1, 10**9),
         default=None,
         metavar="N",
         help="Most poses in a block of a .zarr store.  [default: up to 64 MiB]",
@@ -122,9 +133,7 @@ output_options = common.stack(
     click.option("--summary/--no-summary", default=True, help="Whether to read the results once more for the summary."),
 )
 machine_options = common.stack(
-    click.option(
-        "--threads", type=click.IntRange(min=1), default=None, metavar="N", help="Threads.  [default: all cores]"
-    ),
+    click.option("--threads", type=common.THREADS, default=None, metavar="N", help="Threads.  [default: all cores]"),
     click.option(
         "--scheduler",
         default=None,
@@ -135,7 +144,7 @@ machine_options = common.stack(
 reading_options = common.stack(
     click.option(
         "--at-least",
-        type=float,
+        type=common.NUMBER,
         default=None,
         metavar="RAD_S",
         help="A wanted stability index: what part of the workspace reaches it?",
@@ -148,14 +157,14 @@ reading_options = common.stack(
     ),
     click.option(
         "--figure",
-        type=click.Path(path_type=Path, dir_okay=False),
+        type=common.Output(_check_figure),
         default=None,
         help="Draw (.png, .pdf, .svg) the map of a grid of two coordinates, the surface of equal index of one of "
         "three, else index against cond(H).",
     ),
     click.option(
         "--level",
-        type=float,
+        type=common.NUMBER,
         default=None,
         metavar="RAD_S",
         help="Index of the surface that --figure draws.  [default: the median]",

@@ -1,14 +1,42 @@
-"""Ctrl-C and SIGTERM as a wish to stop, not as an accident."""
+"""Ctrl-C and SIGTERM: the end of a command, or, where it can stop in good order, a wish to stop."""
 
 from __future__ import annotations
 
 import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import FrameType, TracebackType
 from typing import Any
 
+import click
+
+_SIGNAL = "flexapod.signal"  # where a context keeps the number of the signal that cut its command short
+
+
+class Terminated(BaseException):
+    """SIGTERM came. Like KeyboardInterrupt, it is no Exception, so that nothing takes it for a failed attempt."""
+
+
+@contextmanager
+def terminable() -> Iterator[None]:
+    """While entered, SIGTERM raises Terminated, as Ctrl-C raises KeyboardInterrupt: what was begun is undone."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def end(number: int, frame: FrameType | None) -> None:
+        raise Terminated
+
+    before = signal.signal(signal.SIGTERM, end)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
 
 class Stopping:
-    """While entered, the first signal only sets `signal`; a second one interrupts at once."""
+    """While entered, the first signal only sets `signal`, and the exit code of the command; a second one interrupts."""
 
     def __init__(self) -> None:
         self.signal: int | None = None
@@ -32,3 +60,11 @@ class Stopping:
         if self.signal is not None:
             raise KeyboardInterrupt
         self.signal = number
+        context = click.get_current_context(silent=True)
+        if context is not None:
+            context.meta[_SIGNAL] = number
+
+
+def exit_code(context: click.Context) -> int:
+    """The exit code of a command that ended in good order: that of the signal that cut it short, or else 0."""
+    return 128 + context.meta[_SIGNAL] if _SIGNAL in context.meta else 0

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.cli.output.interrupt import exit_code
+from flexapod.output_files import make_directory, write_figure, write_file, write_netcdf
 
 if TYPE_CHECKING:
     from flexapod.report.study import Study
@@ -20,11 +22,12 @@ def emit(study: Study, out: Path | None, as_json: bool, *, listed: str = "files"
     listed: how JSON names the files: "files", "html" where a page is the only one, or "" for not at all. more: files
     that are written already.
     """
-    files = [*([] if out is None else write(study, common.output_directory(out))), *more]
+    files = [*([] if out is None else write(study, make_directory(out))), *more]
     if as_json:
         names = [str(file) for file in files]
         told: dict[str, object] = {"files": names, "html": next(iter(names), None)}
-        common.print_json({**study.to_dict(), **({listed: told[listed]} if listed else {})})
+        cut_short = {"cut_short": True} if exit_code(click.get_current_context()) else {}
+        common.print_json({**study.to_dict(), **cut_short, **({listed: told[listed]} if listed else {})})
         return
     from flexapod.report.terminal import show
 
@@ -40,11 +43,11 @@ def write(study: Study, directory: Path) -> list[Path]:
         if make is None:
             from flexapod.report.html import page
 
-            common.write_file(path, page(study))
+            write_file(path, page(study))
         elif path.suffix == ".nc":
-            common.save_netcdf(make(), path)  # type: ignore[arg-type]
+            write_netcdf(make(), path)  # type: ignore[arg-type]
         elif path.suffix in (".png", ".svg"):
-            common.save_figure(make(), path)  # type: ignore[arg-type]
+            write_figure(make(), path)  # type: ignore[arg-type]
         else:
-            common.write_file(path, make())  # type: ignore[arg-type]
+            write_file(path, make())  # type: ignore[arg-type]
     return [directory / name for name in study.files]

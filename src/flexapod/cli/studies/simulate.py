@@ -11,13 +11,13 @@ import xarray as xr
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from flexapod.cli.options import common
 from flexapod.cli.options.drives import drives
 from flexapod.cli.output.results import write
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SimulationError
 from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.kinematics import inverse_kinematics
+from flexapod.output_files import make_directory
 from flexapod.plots import animation
 from flexapod.pose import Pose
 from flexapod.report.studies.simulation import study
@@ -34,7 +34,7 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
         dataset = _simulate(hexapod, pose, given, quiet)
     except SimulationError as error:
         if error.result is not None and given["out"] is not None:
-            write(study(hexapod, pose, error.result), common.output_directory(given["out"]))
+            write(study(hexapod, pose, error.result), make_directory(given["out"]))
             raise SimulationError(f"{error} The motion so far is in {given['out']}.") from error
         raise
     took = time.perf_counter() - began

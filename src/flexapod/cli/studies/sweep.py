@@ -25,7 +25,7 @@ from flexapod.workspace.pose_sets import PoseSet, given_poses
 from flexapod.workspace.quantities import QUANTITIES, chosen
 from flexapod.workspace.sampling import low_discrepancy, random_poses
 from flexapod.workspace.store.dask_cluster import cluster
-from flexapod.workspace.store.file_formats import check_file, save
+from flexapod.workspace.store.file_formats import check_size, save
 from flexapod.workspace.store.store import SweepStore, open_sweep
 from flexapod.workspace.summary import summarise
 from flexapod.workspace.sweeping import sweep
@@ -83,7 +83,7 @@ def _quantities(hexapod: Hexapod, text: str) -> tuple[str, ...]:
 
 
 def _in_memory(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options) -> xr.Dataset:
-    check_file(options.out or Path("sweep.nc"), points.count, quantities)
+    check_size(options.out or Path("sweep.nc"), points.count, quantities)
     found = sweep(hexapod, points, quantities=quantities, joint=options.joint, threads=options.threads)
     if options.out is not None:
         save(found, options.out)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +12,7 @@ import numpy as np
 from flexapod.conventions import AXES, unit_of
 from flexapod.errors import OutputError
 from flexapod.optional import needed
+from flexapod.output_files import check_file, completed, write_netcdf
 from flexapod.workspace.pose_sets import in_words
 from flexapod.workspace.quantities import QUANTITIES, memory, table_titles, titled
 
@@ -32,35 +32,20 @@ def save(sweep: xr.Dataset, path: str | Path) -> None:
     """
     path = Path(path)
     write = _writer(path)
-    _refuse_locked(path)
-    making = path.with_name(f".{path.name}.{os.getpid()}{path.suffix}")
-    try:
+    with completed(path) as making:
         write(sweep, making)
-        os.replace(making, path)
-    except OSError as error:
-        raise OutputError(f"{path} cannot be written: {error.strerror or error}. Choose another place.") from error
-    finally:
-        making.unlink(missing_ok=True)
 
 
-def check_file(path: Path, poses: int, quantities: tuple[str, ...]) -> None:
+def check_size(path: Path, poses: int, quantities: tuple[str, ...]) -> None:
     """Raises OutputError, before anything is computed, for a file that would be too large or cannot be."""
     _writer(path)
-    if not path.parent.is_dir():
-        raise OutputError(f"{path.parent} is no directory, so {path.name} cannot be written in it. Make it first.")
-    _refuse_locked(path)
+    check_file(path)
     size = memory(poses, quantities)
     if size > MOST_BYTES:
         raise OutputError(
             f"{in_words(poses)} poses take {size // 2**30} GiB in memory; a {path.suffix} file is written whole, up to "
             f"{MOST_BYTES // 2**30} GiB. Stream to a store instead: {path.with_suffix(ZARR).name}"
         )
-
-
-def _refuse_locked(path: Path) -> None:
-    """Raises OutputError for a file that is not to be written to: it could be replaced all the same."""
-    if path.exists() and not path.stat().st_mode & 0o222:
-        raise OutputError(f"{path} is there and may not be written to. Choose another name, or make it writable.")
 
 
 def _writer(path: Path) -> Callable[[xr.Dataset, Path], None]:
@@ -71,7 +56,7 @@ def _writer(path: Path) -> Callable[[xr.Dataset, Path], None]:
 
 def _netcdf(sweep: xr.Dataset, path: Path) -> None:
     needed("h5netcdf", "sweep", "a .nc file needs h5netcdf")
-    sweep.to_netcdf(path, engine="h5netcdf")
+    write_netcdf(sweep, path, engine="h5netcdf")
 
 
 def _parquet(sweep: xr.Dataset, path: Path) -> None:

@@ -1,9 +1,11 @@
-"""Words on streams whose encoding lacks some of their signs, such as pipes of Windows."""
+"""Standard output and error: encodings that lack some signs, as pipes of Windows have, and streams that are full."""
 
 from __future__ import annotations
 
 import codecs
+import os
 import sys
+from typing import Any
 
 _PLAIN = {
     "ω": "w",
@@ -20,6 +22,14 @@ _PLAIN = {
     "…": "...",
     "–": "-",
     "−": "-",
+    "π": "pi",
+    "≠": "!=",
+    "∞": "inf",
+    "✓": "ok",
+    "“": '"',
+    "”": '"',
+    "’": "'",
+    **{chr(0x2080 + digit): str(digit) for digit in range(10)},  # as subscripts
 }
 
 
@@ -38,3 +48,13 @@ def speak_plainly() -> None:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="flexapod.plainly")
+
+
+def give_up(stream: Any) -> None:
+    """Point a stream that cannot be written to nowhere, so that the interpreter does not fail on it at its end."""
+    try:
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, stream.fileno())
+        os.close(nowhere)
+    except (OSError, ValueError, AttributeError):  # a stream that is no file
+        pass

@@ -1,0 +1,151 @@
+"""Files that Flexapod writes: tried before the work, and there as a whole or not at all.
+
+A file is made beside its place under another name and gets its own when it is complete, so that a full disk or an
+interrupt leaves what was there before.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from flexapod.errors import ArgumentError, OutputError, shown
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+#: Endings of figures that Matplotlib writes.
+FIGURES = (".png", ".pdf", ".svg", ".eps", ".ps", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
+
+
+def output_path(path: str | PathLike[str]) -> Path:
+    """The path of a file to be written; raises ArgumentError for anything else, such as a hexapod."""
+    if not isinstance(path, str | PathLike):
+        raise ArgumentError(
+            f"path is {shown(path)}; it must be the path of the file to write, which comes before the hexapod."
+        )
+    return Path(path)
+
+
+@contextmanager
+def completed(path: str | PathLike[str]) -> Iterator[Path]:
+    """Where to make a file, which gets its own name when the block ends well. Raises OutputError."""
+    path = Path(path)
+    try:
+        place = _place(path)
+        making = place if _is_device(place) else place.with_name(f".{os.getpid()}.{place.name[-60:]}")
+    except (OSError, ValueError) as error:
+        raise _failed(path, error) from error
+    try:
+        yield making
+        if making != place:
+            if place.exists():
+                shutil.copymode(place, making)
+            os.replace(making, place)
+    except OutputError:
+        raise
+    except OSError as error:
+        raise _failed(path, error) from error
+    finally:
+        if making != place:
+            with suppress(OSError):
+                making.unlink(missing_ok=True)
+
+
+def write_file(path: str | PathLike[str], content: str | bytes) -> Path:
+    """Write a file, text in UTF-8. Raises OutputError."""
+    with completed(path) as making:
+        making.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return Path(path)
+
+
+def write_figure(figure: Figure, path: str | PathLike[str]) -> None:
+    """Write a figure at 160 dots per inch, in the format that the name ends with. Raises OutputError."""
+    check_figure(Path(path))
+    with completed(path) as making:
+        figure.savefig(making, dpi=160)
+
+
+def write_netcdf(dataset: xr.Dataset, path: str | PathLike[str], engine: str | None = None) -> None:
+    """Write a dataset as NetCDF. Raises OutputError.
+
+    It is made in memory first: the HDF5 library ends the process where a disk is full.
+    """
+    write_file(path, bytes(dataset.to_netcdf(engine=engine)))  # type: ignore[call-overload]
+
+
+def check_figure(path: Path) -> None:
+    """Raises OutputError for a name that ends in no format of figures."""
+    if path.suffix.lower() not in FIGURES:
+        raise OutputError(f"{path} ends in {path.suffix!r}, no format of figures. Choose .png, .pdf or .svg.")
+
+
+def check_file(path: str | PathLike[str]) -> Path:
+    """The path of a file, tried: raises OutputError, before anything is computed, where it cannot be written."""
+    path = Path(path)
+    if not path.parent.is_dir():
+        raise OutputError(f"{path.parent} is no directory, so {path.name} cannot be written in it. Make it first.")
+    try:
+        place = _place(path)
+        if not _is_device(place):
+            _try_in(place.parent, place.name)
+    except (OSError, ValueError) as error:
+        raise _failed(path, error) from error
+    return path
+
+
+def check_directory(path: Path) -> Path:
+    """The path of a directory for files, tried: raises OutputError, before anything is computed, where none can be."""
+    try:
+        there = next(place for place in (path, *path.absolute().parents) if place.exists())
+        if not there.is_dir():
+            raise NotADirectoryError(20, f"{there} is a file")
+        _try_in(there, path.name)
+    except (OSError, ValueError) as error:
+        words = getattr(error, "strerror", None) or error
+        raise OutputError(f"{path} cannot be made a directory: {words}. Choose another place.") from error
+    return path
+
+
+def make_directory(path: Path) -> Path:
+    """The directory, made if it is not there. Raises OutputError."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        words = getattr(error, "strerror", None) or error
+        raise OutputError(f"{path} cannot be made a directory: {words}. Choose another place.") from error
+    return path
+
+
+def _place(path: Path) -> Path:
+    """The file itself where the path is a link to it; raises OSError for one that must not be replaced."""
+    place = Path(os.path.realpath(path))
+    if place.is_dir():
+        raise IsADirectoryError(21, "it is a directory")
+    if place.exists() and not place.stat().st_mode & 0o222:
+        raise PermissionError(13, "it may not be written to")
+    return place
+
+
+def _is_device(place: Path) -> bool:
+    """Something that is no file and must stay, as /dev/null or a pipe."""
+    return place.exists() and not place.is_file()
+
+
+def _try_in(folder: Path, name: str) -> None:
+    trial = folder / f".{os.getpid()}.{name}"[:255]
+    if len(name.encode()) > 255:
+        raise OSError(36, "File name too long")
+    trial.touch()
+    trial.unlink()
+
+
+def _failed(path: Path, error: Exception) -> OutputError:
+    words = getattr(error, "strerror", None) or error
+    return OutputError(f"{path} cannot be written: {words}. Choose another place.")
