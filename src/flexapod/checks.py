@@ -13,11 +13,28 @@ from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, shown
 
 
+def floats(value: Any) -> Array:
+    """A copy as float64 of any shape. Raises TypeError or ValueError for what is no number, or none that can be used.
+
+    NumPy would leave out the mask of masked entries and the imaginary parts of complex ones, and cannot hold integers
+    of hundreds of digits.
+    """
+    if isinstance(value, np.ndarray):
+        if np.ma.is_masked(value):
+            raise ValueError("some entries are masked")
+        if value.dtype.kind in "cmM":
+            raise TypeError(f"numbers of the type {value.dtype}")
+    try:
+        return np.array(value, dtype=np.float64)
+    except OverflowError as error:
+        raise ValueError("an integer too large for a number of this machine") from error
+
+
 def number(value: Any, name: str, unit: str = "", *, need: str = "finite") -> float:
     """A number that is finite and, as `need` says, "finite", "> 0" or ">= 0"."""
     try:
         found = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         found = float("nan")
     holds = {"finite": True, "> 0": found > 0, ">= 0": found >= 0}[need]
     if isinstance(value, bool) or not (np.isfinite(found) and holds):
@@ -57,7 +74,7 @@ def one_of(value: Any, name: str, choices: Collection[str]) -> str:
 def numbers(value: ArrayLike, name: str, shape: tuple[int | None, ...] = (None,)) -> Array:
     """Finite float64 numbers of a shape, in which None stands for any size; a copy."""
     try:
-        array = np.array(value, dtype=np.float64)
+        array = floats(value)
     except (TypeError, ValueError):
         raise ArgumentError(f"{name} is {shown(value)}; it must hold numbers.") from None
     fits = array.ndim == len(shape) and all(want in (None, size) for want, size in zip(shape, array.shape, strict=True))

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod._suggestions import Suggesting, suggests
+from flexapod.checks import floats
 from flexapod.conventions import Array
 from flexapod.errors import FlexapodError, PoseError, shown
 from flexapod.rotations import FIXED, angles_of_matrix, checked_matrices, matrix_of_angles, rpy_matrix
@@ -25,7 +26,7 @@ MotionLike: TypeAlias = "Pose | Motion | ArrayLike"
 def vectors(value: ArrayLike, name: str, width: int = 3, error_type: type[FlexapodError] = PoseError) -> Array:
     """A copy of `value` as finite float64 of shape (..., width); raises `error_type` otherwise."""
     try:
-        array = np.array(value, dtype=np.float64)
+        array = floats(value)
     except (TypeError, ValueError) as error:
         raise error_type(f"{name} is {shown(value)}; it must hold {width} numbers.") from error
     if array.ndim == 0 or array.shape[-1] != width:
@@ -144,7 +145,7 @@ class Pose(metaclass=Suggesting):
             For what is not a finite number, or shapes that do not fit.
         """
         try:
-            numbers = np.broadcast_arrays(*(np.asarray(v, dtype=np.float64) for v in (x, y, z, roll, pitch, yaw)))
+            numbers = np.broadcast_arrays(*(floats(v) for v in (x, y, z, roll, pitch, yaw)))
         except (TypeError, ValueError) as error:
             raise PoseError(f"x, y, z, roll, pitch and yaw must be numbers, or arrays that fit: {error}") from error
         six = vectors(np.stack(numbers, axis=-1), "pose", 6)

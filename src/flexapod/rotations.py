@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.checks import floats
 from flexapod.conventions import Array
 from flexapod.errors import PoseError, shown
 
@@ -24,7 +25,7 @@ def checked_matrices(rotation: Any) -> Array:
     """A copy of rotations as matrices (..., 3, 3); raises PoseError for what does not rotate."""
     matrix = rotation.as_matrix() if hasattr(rotation, "as_matrix") else rotation
     try:
-        matrix = np.array(matrix, dtype=np.float64)  # a copy: a pose does not change with its maker's arrays
+        matrix = floats(matrix)  # a copy: a pose does not change with its maker's arrays
     except (TypeError, ValueError) as error:
         raise PoseError(f"rotation is {shown(rotation)}; {_ROTATION}") from error
     if matrix.ndim < 2 or matrix.shape[-2:] != (3, 3):

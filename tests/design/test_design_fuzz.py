@@ -124,7 +124,7 @@ def test_lists_nested_deeply(depth):
 
 
 @pytest.mark.parametrize("key", ["name", "gravity", "legs.stiffness"])
-@pytest.mark.parametrize("depth", [20, 2000])
+@pytest.mark.parametrize("depth", [20, 40])  # deeper ones are refused before they are read
 def test_tables_nested_deeply(key, depth):
     message = message_of(lambda: Hexapod.from_toml(f"{key}{'.a' * depth} = 1"))
     assert message.startswith(f"{key} is {{'a': ")

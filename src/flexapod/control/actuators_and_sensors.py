@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import one_of
+from flexapod.checks import floats, one_of
 from flexapod.control.linear_controller import MEASUREMENTS, signals
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, shown
@@ -54,7 +54,7 @@ class Hardware:
             If a limit is not positive, or they are neither one nor six.
         """
         try:
-            limit = np.broadcast_to(np.asarray(self.force_limit, dtype=np.float64), (6,)).copy()
+            limit = np.broadcast_to(floats(self.force_limit), (6,)).copy()
         except (TypeError, ValueError):
             raise ArgumentError(
                 f"force_limit is {shown(self.force_limit)}; give a number, or six for the legs"

@@ -9,7 +9,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import not_negative, one_of, positive
+from flexapod.checks import floats, not_negative, one_of, positive
 from flexapod.control.linear_controller import Controller, Measurement, static
 from flexapod.conventions import Array, Unit
 from flexapod.errors import ArgumentError, shown
@@ -223,7 +223,7 @@ def _loops(legs: tuple[int, ...]) -> Array:
 def _gain_matrix(value: ArrayLike, name: str) -> Array:
     """A gain as a 6 x 6 matrix: one number, six, or a matrix."""
     try:
-        gain = np.asarray(value, dtype=np.float64)
+        gain = floats(value)
     except (TypeError, ValueError):
         raise ArgumentError(f"{name} is {shown(value)}; give a number, six numbers, or a 6 x 6 matrix") from None
     if gain.shape not in ((), (6,), (6, 6)) or not np.isfinite(gain).all():

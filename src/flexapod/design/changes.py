@@ -13,6 +13,7 @@ from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS
 from flexapod.design.short_forms import ShortForm
 from flexapod.design.shorthands import BESIDE, MAKES, NEEDS, Values, expand, stands_in_pairs
 from flexapod.design.tables import complete, flatten, table_of
+from flexapod.design.text_limits import MOST_KEYS
 from flexapod.design.value_checks import check_value
 from flexapod.errors import DesignError, shown
 
@@ -38,6 +39,8 @@ def changed(
     A short form of which a key is changed makes its values anew; one whose values are changed ends where the design is
     built (see `standing`).
     """
+    if len(changes) > MOST_KEYS:
+        raise DesignError(f"there are {len(changes)} changes; a design has less than {MOST_KEYS} numbers to change.")
     tables: dict[str, Any] = {}
     places: dict[str, list[tuple[str, Any]]] = {}
     taken: list[str] = []

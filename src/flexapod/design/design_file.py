@@ -12,6 +12,7 @@ from flexapod.design.schema import KEYS, TEXT_KEYS
 from flexapod.design.short_forms import ShortForm, written
 from flexapod.design.shorthands import Values, expand
 from flexapod.design.tables import START, complete, flatten
+from flexapod.design.text_limits import bytes_of_file, check_count, check_depth, check_size
 from flexapod.design.units import printed, si_unit
 from flexapod.errors import DesignError
 
@@ -99,7 +100,9 @@ def template(name: str) -> str:
 def read_file(path: Path) -> tuple[Values, tuple[ShortForm, ...]]:
     """Values of a design file, and its short forms. Without a name in it, the design is named after the file."""
     try:
-        text = path.read_bytes().decode("utf-8-sig")
+        text = bytes_of_file(path).decode("utf-8-sig")
+    except DesignError as error:
+        raise DesignError(f"{path}: {error}") from None
     except UnicodeDecodeError:
         raise DesignError(f"{path} is not a text file in UTF-8, so no TOML design. {START}") from None
     except OSError as error:
@@ -108,26 +111,35 @@ def read_file(path: Path) -> tuple[Values, tuple[ShortForm, ...]]:
         values, forms = read_text(text, path.parent)
     except DesignError as error:
         raise DesignError(f"{path}: {error}") from error
-    values.setdefault("name", path.stem)
+    values.setdefault("name", path.stem.encode(errors="replace").decode())  # a name may be no text, and so not printed
     return values, forms
 
 
 def self_contained(path: Path) -> str:
     """The text of a design file, with the numbers in place of another file that it names, where that can be read."""
-    text = path.read_text("utf-8-sig", "replace")
+    text = bytes_of_file(path).decode("utf-8-sig", "replace")
     try:
-        joints = tomllib.loads(text).get("joints")
+        joints = tables_of(text).get("joints")
         return write_text(*read_file(path)) if isinstance(joints, dict) and "csv" in joints else text
-    except (ValueError, RecursionError):  # no TOML, or no design
+    except DesignError:
         return text
 
 
-def read_text(text: str, directory: Path | None = None) -> tuple[Values, tuple[ShortForm, ...]]:
-    """Values of a design given as TOML text, and its short forms. directory: where the files that it names are."""
+def tables_of(text: str) -> dict[str, Any]:
+    """Nested tables of a TOML text that may be a design's. Raises DesignError, also where it is too large for one."""
+    check_size(len(text))
+    check_depth(text)
     try:
         tables = tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # ValueError: wrong TOML, or an integer of thousands of digits
         raise DesignError(f"this is not TOML: {error}. Correct that line; {START}") from None
+    check_count(tables)
+    return tables
+
+
+def read_text(text: str, directory: Path | None = None) -> tuple[Values, tuple[ShortForm, ...]]:
+    """Values of a design given as TOML text, and its short forms. directory: where the files that it names are."""
+    tables = tables_of(text)
     if not tables:
         raise DesignError(f"the design is empty; it must have [base], [platform] and [legs]. {START}")
     values, forms = expand(flatten(tables), directory)

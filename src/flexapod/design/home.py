@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.checks import floats
 from flexapod.conventions import Array
 from flexapod.design.schema import KEYS
 from flexapod.design.value_checks import check_value
@@ -44,7 +45,7 @@ class Home(Pose):
             return value
         if not isinstance(value, Pose):
             try:
-                six = np.asarray(value, dtype=np.float64)
+                six = floats(value)
             except (TypeError, ValueError):
                 six = np.empty(0)
             if six.shape != (6,):

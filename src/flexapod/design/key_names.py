@@ -6,6 +6,8 @@ from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS, Key
 from flexapod.design.units import ALL_UNITS, UNITS, si_unit
 from flexapod.errors import DesignError
 
+LONGEST = 80  # characters of a key: names are compared letter by letter, and told
+
 
 def children(table: str) -> list[str]:
     """Names that may stand in a table of the file ("" is the file itself), tables included."""
@@ -16,6 +18,8 @@ def children(table: str) -> list[str]:
 
 def resolve(table: str, key: str) -> tuple[str, str]:
     """A key as written -> (its dotted name without unit, its unit). Raises DesignError for a key that is not one."""
+    if len(key) > LONGEST:
+        unknown_key(table, f"{key[:LONGEST]}...")
     start = f"{table}." if table else ""
     known = [child for child in children(table) if start + child not in TABLES]
     if key in known:

@@ -18,6 +18,7 @@ _SHORT_FORMS = {
     "platform.joints": "[platform.circle], [cubic] or [joints] with csv",
 }
 DEFAULT_GRAVITY = np.array([0.0, 0.0, -9.81])
+LONGEST_TEXT = 255  # characters of a name, as of a file's
 START = "`flexapod new my-machine.toml` writes a design to start from."
 
 
@@ -44,7 +45,16 @@ def _check(name: str, canonical: str, value: Any, unit: str) -> Any:
     if not isinstance(value, str) or not value.strip():
         example = "my hexapod" if canonical == "name" else "joints.csv"
         raise DesignError(f'{name} is {shown(value)}; it must be text. Write {name} = "{example}".')
+    if not is_text(value):
+        raise DesignError(f"{name} is {shown(value)}; it must be text that UTF-8 can hold. Leave such characters out.")
+    if len(value) > LONGEST_TEXT:
+        raise DesignError(f"{name} has {len(value)} characters; it must have at most {LONGEST_TEXT}. Shorten it.")
     return value
+
+
+def is_text(value: str) -> bool:
+    """Whether a string can be written to a file; those that stand for the bytes of a file's name may not."""
+    return value == value.encode(errors="replace").decode()
 
 
 def table_of(value: Any, name: str) -> Any:

@@ -32,6 +32,8 @@ def check_value(name: str, value: Any, rule: Key, unit: str | None = None) -> Ar
 def _numbers(name: str, value: Any, rule: Key) -> Array:
     """The value as float64 of any shape; text, truth values and ragged lists are refused."""
     if hasattr(value, "__array__"):
+        if np.ma.is_masked(value):
+            raise DesignError(f"{name} has masked entries; it must be {rule.shape_text}. Fill them in.")
         value = np.asarray(value)
     found = _not_a_number(value, "")
     if found is not None:

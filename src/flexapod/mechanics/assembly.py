@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
-from flexapod.checks import thread_count
+from flexapod.checks import floats, thread_count
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, KinematicsError, PoseError, shown
@@ -254,7 +254,7 @@ def forward_kinematics_all(
 def _checked(lengths: ArrayLike) -> tuple[Array, tuple[int, ...], np.ndarray]:
     """Rows of lengths, their batch axes, and which of them may be lengths; a single set must be."""
     try:
-        wanted = np.array(lengths, dtype=np.float64)
+        wanted = floats(lengths)
     except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"lengths is {shown(lengths)}; it must hold 6 numbers.") from None
     if wanted.ndim < 2:

@@ -85,7 +85,7 @@ def _checked(psd: ArrayLike, omega: Array, axis: str | None, unit: float = 1.0) 
     """Densities over `unit`, (n, 6) or (n, 6, 6)."""
     try:
         table = np.asarray(np.asarray(psd) / unit, dtype=np.complex128)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise ArgumentError("psd must hold numbers: (n,) with an axis, (n, 6), or (n, 6, 6).") from error
     if table.shape == omega.shape:
         table = table[:, None] * _unit_axis(axis)

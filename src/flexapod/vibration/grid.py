@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import positive, whole
+from flexapod.checks import floats, positive, whole
 from flexapod.conventions import TWO_PI, Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, shown, told_apart
@@ -117,7 +117,7 @@ def asked(omega: ArrayLike | None, frequency: ArrayLike | None) -> Array | None:
 
 def _row(value: ArrayLike, name: str, unit: str) -> Array:
     try:
-        array = np.atleast_1d(np.array(value, dtype=np.float64))
+        array = np.atleast_1d(floats(value))
     except (TypeError, ValueError):
         raise ArgumentError(f"{name} is {shown(value)}; it must hold frequencies in {unit}.") from None
     if array.ndim != 1 or array.size == 0:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.linalg import eigh
 
+from flexapod.checks import floats
 from flexapod.conventions import Array, Complex
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import Linearisation
@@ -31,7 +32,7 @@ class SteadyResponse(NamedTuple):
 def loss_factors(value: ArrayLike) -> Array:
     """One loss factor for all legs or one for each, as (6,); raises ArgumentError unless finite and not negative."""
     try:
-        eta = np.broadcast_to(np.asarray(value, dtype=np.float64), (6,))
+        eta = np.broadcast_to(floats(value), (6,))
     except (TypeError, ValueError) as error:
         raise ArgumentError(f"loss_factor is {value!r}; give one number, or six for the legs") from error
     if not (np.isfinite(eta).all() and (eta >= 0).all()):

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Mapping
 from typing import Any
 
 from flexapod.design import design_file
 from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS
+from flexapod.design.units import ALL_UNITS
 from flexapod.errors import DesignError
 from flexapod.web.answers import FieldError
+
+MOST = 20  # errors that are told one by one
 
 
 class InvalidDesign(DesignError):
@@ -24,18 +26,26 @@ class InvalidDesign(DesignError):
 def errors_in(text: str, error: DesignError) -> list[FieldError]:
     """Every key of the text that is wrong by itself; otherwise the error that stopped the reading."""
     try:
-        tables = tomllib.loads(text)
-    except (ValueError, RecursionError):
-        line = re.search(r"at line (\d+)", str(error))
+        tables = design_file.tables_of(text)
+    except DesignError:
+        line = re.search(r"(?:at |^)line (\d+)", str(error))
         return [{"key": "", "message": str(error), "line": int(line[1]) if line else 0}]
-    found = [e for path, value in _leaves(tables) for e in _error_of_key(path, value, text)]
-    return found or [error_at(str(error), text)]
+    lines = _lines(text)
+    found = [e for path, value in _leaves(tables) for e in _error_of_key(path, value, lines)]
+    return first(found) or [error_at(str(error), text)]
+
+
+def first(errors: list[FieldError]) -> list[FieldError]:
+    """The first errors of a long list, and how many more there are."""
+    if len(errors) <= MOST:
+        return errors
+    return [*errors[:MOST], {"key": "", "message": f"There are {len(errors) - MOST} errors more.", "line": 0}]
 
 
 def error_at(message: str, text: str = "") -> FieldError:
     """An error at the first key that its message names."""
     key = _key_in(message)
-    return {"key": key, "message": message, "line": _line_of(text, key)}
+    return {"key": key, "message": message, "line": _line_of(_lines(text), key)}
 
 
 def _leaves(tables: Mapping[str, Any], start: tuple[str, ...] = ()) -> list[tuple[tuple[str, ...], Any]]:
@@ -47,7 +57,7 @@ def _leaves(tables: Mapping[str, Any], start: tuple[str, ...] = ()) -> list[tupl
     return result
 
 
-def _error_of_key(path: tuple[str, ...], value: Any, text: str) -> list[FieldError]:
+def _error_of_key(path: tuple[str, ...], value: Any, lines: Mapping[tuple[str, str], int]) -> list[FieldError]:
     """The error of a file that has only this key, if any."""
     alone = value
     for name in reversed(path):
@@ -56,7 +66,7 @@ def _error_of_key(path: tuple[str, ...], value: Any, text: str) -> list[FieldErr
         design_file.flatten(alone)
     except DesignError as error:
         key = ".".join(path)
-        return [{"key": _key_in(key) or key, "message": str(error), "line": _line_of(text, key)}]
+        return [{"key": _key_in(key) or key, "message": str(error), "line": _line_of(lines, key)}]
     return []
 
 
@@ -67,14 +77,27 @@ def _key_in(message: str) -> str:
     return min(places)[2] if places else ""
 
 
-def _line_of(text: str, key: str) -> int:
-    """The line where a dotted key (its unit aside) is set in a design file; 0 if it is not."""
-    table, _, last = key.rpartition(".")
-    here = ""
+def _lines(text: str) -> dict[tuple[str, str], int]:
+    """The line where each key is first set in a design file, by its table and its name as it is written."""
+    here, found = "", {}
     for number, line in enumerate(text.splitlines(), 1):
         header = re.match(r"\s*\[([\w.]+)\]\s*(#.*)?$", line)
+        key = re.match(r"\s*([\w-]+)\s*=", line)
         if header:
-            here = header[1].strip()
-        elif here == table and re.match(rf"\s*{re.escape(last)}(_\w+)?\s*=", line):
-            return number
-    return 0
+            here = header[1]
+        elif key:
+            found.setdefault((here, key[1]), number)
+    return found
+
+
+def _line_of(lines: Mapping[tuple[str, str], int], key: str) -> int:
+    """The line where a dotted key is set, whatever its unit; 0 if it is not."""
+    table, _, last = key.rpartition(".")
+    if (table, last) in lines:
+        return lines[table, last]
+    units = (number for (at, name), number in lines.items() if at == table and _unit_of(name, last) in ALL_UNITS)
+    return next(units, 0)
+
+
+def _unit_of(name: str, key: str) -> str:
+    return name[len(key) + 1 :] if name.startswith(f"{key}_") else ""

@@ -7,9 +7,10 @@ from functools import lru_cache
 from typing import Any, NamedTuple
 
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.text_limits import MOST_KEYS
 from flexapod.errors import DesignError
 from flexapod.web.answers import FieldError
-from flexapod.web.design_errors import InvalidDesign, error_at, errors_in
+from flexapod.web.design_errors import InvalidDesign, error_at, errors_in, first
 from flexapod.web.parameters import RADII, with_radius
 
 
@@ -41,13 +42,15 @@ def _changed(hexapod: Hexapod, changes: dict[str, Any]) -> Hexapod:
     try:
         return _apply(hexapod, changes)
     except DesignError as error:
+        if len(changes) > MOST_KEYS:
+            raise InvalidDesign([error_at(str(error))]) from error
         alone: list[FieldError] = []
         for key, value in changes.items():
             try:
                 _apply(hexapod, {key: value})
             except DesignError as own:
                 alone.append({"key": key, "message": str(own), "line": 0})
-        raise InvalidDesign(alone or [error_at(str(error))]) from error
+        raise InvalidDesign(first(alone) or [error_at(str(error))]) from error
 
 
 def _apply(hexapod: Hexapod, changes: dict[str, Any]) -> Hexapod:

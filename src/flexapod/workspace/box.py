@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.checks import floats
 from flexapod.conventions import AXES, Array, unit_of
 from flexapod.errors import ArgumentError, PoseError, shown
 from flexapod.pose import Pose, as_pose
@@ -132,7 +133,7 @@ class Box:
 def _range(name: str, value: ArrayLike) -> tuple[float, float]:
     unit = unit_of(name)
     try:
-        pair = np.broadcast_to(np.asarray(value, dtype=np.float64), 2)
+        pair = np.broadcast_to(floats(value), 2)
     except (TypeError, ValueError):
         raise ArgumentError(
             f"{name} is {shown(value)}; it must be a number, or a pair of least and largest, in {unit}"

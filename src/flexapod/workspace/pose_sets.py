@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import whole
+from flexapod.checks import floats, whole
 from flexapod.conventions import AXES, Array
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.pose import Pose
@@ -240,7 +240,7 @@ def six_numbers(rows: Array) -> Array:
 def six_columns(value: Any) -> Array:
     """Rows (..., 6) of numbers, or PoseError."""
     try:
-        array = np.ascontiguousarray(value, dtype=np.float64)
+        array = np.ascontiguousarray(floats(value))
     except (TypeError, ValueError):
         raise PoseError(
             f"poses is {type(value).__name__}; give rows of x, y, z (m), roll, pitch, yaw (rad), or a Pose"

@@ -12,6 +12,7 @@ from typing import Any, Protocol, TypeAlias, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod.checks import floats
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, numbers
@@ -97,7 +98,7 @@ def as_region(value: RegionLike, name: str = "region") -> Region:
     if isinstance(value, Pose):
         return PoseList(np.concatenate([value.position, value.rpy], axis=-1).reshape(-1, 6))
     try:
-        rows = np.array(value, dtype=np.float64)
+        rows = floats(value)
     except (TypeError, ValueError):
         rows = np.zeros(())
     if rows.ndim not in (1, 2) or rows.shape[-1] != 6 or not rows.size or not np.isfinite(rows).all():

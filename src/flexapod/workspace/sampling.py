@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import whole
+from flexapod.checks import floats, whole
 from flexapod.conventions import AXES, Array, unit_of
 from flexapod.errors import ArgumentError, PoseError, shown
 from flexapod.pose import Pose
@@ -127,7 +127,7 @@ def pose_grid(
     axes: dict[str, Array] = {}
     for name, value in zip(AXES, (x, y, z, roll, pitch, yaw), strict=True):
         try:
-            axis = np.atleast_1d(np.asarray(value, dtype=np.float64))
+            axis = np.atleast_1d(floats(value))
         except (TypeError, ValueError):
             raise ArgumentError(
                 f"{name} is {shown(value)}; it must be a number or a list of numbers, in {unit_of(name)}"

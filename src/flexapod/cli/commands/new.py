@@ -17,12 +17,17 @@ from flexapod.output_files import check_file, write_file
 def command(file: Path, force: bool, as_json: bool) -> None:
     """Write a commented design file to start from; it is a complete machine, ready to be changed."""
     from flexapod.design.design_file import template
+    from flexapod.design.tables import LONGEST_TEXT, is_text
 
-    if not file.name or file.name == "..":
+    if file.name in ("", "..") or not is_text(file.name):
         raise click.UsageError(f"{str(file)!r} is no name of a file. Give one, such as machine.toml.")
     path = file if file.suffix else file.with_suffix(".toml")
     if path.suffix != ".toml":
         raise click.UsageError(f"{path} does not end in .toml; a design is a TOML file. Name it {path.stem}.toml.")
+    if len(path.name.encode()) > LONGEST_TEXT:
+        raise click.UsageError(
+            f"{path.name[:40]}... is a name of more than {LONGEST_TEXT} bytes. Choose a shorter one."
+        )
     if path.exists() and not force:
         raise click.UsageError(f"{path} is there already. Choose another name, or replace it with --force.")
     check_file(path)
