@@ -122,6 +122,10 @@ ARGUMENTS = (
             ["start has batch axes (2,)", "lengths, ()"],
         ),
         (lambda: fx.static_equilibrium(HEXAPOD, [3.0] * 5), ["unstretched_length", "(5,)", "shape (6,)"]),
+        (
+            lambda: fx.static_equilibrium(HEXAPOD, [3.0] * 6, start=HOME, base=fx.Pose(np.ones((2, 3)))),
+            ["base has batch axes (2,)", "one pose is needed"],
+        ),
     ],
 )
 def test_arguments_that_do_not_fit(call, parts):

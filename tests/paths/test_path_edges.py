@@ -61,3 +61,35 @@ def test_a_way_without_a_smooth_path_is_said_so(machine, monkeypatch):
     monkeypatch.setattr(PlanningTask, "margin", lambda task, path: -0.1)
     with pytest.raises(fx.errors.PathError, match=r"a way was found, but no smooth path along it .* misses by 1"):
         fx.plan_path(machine, fx.Pose([0, 0, 0.89]), fx.Pose.from_rpy(0.05, 0, 0.9), 90.0)
+
+
+@pytest.mark.parametrize("timing", [1e308, 1e-320, 1e-200, fx.paths.LegSpeed(1e-300), fx.paths.LegSpeed(1e300)])
+def test_plans_that_last_too_short_or_too_long(machine, timing):
+    with pytest.raises(fx.errors.PathError, match=r"the path lasts .* at least 1e-09 s and at most 1e\+12 s"):
+        fx.plan_path(machine, fx.Pose([0, 0, 0.89]), fx.Pose([0.05, 0, 0.89]), 90.0, timing=timing)
+
+
+def test_waypoints_that_follow_at_once(machine):
+    places = fx.Pose([[0, 0, 0.89], [0, 0, 0.9], [0, 0, 0.91]])
+    with pytest.raises(fx.errors.PathError, match=r"times\[1\] is 1e-60 s after times\[0\]"):
+        fx.Trajectory(places, [0, 1e-60, 1])
+    fx.Trajectory(places, [1e-9, 2e-9, 3e-9])
+
+
+def test_arguments_of_absurd_size(machine):
+    path = fx.Trajectory(fx.Pose([[0, 0, 0.89], [0, 0, 0.9]]), [0, 1])
+    for study in (fx.path_index, fx.paths.path_loads):
+        with pytest.raises(fx.errors.ArgumentError, match="at most 1000000 are computed"):
+            study(machine, path, samples=10**9)
+    with pytest.raises(fx.errors.PoseError, match="must hold"):
+        fx.Pose([0, 0, 10**400])
+    with pytest.raises(fx.errors.PoseError, match="origin has batch axes"):
+        fx.Trajectory(path.waypoints, [0, 1], origin=path.waypoints)
+
+
+def test_a_crossing_keeps_its_minimum_at_zero(machine):
+    """Between these poses H is singular: the index is zero there, whatever rounding leaves of it."""
+    path = fx.Trajectory(fx.Pose.from_rpy(0, 0, [0.5, -0.5]), [0, 1])
+    found = fx.path_index(machine, path, singular="keep")
+    assert found.crossings
+    assert (found.minimum, found.minimum_time) == (0.0, found.crossings[0])

@@ -221,6 +221,7 @@ PROVOKED = {
     ),
     ("sine_sweep", "ArgumentError"): lambda: fx.sine_sweep("z", 1.0, 1.0, 2.0, 1.0, law="cubic"),
     ("smooth_step", "ArgumentError"): lambda: fx.excitation.smooth_step("z", 1.0, 0.0),
+    ("static_equilibrium", "PoseError"): lambda: fx.static_equilibrium(MACHINE, LEGS, base=BATCH),
     ("static_equilibrium", "ArgumentError"): lambda: fx.static_equilibrium(MACHINE, [1.0, 2.0]),
     ("static_equilibrium", "KinematicsError"): lambda: fx.static_equilibrium(MACHINE, -LEGS),
     ("static_equilibrium", "SingularPoseError"): lambda: fx.static_equilibrium(

@@ -15,7 +15,7 @@ from flexapod.mechanics.assembly import forward_kinematics
 from flexapod.mechanics.dynamics import inverse_dynamics
 from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, pose_or_home, single_pose, states, wrench
 from flexapod.mechanics.kinematics import inverse_kinematics
-from flexapod.pose import Pose, PoseLike, as_pose, unpack
+from flexapod.pose import Pose, PoseLike, unpack
 from flexapod.rotations import orthonormal
 
 
@@ -133,6 +133,8 @@ def static_equilibrium(
 
     Raises
     ------
+    PoseError
+        For a start or a base that is not one pose.
     KinematicsError
         Where no equilibrium is found, and for lengths that are not > 0.
     SingularPoseError
@@ -162,7 +164,7 @@ def static_equilibrium(
     L_0 = numbers(unstretched_length, "unstretched_length", (6,))
     if (L_0 <= 0).any():
         raise KinematicsError(f"unstretched_length has {L_0.min():.6g} m; every leg length must be > 0 m")
-    base = None if base is None else as_pose(base, "base")
+    base = None if base is None else single_pose(hexapod, base, "base")
     if start is not None:
         start = single_pose(hexapod, start, "start")
     else:

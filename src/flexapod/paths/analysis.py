@@ -24,6 +24,7 @@ from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
 
 _ZERO_INDEX = 1e-6  # of the largest index on the path: what a singular pose leaves of the lowest frequency
+_MOST_SAMPLES = 10**6  # instants of a path: a gigabyte
 _CUTS, _ROUNDS = 16, 11  # a minimum is bracketed by 2/16 of its bracket, 11 times: to 1e-10 of a sample's distance
 
 
@@ -113,7 +114,7 @@ def path_index(
     PoseError
         If the legs cannot take a pose of the trajectory.
     ArgumentError
-        If the bound is not > 0, there are too few samples, or `path` is not a Trajectory.
+        If the bound is not > 0, there are too few or too many samples, or `path` is not a Trajectory.
 
     See Also
     --------
@@ -173,11 +174,12 @@ def path_index(
 
 
 def check_arguments(hexapod: Hexapod, path: Trajectory, samples: int) -> None:
-    """Raises DesignError or ArgumentError for what is no design, no trajectory, or too few samples."""
+    """Raises DesignError or ArgumentError for what is no design, no trajectory, or a wrong number of samples."""
     as_hexapod(hexapod)
     if not isinstance(path, Trajectory):
         raise ArgumentError(f"path is {type(path).__name__}; it must be a flexapod Trajectory.")
-    whole(samples, "samples", 8)
+    if whole(samples, "samples", 8) > _MOST_SAMPLES:
+        raise ArgumentError(f"samples is {samples}; at most {_MOST_SAMPLES} are computed. Ask for fewer.")
 
 
 def _all_possible(path: Trajectory, times: Array, values: Array) -> None:
@@ -194,8 +196,8 @@ def singular_times(hexapod: Hexapod, path: Trajectory, times: Array) -> tuple[fl
         sign, logarithm = np.linalg.slogdet(force_transformation(hexapod, path(np.atleast_1d(t)).pose))
         return sign * np.exp(np.clip(logarithm, -600, 600))
 
-    values = side(times)
-    changed = np.flatnonzero(values[:-1] * values[1:] <= 0)
+    signs = np.sign(side(times))
+    changed = np.flatnonzero(signs[:-1] * signs[1:] <= 0)
     roots = [brentq(lambda t: side(t)[0], times[i], times[i + 1], xtol=1e-12 * path.duration) for i in changed]
     return tuple(np.unique(roots).tolist())
 

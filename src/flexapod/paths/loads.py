@@ -54,7 +54,7 @@ def path_loads(
     SingularPoseError
         If no leg forces can drive the trajectory somewhere.
     ArgumentError
-        If there are too few samples, or `path` is not a Trajectory.
+        If there are too few or too many samples, or `path` is not a Trajectory.
 
     See Also
     --------

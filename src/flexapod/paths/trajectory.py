@@ -9,10 +9,12 @@ from numpy.typing import ArrayLike
 
 from flexapod.checks import numbers, one_of, positive
 from flexapod.conventions import Array
-from flexapod.errors import ArgumentError, PathError
+from flexapod.errors import ArgumentError, PathError, PoseError
 from flexapod.paths.chart import Chart
 from flexapod.pose import Motion, Pose, PoseLike, as_pose
 
+_SHORTEST, _LONGEST = 1e-9, 1e12  # of a path, s: accelerations beyond would be no numbers
+_LEAST_GAP = 1e-6  # between waypoints, of the mean: closer ones leave no digits for the spline
 Ends = Literal["rest", "free", "periodic"]
 
 
@@ -50,6 +52,8 @@ class Trajectory:
     ------
     PathError
         If the waypoints or times make no path, or the waypoints' orientations lie too far apart.
+    PoseError
+        If the origin is not one pose.
     ArgumentError
         If `times`, `ends` or `weights` has a wrong shape or value.
 
@@ -81,7 +85,10 @@ class Trajectory:
     ) -> None:
         poses = as_pose(waypoints, "waypoints")
         if origin is not None:
-            poses = as_pose(origin, "origin").displaced(poses)
+            middle = as_pose(origin, "origin")
+            if middle.shape:
+                raise PoseError(f"origin has batch axes {middle.shape}; a path has one origin. Index it first.")
+            poses = middle.displaced(poses)
         if len(poses.shape) != 1 or poses.shape[0] < 2:
             raise PathError(f"waypoints has batch axes {poses.shape}; a row of at least two poses is needed.")
         self.waypoints = poses
@@ -143,18 +150,21 @@ class Trajectory:
 
 def spline(times: Array, values: Array, ends: Ends) -> tuple[Any, Any, Any]:
     """The interpolating spline of (n, k) values and its first two derivatives. It is linear in the values."""
+    one_of(ends, "ends", get_args(Ends))
+    curve = _interpolated(times, values, ends)
+    return curve, curve.derivative(1), curve.derivative(2)
+
+
+def _interpolated(times: Array, values: Array, ends: Ends) -> Any:
     from scipy.interpolate import make_interp_spline
 
-    one_of(ends, "ends", get_args(Ends))
     width = values.shape[1:]
     still = [(1, np.zeros(width)), (2, np.zeros(width))]
     if ends == "rest":
-        curve = make_interp_spline(times, values, k=5, bc_type=(still, still))
-    elif ends == "free":
-        curve = make_interp_spline(times, values, k=3, bc_type=(still[1:], still[1:]))
-    else:
-        curve = _periodic(times, values)
-    return curve, curve.derivative(1), curve.derivative(2)
+        return make_interp_spline(times, values, k=5, bc_type=(still, still))
+    if ends == "free":
+        return make_interp_spline(times, values, k=3, bc_type=(still[1:], still[1:]))
+    return _periodic(times, values)
 
 
 def _periodic(times: Array, values: Array) -> Any:
@@ -178,6 +188,18 @@ def _times(value: ArrayLike, count: int) -> Array:
     if late.size:
         i = int(late[0])
         raise PathError(f"times[{i + 1}] is {times[i + 1]:.6g} s, after {times[i]:.6g} s; times must increase.")
+    duration, gaps = times[-1] - times[0], np.diff(times)
+    if not _SHORTEST <= duration <= _LONGEST:
+        raise PathError(
+            f"the path lasts {duration:.3g} s; it must last at least {_SHORTEST:g} s and at most {_LONGEST:g} s. Give "
+            "other times, or leg speeds that lead to them."
+        )
+    if gaps.min() < _LEAST_GAP * gaps.mean():
+        i = int(gaps.argmin())
+        raise PathError(
+            f"times[{i + 1}] is {gaps[i]:.3g} s after times[{i}], where the mean is {gaps.mean():.3g} s; that is too "
+            "soon for a smooth path. Leave one of the two out."
+        )
     return times
 
 
