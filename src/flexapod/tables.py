@@ -92,9 +92,9 @@ def unit_named(word: str, units: Iterable[str]) -> str | None:
     """The unit that is meant, however it is written: `Nm` is N_m, `m/s^2` is m_per_s2, `MM` is mm; None if none is."""
     bare = normal_unit(word).replace("_", "")
     exact = [known for known in units if known.replace("_", "") == bare]
-    free = [known for known in units if known.islower() or known in ("Hz", "kHz")]  # MM is mm, but MN is not mN
-    alike = [known for known in free if known.replace("_", "").lower() == bare.lower()]
-    return next(iter([*exact, *alike]), None)
+    alike = [known for known in units if known.replace("_", "").lower() == bare.lower()]
+    plain = len(alike) == 1 and (alike[0].islower() or alike[0] in ("Hz", "kHz"))  # MM is mm, but MN is not mN
+    return next(iter([*exact, *(alike if plain else [])]), None)
 
 
 def normal_unit(word: str) -> str:

@@ -19,6 +19,6 @@ def test_a_simulation_of_one_instant_is_no_film(isolator, tmp_path):
         fx.animate_simulation(one, hexapod, tmp_path / "run.gif")
 
 
-@pytest.mark.parametrize(("metres", "words"), [(2.5, "2.5 m"), (0.0123, "12.3 mm"), (4e-6, "4 um"), (5e-10, "0.5 nm")])
+@pytest.mark.parametrize(("metres", "words"), [(2.5, "2.5 m"), (0.0123, "12.3 mm"), (4e-6, "4 µm"), (5e-10, "0.5 nm")])
 def test_lengths_have_units_of_their_size(metres, words):
     assert animation._length(metres) == words

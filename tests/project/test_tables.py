@@ -5,7 +5,7 @@ import pytest
 
 import flexapod as fx
 from flexapod.cli.options import poses, waypoints
-from flexapod.cli.studies.response import _read_psd
+from flexapod.cli.options.spectra import read_spectra
 from flexapod.tables import parse_table
 
 ROWS = [(0.01 * i, 0.001 * i**2, 2.0 * i) for i in range(8)]
@@ -51,18 +51,18 @@ def test_waypoints_and_poses_may_have_units_and_any_order(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "text", ["Frequency (Hz),X (m2/s4/Hz)\n1,2\n", "frequency_hz;x\n1;2\n", "f [kHz],x\n0.001,2\n"]
+    "text", ["Frequency (Hz),X (m2/s4/Hz)\n1,2\n2,2\n", "frequency_hz;x\n1;2\n2;2\n", "f [kHz],x\n0.001,2\n0.002,2\n"]
 )
 def test_spectra_may_have_units_in_their_titles(tmp_path, text):
     (tmp_path / "psd.csv").write_text(text)
-    hertz, density = _read_psd(tmp_path / "psd.csv")
-    assert hertz == pytest.approx([1.0])
-    assert density.tolist() == [[2, 0, 0, 0, 0, 0]]
+    hertz, density, *_ = read_spectra(tmp_path / "psd.csv")
+    assert hertz == pytest.approx([1.0, 2.0])
+    assert density.tolist() == [[2, 0, 0, 0, 0, 0]] * 2
 
 
 @pytest.mark.parametrize(
     ("title", "words"),
-    [("force_MN", "unit 'MN'"), ("force_Nm", "unit 'Nm'"), ("length", "column 'length' is unknown. Give a force.")],
+    [("force_MN", "unit 'MN'"), ("force_NM", "unit 'NM'"), ("length", "column 'length' is unknown. Give a force.")],
 )
 def test_units_are_not_guessed(title, words):
     units = {"mN": (1, 1e3), "N_m": (1, 1), "nm": (1, 1e9), "mm": (1, 1e3)}
@@ -73,6 +73,19 @@ def test_units_are_not_guessed(title, words):
 
     with pytest.raises(fx.ArgumentError, match=words):
         read()
+
+
+def test_a_product_of_units_needs_no_mark_between_them():
+    units = {"nm": (1, 1e9), "N_m": (1, 1), "kN_m": (1e3, 1)}
+    for title, value in {"moment_Nm": 1.0, "moment [kN·m]": 1e3, "moment (N m)": 1.0}.items():
+        table = parse_table(f"{title}\n1\n", {"moment": "moment"}, "Give a moment.")
+        assert table.numbers(table.columns[0], units)[0] == value
+
+
+def test_numbers_are_those_of_tables_and_not_of_programs():
+    table = parse_table("force\n1_0\n", {"force": "force"}, "Give a force.")
+    with pytest.raises(fx.ArgumentError, match="'1_0' is no"):
+        table.numbers(table.columns[0])
 
 
 def test_a_wrong_cell_is_told_with_its_line():

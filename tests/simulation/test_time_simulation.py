@@ -524,6 +524,28 @@ def test_default_samples_resolve_the_fastest_mode():
     np.testing.assert_array_equal(given.time, [0.0, 0.003, 0.003, 0.01])
 
 
+def test_velocity_and_acceleration_are_those_seen_from_the_base():
+    """Against differences of where the platform stands in the axes of a base that turns and shakes."""
+    hexapod, pose = machine("cubic-isolator")
+    base = fx.harmonic("z", 2e-3, 20.0) + fx.harmonic("yaw", 0.02, 7.0) + fx.harmonic("roll", 0.01, 11.0)
+    times = 0.1 + 1e-4 * np.arange(41)
+    run = fx.simulate(hexapod, pose, base_motion=base, times=times, start="carried", rtol=1e-12)
+    turn = run.base_rotation.values
+    place = np.einsum("nji,nj->ni", turn, run.position.values - run.base_position.values)
+    rotation = np.einsum("nji,njk->nik", turn, run.rotation.values)
+    step = times[1] - times[0]
+
+    def rate(values):
+        return (values[:-4] - 8 * values[1:-3] + 8 * values[3:-1] - values[4:]) / (12 * step)
+
+    spin = np.einsum("nij,nkj->nik", rate(rotation), rotation[2:-2])
+    angular = np.stack([spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]], axis=1)
+    velocity, acceleration = run.relative_velocity.values, run.relative_acceleration.values
+    for found, expected in ((velocity[2:-2], np.hstack([rate(place), angular])), (acceleration[2:-2], rate(velocity))):
+        np.testing.assert_allclose(found, expected, atol=1e-6 * np.abs(expected).max())
+    assert run.relative_velocity.attrs["mixed_units"] == "output_unit/s"
+
+
 def test_coarse_recording_warns():
     hexapod, pose = machine()
     times = np.linspace(0, 0.1, 101)

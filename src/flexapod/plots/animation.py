@@ -351,7 +351,7 @@ def _around(joints: Array) -> NDArray[np.intp]:
 
 
 def _length(metres: float) -> str:
-    for unit, scale in (("m", 1.0), ("mm", 1e-3), ("um", 1e-6)):
+    for unit, scale in (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6)):
         if metres >= scale:
             return f"{metres / scale:.4g} {unit}"
     return f"{metres / 1e-9:.4g} nm"

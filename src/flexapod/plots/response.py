@@ -6,7 +6,7 @@ for in rad/s; the rest is in SI units.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -14,15 +14,14 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from flexapod.conventions import LEGS, ROTATIONS, TRANSLATIONS, TWO_PI, Array
-from flexapod.plots.style import FAINT, INK, OUTPUT_NAMES, SIX, dress, name_panel, new_figure
+from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, TWO_PI, Array, unit_of
+from flexapod.plots.style import FAINT, INK, OUTPUT_NAMES, SIX, dress, moves, name_panel, new_figure, note_still, panels
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 COLOURS = SIX[:3]  # line styles tell them apart as well
 STYLES = ("-", (0, (6, 2)), (0, (2, 1.5)))
-_ROUNDING = 1e-9  # of the largest curve beside it: what is smaller is symmetry broken by rounding, and left out
 _VARIABLES = {
     "absolute": ("base", "motion per base motion"),
     "relative": ("base", "motion relative to the base per base motion"),
@@ -65,21 +64,16 @@ def frequency_response(
     natural, response = list(natural), dataset[variable].sel({dimension: given})
     hertz = dataset.omega.values / TWO_PI
     unit = "m" if dimension == "leg" else str(dataset[f"{dimension}_unit"].sel({dimension: given}).values)
-    figure = new_figure(10, 6.2)
-    grid = figure.subplots(2, 2, sharex=True, height_ratios=[2, 1])
-    least = _ROUNDING * np.nanmax(_positive(np.abs(response.values)), initial=0.0)
-    for column, outputs in enumerate((TRANSLATIONS, ROTATIONS)):
-        above, below = grid[0, column], grid[1, column]
+    drawn = dict(zip(AXES, moves(response.values), strict=True))
+    figure, grid, groups = _halves((TRANSLATIONS, ROTATIONS), drawn, height_ratios=[2, 1])
+    for (above, below), outputs in zip(grid.T, groups, strict=True):
         for i, output in enumerate(outputs):
-            values = response.sel(output=output).values
-            line = {"color": COLOURS[i], "ls": STYLES[i], "lw": 1.6}
-            moves = np.nanmax(_positive(np.abs(values)), initial=0.0) > least
-            label = OUTPUT_NAMES[output] + ("" if moves else ": none")
-            shown = values if moves else np.full_like(values, np.nan)
-            above.loglog(hertz, _positive(np.abs(shown)), label=label, **line)
-            below.semilogx(hertz, _unwrapped_once(np.degrees(np.angle(shown))), **line)
-        moved = "rad" if column else "m"
-        above.set_ylabel(f"amplitude, {_ratio_unit(moved, unit)}")
+            if drawn[output]:
+                values = response.sel(output=output).values
+                line = {"color": COLOURS[i], "ls": STYLES[i], "lw": 1.6}
+                above.loglog(hertz, _positive(np.abs(values)), label=OUTPUT_NAMES[output], **line)
+                below.semilogx(hertz, _unwrapped_once(np.degrees(np.angle(values))), **line)
+        above.set_ylabel(f"amplitude, {_ratio_unit(unit_of(outputs[0]), unit)}")
         _span(above)
         below.set(ylabel="phase, deg", ylim=(-190, 190), yticks=[-180, -90, 0, 90, 180], xlabel="frequency, Hz")
         for ax in (above, below):
@@ -87,6 +81,7 @@ def frequency_response(
             _mark(ax, natural)
             _plain_decades(ax)
         above.legend(loc="best", frameon=True, framealpha=0.85, edgecolor="none", fontsize=9)
+    note_still(figure, [OUTPUT_NAMES[axis] for axis in AXES if not drawn[axis]])
     source = f"leg {given}" if dimension == "leg" else f"{dimension} {given}"
     figure.suptitle(f"{dataset.attrs['design']}: {words}, {source}", color=INK, fontsize=12)
     return figure
@@ -120,25 +115,25 @@ def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figur
     along = density.dims[1]
     hertz = dataset.omega.values / TWO_PI
     groups = [TRANSLATIONS, ROTATIONS] if along == "output" else [LEGS[:3], LEGS[3:]]
-    figure = new_figure(10, 6.2)
-    grid = figure.subplots(2, 2, sharex=True)
-    least = _ROUNDING * float(cumulative[-1].max())
-    for column, names in enumerate(groups):
+    everything = [name for group in groups for name in group]
+    drawn = dict(zip(everything, moves(cumulative.values[-1:]), strict=True))
+    figure, grid, groups = _halves(groups, drawn)
+    for (above, below), names in zip(grid.T, groups, strict=True):
         for i, name in enumerate(names):
-            line = {"color": COLOURS[i], "ls": STYLES[i], "lw": 1.6}
-            rms = cumulative.sel({along: name}).values
-            seen = 1.0 if rms[-1] > least else np.nan
-            label = f"{OUTPUT_NAMES.get(name, f'leg {name}')}: {rms[-1] if seen == 1 else 0:.4g}"
-            grid[0, column].loglog(hertz, _positive(seen * TWO_PI * density.sel({along: name}).values), **line)
-            grid[1, column].loglog(hertz, _positive(seen * rms), label=label, **line)
-        unit = _quantity_unit(quantity, column)
-        grid[0, column].set_ylabel(f"density, {unit if unit == 'N' else f'({unit})'}²/Hz")
-        grid[1, column].set(ylabel=f"RMS below, {unit}", xlabel="frequency, Hz")
-        for ax in grid[:, column]:
+            if drawn[name]:
+                line = {"color": COLOURS[i], "ls": STYLES[i], "lw": 1.6}
+                rms = cumulative.sel({along: name}).values
+                above.loglog(hertz, _positive(TWO_PI * density.sel({along: name}).values), **line)
+                below.loglog(hertz, _positive(rms), label=f"{_named(name)}: {rms[-1]:.4g}", **line)
+        unit = _quantity_unit(quantity, names[0])
+        above.set_ylabel(f"density, {unit if unit == 'N' else f'({unit})'}²/Hz")
+        below.set(ylabel=f"RMS below, {unit}", xlabel="frequency, Hz")
+        for ax in (above, below):
             dress(ax)
             _span(ax)
             _plain_decades(ax)
-        grid[1, column].legend(loc="best", fontsize=9, framealpha=0.85, edgecolor="none", title=f"total RMS, {unit}")
+        below.legend(loc="best", fontsize=9, framealpha=0.85, edgecolor="none", title=f"total RMS, {unit}")
+    note_still(figure, [_named(name) for name in everything if not drawn[name]], "nothing")
     figure.suptitle(
         f"{dataset.attrs['design']}: {quantity.replace('_', ' ')} on the moving base", color=INK, fontsize=12
     )
@@ -150,8 +145,9 @@ def stepped_ratio(
     natural: Iterable[float] = (),
     linear: xr.DataArray | None = None,
     scale: Literal["linear", "log"] = "linear",
+    unit: Literal["rad/s", "Hz"] = "rad/s",
 ) -> Figure:
-    """Draw the ratio of response amplitude to base amplitude against frequency (rad/s), six motions.
+    """Draw the ratio of response amplitude to base amplitude against frequency, a panel for each motion.
 
     Parameters
     ----------
@@ -163,6 +159,8 @@ def stepped_ratio(
         Complex response of the tangent (omega, output): the line. Default: that in the dataset.
     scale : {"linear", "log"}, optional
         Scale of the frequencies.
+    unit : {"rad/s", "Hz"}, optional
+        Unit of the frequencies.
 
     Returns
     -------
@@ -179,31 +177,43 @@ def stepped_ratio(
     >>> fx.plots.response.stepped_ratio(found).savefig("stepped.png")
     """
     line = dataset["linear"] if linear is None else linear
-    natural, least = list(natural), _ROUNDING * float(np.abs(line).max())
-    figure = new_figure(10.5, 6.2)
-    for i, (name, ax) in enumerate(zip(OUTPUT_NAMES, figure.subplots(2, 3, sharex=True).ravel(), strict=True)):
+    per = TWO_PI if unit == "Hz" else 1.0
+    natural, drawn = list(natural), moves(line.transpose(..., "output").values)
+    shown = [axis for axis, seen in zip(AXES, drawn, strict=True) if seen]
+    figure = new_figure(10.5, 4.5 if len(shown) <= 3 else 6.2)
+    for name, ax in zip(shown, panels(figure, len(shown), sharex=True), strict=False):
         smooth = np.abs(line.sel(output=name).values)
         dots = dataset.ratio.sel(output=name).values
-        if smooth.max() <= least:
-            smooth, dots = np.full_like(smooth, np.nan), np.full_like(dots, np.nan)
-            ax.text(0.5, 0.5, "none", transform=ax.transAxes, ha="center", color=FAINT)
-            ax.yaxis.set_visible(False)
         ax.set_xscale(scale)
-        ax.semilogy(line.omega.values, _positive(smooth), color=FAINT, lw=1.2, label="tangent")
-        ax.semilogy(dataset.omega.values, _positive(dots), "o", color=COLOURS[0], ms=2.6, mew=0, label="non-linear")
+        ax.semilogy(line.omega.values / per, _positive(smooth), color=FAINT, lw=1.2, label="tangent")
+        ax.semilogy(
+            dataset.omega.values / per, _positive(dots), "o", color=COLOURS[0], ms=2.6, mew=0, label="non-linear"
+        )
         _span(ax)
         if scale == "log":
             _plain_decades(ax)
-        _mark(ax, natural, hertz=False)
+        _mark(ax, natural, hertz=unit == "Hz")
         dress(ax)
-        name_panel(ax, i, name)
-        unit = "rad" if i > 2 else "m"
-        ax.set_ylabel(f"ratio, {_ratio_unit(unit, dataset.attrs['amplitude_unit'])}")
-        if i > 2:
-            ax.set_xlabel("base frequency, rad/s")
+        name_panel(ax, AXES.index(name), name)
+        ax.set_ylabel(f"ratio, {_ratio_unit(unit_of(name), dataset.attrs['amplitude_unit'])}")
+        ax.set_xlabel(f"base frequency, {unit}")
+    note_still(figure, [OUTPUT_NAMES[axis] for axis in AXES if axis not in shown])
     handles = ax.get_legend_handles_labels()
     figure.legend(*handles, loc="outside lower right", ncols=2, frameon=False, labelcolor=INK)
     return figure
+
+
+def _halves(
+    groups: Sequence[Sequence[str]], drawn: Mapping[str, bool], **shares: Any
+) -> tuple[Figure, Any, list[Sequence[str]]]:
+    """A figure with two axes above one another for each group of curves in which one is drawn, (2, n)."""
+    seen = [group for group in groups if any(drawn[name] for name in group)] or list(groups[:1])
+    figure = new_figure(10 if len(seen) > 1 else 6.6, 6.2)
+    return figure, figure.subplots(2, len(seen), sharex=True, squeeze=False, **shares), seen
+
+
+def _named(name: str) -> str:
+    return OUTPUT_NAMES.get(name, f"leg {name}")
 
 
 def _mark(ax: Axes, natural: Iterable[float], hertz: bool = True) -> None:
@@ -251,7 +261,7 @@ def _ratio_unit(above: str, below: str) -> str:
     return f"{above}/({below})" if " " in below else f"{above}/{below}"
 
 
-def _quantity_unit(quantity: str, column: int) -> str:
+def _quantity_unit(quantity: str, name: str) -> str:
     if quantity == "leg_force":
         return "N"
-    return ("rad" if column else "m") + ("/s²" if quantity == "acceleration" else "")
+    return unit_of(name) + ("/s²" if quantity == "acceleration" else "")

@@ -2,14 +2,35 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.ticker import EngFormatter, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
-from flexapod.conventions import unit_of
-from flexapod.plots.style import BLUE, INK, ORANGE, OUTPUT_NAMES, SIX, dress, name_panel, new_figure
+from flexapod.conventions import AXES, Array, unit_of
+from flexapod.plots.style import (
+    BLUE,
+    INK,
+    ORANGE,
+    OUTPUT_NAMES,
+    SIX,
+    dress,
+    moves,
+    name_panel,
+    new_figure,
+    note_still,
+    panels,
+    prefixed,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+BINS = 400  # of an envelope: as many as a panel has room for
+TURNS = 0.5  # turning points in a bin, from which the lines of an oscillation run into one another
 
 
 def displacements(
@@ -35,31 +56,57 @@ def displacements(
 
     Notes
     -----
-    In the form of Figs. 7 and 8 of the paper.
+    In the form of Figs. 7 and 8 of the paper. Motions below 1e-9 of the largest are rounding and have no panel. Where
+    oscillations are too many to be told apart, the least and largest values of short times are drawn.
 
     Examples
     --------
     >>> run = fx.simulate(fx.load("mukherjee-ii"), duration=0.02, base_motion=fx.harmonic("z", 1e-6, 750))
     >>> fx.plots.simulation.displacements(run.time, run.displacement).savefig("run.png")
     """
-    moved = np.asarray(displacement)
-    figure = new_figure(10.5, 6.2)
-    for i, (name, ax) in enumerate(zip(OUTPUT_NAMES, figure.subplots(2, 3, sharex=True).ravel(), strict=True)):
-        ax.plot(times, moved[:, i], color=BLUE, lw=0.5)
+    t, moved = np.asarray(times, dtype=float), np.asarray(displacement, dtype=float)
+    drawn = moves(moved)
+    figure = new_figure(10.5, 4.5 if drawn.sum() <= 3 else 6.2)
+    shown = [i for i in range(6) if drawn[i]]
+    for i, ax in zip(shown, panels(figure, len(shown), sharex=True), strict=False):
+        _trace(ax, t, moved[:, i], BLUE)
         if bound is not None:
             edge = np.asarray(bound)[:, i]
-            ax.plot(times, edge, color=ORANGE, lw=1.1, label=bound_name)
-            ax.plot(times, -edge, color=ORANGE, lw=1.1)
+            ax.plot(t, edge, color=ORANGE, lw=1.1, label=bound_name)
+            ax.plot(t, -edge, color=ORANGE, lw=1.1)
         dress(ax)
-        name_panel(ax, i, name)
-        ax.yaxis.set_major_formatter(EngFormatter(unit=unit_of(name)))
+        name_panel(ax, i, AXES[i])
         ax.yaxis.set_major_locator(MaxNLocator(5))
+        prefixed(ax, unit_of(AXES[i]))
         ax.margins(x=0)
-        if i > 2:
-            ax.set_xlabel("time, s")
-    if bound is not None:
+        ax.set_xlabel("time, s")
+    if not shown:
+        _nothing(figure)
+    note_still(figure, [OUTPUT_NAMES[axis] for i, axis in enumerate(AXES) if not drawn[i]])
+    if bound is not None and shown:
         figure.legend(*ax.get_legend_handles_labels(), loc="outside lower right", frameon=False, labelcolor=INK)
     return figure
+
+
+def _nothing(figure: Figure) -> None:
+    ax = figure.axes[0]
+    ax.set_axis_off()
+    ax.text(0.5, 0.5, "nothing moves", transform=ax.transAxes, ha="center", color=INK)
+
+
+def _trace(ax: Axes, times: Array, values: Array, colour: str) -> None:
+    """A curve in time; where its oscillations would run into one another, what lies between its extremes."""
+    steps = np.diff(values)
+    turning = np.count_nonzero(steps[1:] * steps[:-1] < 0)
+    if turning <= TURNS * BINS or times.size <= 2 * BINS:
+        ax.plot(times, values, color=colour, lw=0.8)
+        return
+    edges = np.unique(np.linspace(0, times.size, BINS + 1).astype(int))[:-1]
+    low, high = np.minimum.reduceat(values, edges), np.maximum.reduceat(values, edges)
+    at = times[edges]
+    ax.fill_between(at, low, high, color=colour, alpha=0.3, lw=0, step="mid")
+    ax.plot(at, low, color=colour, lw=0.8)
+    ax.plot(at, high, color=colour, lw=0.8)
 
 
 def leg_forces(dataset: xr.Dataset) -> Figure:
@@ -77,7 +124,7 @@ def leg_forces(dataset: xr.Dataset) -> Figure:
 
     Notes
     -----
-    Draws every sample: choose some of a long run with ``dataset.isel(time=slice(None, None, 10))``.
+    Where oscillations are too many to be told apart, the least and largest values of short times are drawn.
 
     Examples
     --------
@@ -87,12 +134,13 @@ def leg_forces(dataset: xr.Dataset) -> Figure:
     figure = new_figure(10.5, 6.2)
     axes = figure.subplots(2, 3, sharex=True, sharey=True)
     for leg, ax, colour in zip(dataset.leg.values, axes.ravel(), SIX, strict=True):
-        ax.plot(dataset.time.values, dataset.leg_force.sel(leg=leg).values, color=colour, lw=0.5)
+        _trace(ax, dataset.time.values, dataset.leg_force.sel(leg=leg).values, colour)
         ax.set_title(f"leg {leg}", loc="left", fontsize=10, color=INK)
         dress(ax)
         ax.margins(x=0)
     for ax in axes[1]:
         ax.set_xlabel("time, s")
     for ax in axes[:, 0]:
-        ax.set_ylabel("force, N (positive: compression)")
+        prefixed(ax, "N")
+        ax.set_ylabel(f"force, {ax.get_ylabel()} (positive: compression)")
     return figure

@@ -44,6 +44,13 @@ def percent(share: float, digits: int = 0) -> str:
     return f"{100 * share + 0.0:.{digits}f} %"
 
 
+def without_rounding(values: Array, share: float = 1e-12) -> Array:
+    """Zero for what is nothing but rounding beside the largest: symmetry that floating point breaks."""
+    import numpy as np
+
+    return np.where(np.abs(values) < share * np.nanmax(np.abs(values), initial=0.0), 0.0, values)
+
+
 def pose_words(pose: Pose) -> str:
     """A pose in m and degrees."""
     x, y, z = (f"{value + 0.0:.6g}" for value in pose.position)

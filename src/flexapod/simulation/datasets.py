@@ -29,10 +29,13 @@ def one_run(
     unstretched = found.unstretched_length[i] + command.evaluate(times)[0]
     length = leg_rates(run.hexapod, platform, base=base).length
     force = found.leg_force[i, :reached]
+    seen = _seen_from_base(platform, base)
     three, turned = ("time", "axis"), ("time", "axis", "body_axis")
     variables: dict[str, tuple[tuple[str, ...], Any, dict[str, str]]] = {
         "displacement": (("time", "output"), found.displacement[i, :reached], in_mixed_units("output_unit")),
         "relative_displacement": (("time", "output"), found.relative[i, :reached], in_mixed_units("output_unit")),
+        "relative_velocity": (("time", "output"), seen[0], in_mixed_units("output_unit/s")),
+        "relative_acceleration": (("time", "output"), seen[1], in_mixed_units("output_unit/s^2")),
         "position": (three, platform.pose.position, in_unit("m")),
         "rotation": (turned, platform.pose.matrix, in_unit("1")),
         "velocity": (three, platform.velocity, in_unit("m/s")),
@@ -68,6 +71,20 @@ def one_run(
     return xr.Dataset(variables, coordinates)
 
 
+def _seen_from_base(platform: Motion, base: Motion) -> tuple[Array, Array]:
+    """Velocity and acceleration of the platform, linear and angular (n, 6), for who stands on the base, in its axes."""
+    turn, w = base.pose.matrix, base.angular_velocity
+    arm = platform.pose.position - base.pose.position
+    velocity = platform.velocity - base.velocity - np.cross(w, arm)
+    spin = platform.angular_velocity - w
+    acceleration = platform.acceleration - base.acceleration - np.cross(base.angular_acceleration, arm)
+    acceleration -= np.cross(w, np.cross(w, arm)) + 2 * np.cross(w, velocity)
+    twist = platform.angular_acceleration - base.angular_acceleration - np.cross(w, spin)
+    parts = (np.einsum("nji,nj->ni", turn, part) for part in (velocity, spin, acceleration, twist))
+    linear, angular, second, angular_second = parts
+    return np.hstack([linear, angular]), np.hstack([second, angular_second])
+
+
 class _State(NamedTuple):
     hexapod: Hexapod
     platform: Motion
@@ -80,7 +97,8 @@ def _energies(state: _State, work: Array, joint: JointModel) -> dict[str, Any]:
     e = energy(state.hexapod, state.platform, base=state.base, unstretched_length=state.unstretched, joint=joint)
     kinetic, gravitational, elastic = (np.asarray(part) for part in (e.kinetic, e.gravitational, e.elastic))
     total = kinetic + gravitational + elastic
-    error = total - total[0] - work.sum(axis=1)
+    done = work.sum(axis=1)
+    error = total - total[0] - (done - done[0])  # the first instant need not be t = 0
     scale = max(np.nanmax(kinetic), np.nanmax(np.abs(work)))
     joules = in_unit("J")
     return {

@@ -116,7 +116,8 @@ def simulate(
 
         - displacement (time, output): from the equilibrium, inertial axes; `output` is x, y, z (m), roll, pitch, yaw
           (rotation vector, rad)
-        - relative_displacement (time, output): the same as seen from the base, in its axes
+        - relative_displacement (time, output): the same as seen from the base, in its axes; relative_velocity and
+          relative_acceleration: velocity, angular velocity and their rates for who stands on the base, in its axes
         - position, velocity, acceleration (time, axis), rotation (time, axis, body_axis), angular_velocity,
           angular_acceleration (time, axis) of the platform; base_position, base_rotation of the base
         - leg_length, unstretched_length (m) and leg_force (N, positive: compression) (time, leg)

@@ -17,7 +17,7 @@ from flexapod.conventions import AXES, LEGS, TWO_PI, Array, Complex, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
 from flexapod.pose import Pose
-from flexapod.report.numbers import pose_numbers, pose_words
+from flexapod.report.numbers import pose_numbers, pose_words, without_rounding
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 
 RMS = ("displacement", "relative", "acceleration", "leg_force")
@@ -93,7 +93,7 @@ def _figure(f: ResponseFindings, name: str) -> Figure:
         return plots.response.random_spectra(f.random)
     assert f.stepped is not None
     linear = f.response.absolute.sel(base=f.axis)
-    figure = plots.response.stepped_ratio(f.stepped, natural=natural, linear=linear, scale="log")
+    figure = plots.response.stepped_ratio(f.stepped, natural=natural, linear=linear, scale="log", unit="Hz")
     amplitude = f"{f.stepped.attrs['amplitude']:g} {f.stepped.attrs['amplitude_unit']}"
     title = f"{f.hexapod.name}: non-linear stepped sine, base {f.axis}, amplitude {amplitude}"
     figure.suptitle(title, fontsize=12)
@@ -161,7 +161,7 @@ def _peaks_table(f: ResponseFindings, peaks: Array) -> Table:
         Column("rad/s", f.poles.imag, digits=5),
         Column("Hz", f.poles.imag / TWO_PI),
         Column("damping", -f.poles.real / np.abs(f.poles), digits=2),
-        *(Column(axis, values, digits=2) for axis, values in zip(AXES, _without_rounding(peaks).T, strict=True)),
+        *(Column(axis, values, digits=2) for axis, values in zip(AXES, without_rounding(peaks).T, strict=True)),
     ]
     words = "response at each damped frequency, m and rad per"
     return Table(columns, title=f"{f.variable.capitalize()} {words} {unit} of {f.dimension} {f.axis}")
@@ -172,14 +172,9 @@ def _rms_table(f: ResponseFindings) -> Table | None:
         return None
     columns = [Column("", AXES)]
     for name, unit in (("displacement", "m, rad"), ("relative", "m, rad"), ("acceleration", "m/s², rad/s²")):
-        columns.append(Column(name, _without_rounding(f.random[f"rms_{name}"].values), unit))
+        columns.append(Column(name, without_rounding(f.random[f"rms_{name}"].values), unit))
     columns += [Column("leg", LEGS), Column("force", f.random.rms_leg_force.values, "N")]
     return Table(columns, title="RMS on the base that moves at random")
-
-
-def _without_rounding(values: Array) -> Array:
-    """Zero for what is nothing but rounding beside the largest: symmetry that floating point breaks."""
-    return np.where(np.abs(values) < 1e-12 * np.nanmax(np.abs(values), initial=0.0), 0.0, values)
 
 
 def _data(f: ResponseFindings, peaks: Array) -> dict[str, Any]:

@@ -12,14 +12,13 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from flexapod import plots
-from flexapod.conventions import AXES, TRANSLATIONS, unit_of
+from flexapod.conventions import AXES, TRANSLATIONS
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
+from flexapod.plots.style import ROUNDING
 from flexapod.pose import Pose
-from flexapod.report.numbers import pose_numbers, pose_words
+from flexapod.report.numbers import pose_numbers, pose_words, without_rounding
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
-
-MOST_PLOTTED = 20_000  # instants
 
 
 def study(
@@ -32,23 +31,23 @@ def study(
         *cautions,
     ]
     steps = f"{dataset.attrs['steps']} steps in {took:.2f} s; energy balance error"
-    few = dataset.isel(time=slice(None, None, max(1, dataset.sizes["time"] // MOST_PLOTTED)))
+    summary = _summary(dataset)
     drawings = [
-        Drawing("displacement", "Displacement from rest", partial(_displacement, few, "displacement")),
+        Drawing("displacement", "Displacement from rest", partial(_displacement, dataset, "displacement")),
         Drawing("relative_displacement", "Displacement seen from the base",
-                partial(_displacement, few, "relative_displacement")),
-        Drawing("leg_forces", "Leg forces", partial(plots.simulation.leg_forces, few)),
+                partial(_displacement, dataset, "relative_displacement")),
+        Drawing("leg_forces", "Leg forces", partial(plots.simulation.leg_forces, dataset)),
     ]  # fmt: skip
     return Study(
         hexapod=hexapod,
         subject="simulation",
         about=f"From rest at {pose_words(pose)}, joint model {dataset.attrs['joint']}.",
-        data=_data(hexapod, pose, dataset, took, cautions),
+        data={**_data(hexapod, pose, dataset, took, cautions), **summary},
         rows=[
             Row("Leg forces from", f"{force.min():.5g} to {force.max():.5g}", "N", note="(positive: compression)"),
             Row(steps, f"{dataset.attrs['energy_error']:.1e}", note="of the largest of kinetic energy and works"),
         ],
-        sections=[Section("Motion", [*drawings, _table(dataset)])],
+        sections=[Section("Motion", [*drawings, _displacements(summary), _rates(summary)])],
         cautions=cautions,
         files={
             "simulation.nc": partial(_stored, dataset),
@@ -70,15 +69,30 @@ def _stored(dataset: xr.Dataset) -> xr.Dataset:
     return stored
 
 
-def _table(dataset: xr.Dataset) -> Table:
-    summary = _summary(dataset)
+def _displacements(summary: dict[str, dict[str, list[float]]]) -> Table:
     columns = [Column("", AXES)]
-    titles = {"displacement": "displacement", "relative_displacement": "seen from the base"}
-    for name, words in titles.items():
-        for kind, title in (("largest", f"largest {words}"), ("rms", "RMS")):
-            cells = [f"{x:.4g} {unit_of(axis)}" for x, axis in zip(summary[name][kind], AXES, strict=True)]
-            columns.append(Column(title, cells))
+    for name, words in (("displacement", "largest displacement"), ("relative_displacement", "seen from the base")):
+        columns += [
+            _column(words, summary[name]["largest"], "m", "rad"),
+            _column("RMS", summary[name]["rms"], "m", "rad"),
+        ]
     return Table(columns, title="Motion of the platform")
+
+
+def _rates(summary: dict[str, dict[str, list[float]]]) -> Table:
+    columns = [Column("", AXES)]
+    for name, linear, angular in (("velocity", "m/s", "rad/s"), ("acceleration", "m/s\u00b2", "rad/s\u00b2")):
+        columns += [
+            _column(name, summary[name]["rms"], linear, angular),
+            _column("seen from the base", summary[f"relative_{name}"]["rms"], linear, angular),
+        ]
+    return Table(columns, title="RMS of velocity and acceleration")
+
+
+def _column(title: str, values: Sequence[float], linear: str, angular: str) -> Column:
+    kept = without_rounding(np.asarray(values), ROUNDING)
+    units = (linear if axis in TRANSLATIONS else angular for axis in AXES)
+    return Column(title, [f"{value:.4g} {unit}" if value else "0" for value, unit in zip(kept, units, strict=True)])
 
 
 def _csv(dataset: xr.Dataset) -> str:
@@ -97,13 +111,14 @@ def _csv(dataset: xr.Dataset) -> str:
 
 
 def _summary(dataset: xr.Dataset) -> dict[str, dict[str, list[float]]]:
-    """Largest and RMS values of the two displacements, by axis."""
+    """Largest and RMS values of displacements, velocities and accelerations, by axis."""
+    parts = {name: dataset[name].values for name in ("displacement", "relative_displacement")}
+    for name in ("velocity", "acceleration"):
+        parts[name] = np.hstack([dataset[name].values, dataset[f"angular_{name}"].values])
+        parts[f"relative_{name}"] = dataset[f"relative_{name}"].values
     return {
-        name: {
-            "largest": np.abs(dataset[name].values).max(axis=0).tolist(),
-            "rms": np.sqrt((dataset[name].values ** 2).mean(axis=0)).tolist(),
-        }
-        for name in ("displacement", "relative_displacement")
+        name: {"largest": np.abs(part).max(axis=0).tolist(), "rms": np.sqrt((part**2).mean(axis=0)).tolist()}
+        for name, part in parts.items()
     }
 
 
@@ -119,7 +134,6 @@ def _data(
         "duration_s": float(dataset.time[-1]),
         "samples": dataset.sizes["time"],
         "axes": list(AXES),
-        **_summary(dataset),
         "leg_force_N": {"least": force.min(axis=0), "largest": force.max(axis=0)},
         "energy_error": dataset.attrs["energy_error"],
         "steps": dataset.attrs["steps"],
