@@ -1,6 +1,8 @@
 """What all tests share: how examples are drawn, the command line in this process, and what was measured."""
 
 import json
+import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -43,6 +45,20 @@ def result(run):
 # --- what was measured ------------------------------------------------------------------------------------------------
 
 LEDGER = pytest.StashKey[Ledger]()
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A file system of 2 MiB. Only the superuser of a machine that allows it can make one."""
+    path = tmp_path / "disk"
+    path.mkdir()
+    made = shutil.which("mount") and subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", path], capture_output=True, check=False
+    )
+    if not made or made.returncode:
+        pytest.skip("a small file system cannot be mounted here")
+    yield path
+    subprocess.run(["umount", path], check=True)
 
 
 def pytest_addoption(parser):

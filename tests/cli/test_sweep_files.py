@@ -183,3 +183,28 @@ def test_a_file_that_may_not_be_written_stays(tmp_path, capsys):
     assert code == 2
     assert "may not be written to" in said
     assert path.read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--figure", "map.foo"), "Choose .png"),
+        (("--figure", "none/map.png"), "is no directory"),
+        (("--figure", "map.png", "--quantities", "omega_1"), "needs the quantity cond_H"),
+        (("--figure", "map.png", "--quantities", "leg_length"), "needs the quantity omega_1 and cond_H"),
+    ],
+)
+def test_a_figure_that_cannot_be_is_told_before_the_work(arguments, words, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("flexapod.cli.studies.sweep.sweep", lambda *given, **more: pytest.fail("it was computed"))
+    code, _, said = run(capsys, "sweep", "mukherjee-i", *AROUND, *arguments)
+    assert code == 2
+    assert words in said
+
+
+def test_a_full_disk_ends_a_netcdf_file_with_a_sentence(small_disk):
+    command = ["sweep", "mukherjee-i", *AROUND, "--points", "60000", "--out", str(small_disk / "map.nc")]
+    ended = subprocess.run([sys.executable, "-m", "flexapod", *command], capture_output=True, text=True, check=False)
+    assert ended.returncode == 2
+    assert "map.nc cannot be written: No space left on device" in ended.stderr
+    assert not list(small_disk.iterdir())

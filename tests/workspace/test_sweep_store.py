@@ -2,7 +2,6 @@
 
 import errno
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -289,20 +288,6 @@ def test_a_full_disk_leaves_a_readable_store_that_can_be_gone_on_with(tmp_path, 
     fx.workspace.SweepStore.resume(path, I, POSES).run()
     stored(tmp_path / "whole.zarr", chunk=500)
     assert content(path) == content(tmp_path / "whole.zarr")
-
-
-@pytest.fixture
-def small_disk(tmp_path):
-    """A file system of 2 MiB. Only the superuser of a machine that allows it can make one."""
-    path = tmp_path / "disk"
-    path.mkdir()
-    made = shutil.which("mount") and subprocess.run(
-        ["mount", "-t", "tmpfs", "-o", "size=2m", "tmpfs", path], capture_output=True, check=False
-    )
-    if not made or made.returncode:
-        pytest.skip("a small file system cannot be mounted here")
-    yield path
-    subprocess.run(["umount", path], check=True)
 
 
 def test_a_disk_that_is_full(small_disk):

@@ -41,6 +41,8 @@ def compute(options: Options) -> Study:
         raise click.UsageError("--worst looks for the worst pose of a box. Give --box or --around.")
     if not options.streamed and (options.resume or options.scheduler):
         raise click.UsageError("--resume and --scheduler need a store to write to. Give --out NAME.zarr.")
+    if options.figure is not None:
+        plots.check_swept(points.dims, quantities)
     found = (_streamed if options.streamed else _in_memory)(hexapod, points, quantities, options)
     everywhere = options.all_poses
     if options.figure is not None:
