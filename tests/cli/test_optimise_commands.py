@@ -2,6 +2,8 @@
 
 import json
 import os
+import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -149,3 +151,68 @@ def _trials(file):
             return db.execute("select count(*) from trials where state = 'COMPLETE'").fetchone()[0]
     except sqlite3.Error:
         return 0
+
+
+def test_the_example_of_the_readme_makes_the_machine_better(capsys, tmp_path, monkeypatch):
+    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8").replace("\\\n", " ")
+    line = next(line for line in readme.splitlines() if line.startswith("flexapod optimise my-machine.toml"))
+    command, _, told = line.partition("#")
+    before, after = (float(number) for number in re.findall(r"(\d+) -> (\d+) rad/s", told)[0])
+    monkeypatch.chdir(tmp_path)
+    assert run(capsys, "new", "my-machine.toml")[0] == 0
+    code, out, _ = run(capsys, *shlex.split(command)[1:], "--json")
+    found = json.loads(out)
+    assert (code, found["improved"], found["start_breaks"]) == (0, True, [])
+    assert (found["start_index_rad_s"], found["index_rad_s"]) == pytest.approx((before, after), abs=0.5)
+    assert not [
+        name for name, one in found["variable_ranges"].items() if not one["low"] <= one["before"] <= one["high"]
+    ]
+
+
+def test_a_start_that_breaks_a_limit_is_said_first(capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    run(capsys, "new", "own.toml")
+    told = ["optimise", "own.toml", "--around", 0.03, 8, "--trials", 0, "--points", 256, "--verify", 4096, "--keep"]
+    told += ["limits", "--keep", "footprint", "--vary", "home.position_mm[2]=400:600", "--out", "."]
+    code, out, _ = run(capsys, *told)
+    assert code == 0
+    assert " ".join(out.split()).startswith("own-optimised: own itself is not allowed (shortest leg is 0.485")
+    assert "No variable moves: footprint of the base." in out
+    page = Path("own-optimised.html").read_text(encoding="utf-8")
+    assert page.index("own itself is not allowed (shortest leg") < page.index("Index, verified")
+    code, out, _ = run(capsys, *told, "--json")
+    found = json.loads(out)
+    assert list(found).index("start_breaks") < list(found).index("index_rad_s")
+    assert found["start_breaks"][0].startswith("shortest leg is 0.485")
+    assert found["unmoved"] == ["footprint of the base"]
+
+
+def test_answers_are_in_the_units_that_were_asked(capsys, tmp_path):
+    told = ["optimise", "mukherjee-ii", "--vary", "platform.circle.radius_mm=46:60", "--vary"]
+    told += [
+        "base.circle.half_angle_deg=5:55",
+        "--vary",
+        "legs.stiffness_N_per_um=5:9",
+        "--trials",
+        0,
+        "--out",
+        tmp_path,
+    ]
+    code, out, _ = run(capsys, *told)
+    assert code == 0
+    lines = {line.split()[0]: line.split()[1:] for line in out.splitlines() if ".circle." in line or "legs." in line}
+    assert lines["platform.circle.radius_mm"][:4] == ["mm", "45.0240", "46", "60"]
+    assert lines["base.circle.half_angle_deg"][:4] == ["deg", "19.2988", "5", "55"]
+    assert lines["legs.stiffness_N_per_um"][0] == "N/um"
+    assert "platform.circle.radius_mm is 45.024, its bounds are 46 to 60 mm" in " ".join(out.split())
+
+
+def test_where_nothing_is_better_no_design_is_written(capsys, tmp_path):
+    told = ["optimise", "precision-positioner", "--vary", "platform.mass=60:80", "--trials", 0, "--out", tmp_path]
+    code, out, _ = run(capsys, *told)
+    assert code == 0
+    assert "No design better than precision-positioner was found" in out
+    assert not list(tmp_path.glob("*.toml"))
+    code, out, _ = run(capsys, *told, "--json")
+    found = json.loads(out)
+    assert (found["improved"], found["gain"], found["variables"]["platform.mass"]) == (False, 0.0, 30.31)

@@ -12,7 +12,7 @@ import pytest
 import flexapod as fx
 from flexapod.design.layout import PLACES
 from flexapod.errors import InfeasibleError
-from flexapod.optimisation import constraint_quantities, pareto
+from flexapod.optimisation import constraint_quantities, design_search, pareto, verification
 from flexapod.optimisation import local_search as finishing
 from flexapod.optimisation.global_search import Study, _at_work, _conflict
 from flexapod.optimisation.local_search import finish
@@ -235,7 +235,7 @@ def test_a_front_with_nothing_on_it_is_infeasible(positioner, monkeypatch):
     with pytest.raises(InfeasibleError, match="none of 6 trials keeps every constraint"):
         fx.pareto_front(
             positioner,
-            heavier(),
+            [heavier(), fx.Variable("home.position_mm[2]", 220, 280)],
             fx.optimisation.TotalMass(),
             constraints=[fx.optimisation.LegLength(most=0.01)],
             trials=6,
@@ -278,3 +278,60 @@ def test_a_broken_study_file_is_told(positioner, tmp_path):
 def test_a_study_of_a_later_version_is_not_taken_for_ours(positioner):
     here = problem(positioner, heavier()).describe()
     assert _conflict({**here, "from the future": 1}, here) == "holds another search."
+
+
+def failing(*given, **options):
+    raise np.linalg.LinAlgError("SVD did not converge")
+
+
+def test_a_search_whose_verification_fails_keeps_what_it_has(positioner, monkeypatch):
+    monkeypatch.setattr(verification, "worst_pose", failing)
+    found = fx.optimise(positioner, heavier(), fx.LeastIndex(BOX), trials=2, samples=64, verify=128)
+    assert found.variables["platform.mass"] == pytest.approx(20.0)
+    assert found.index > found.start_index > 0
+    assert found.verification.points == 64
+    assert [text for text in found.failures if "could not be verified at 128 poses (SVD did not converge)" in text]
+    assert "could not be verified" in page(studies.optimal(found, "x"))
+
+
+def test_a_local_search_that_fails_does_not_lose_the_trials(positioner, monkeypatch):
+    monkeypatch.setattr(finishing._Local, "solve", failing)
+    found = fx.optimise(positioner, heavier(20, 40), trials=12, samples=16, verify=32)
+    assert found.index > found.start_index
+    assert "A local search ended early: SVD did not converge." in found.failures
+    front = fx.pareto_front(positioner, heavier(15, 40), fx.optimisation.TotalMass(), trials=6, refine=2, samples=16)
+    assert len(front.designs) >= 1
+    assert "A local search ended early: SVD did not converge." in front.failures
+
+
+def test_a_design_of_a_front_that_cannot_be_verified_is_left_out(positioner, monkeypatch):
+    real, count = pareto.verify, iter(range(100))
+    monkeypatch.setattr(pareto, "verify", lambda *given: failing() if next(count) == 0 else real(*given))
+    front = fx.pareto_front(positioner, heavier(15, 40), fx.optimisation.TotalMass(), trials=12, refine=0, samples=16)
+    assert front.failures == ("A design of the front could not be verified: SVD did not converge.",)
+
+
+def test_a_local_search_that_does_not_converge_is_told(positioner, monkeypatch):
+    def stuck(self, u):
+        self.message = "Inequality constraints incompatible"
+        return u
+
+    monkeypatch.setattr(finishing._Local, "solve", stuck)
+    found = fx.optimise(positioner, heavier(20, 40), trials=0)
+    assert found.hexapod is positioner
+    assert len(found.failures) == 1
+    assert "did not converge (Inequality constraints incompatible)" in found.failures[0]
+
+
+def test_a_start_that_makes_no_hexapod_is_no_local_search(positioner):
+    """Joints of a pair that would coincide with a leg of no length: nothing to descend from."""
+    axis = fx.Variable("base.universal_axes[0][:]", -1, 1, kind="scale")
+    ended = finish(problem(positioner, axis), np.zeros(1), 16)
+    assert (ended.rounds, ended.message) == (0, "its start makes no hexapod")
+
+
+def test_the_verification_uses_poses_of_its_own():
+    """Whatever the seed of the search, those of the verification are others."""
+    for seed in range(100):
+        used = {seed + k for k in range(8)} | {seed + design_search._DENSE + k for k in range(8)}
+        assert not used & {verification.SEED + k for k in range(4)}

@@ -395,7 +395,7 @@ def test_pareto_front_is_one_and_its_designs_are_what_it_says():
 
 BAD = {
     "contradict each other": lambda h: ([fx.Variable("platform.mass", 30, 20)], {}),
-    "base.radius has the bounds": lambda h: ([fx.optimisation.JointCircle("base", radius=(0.2, 0.1))], {}),
+    "base.circle.radius has the bounds": lambda h: ([fx.optimisation.JointCircle("base", radius=(0.2, 0.1))], {}),
     "both set base.joints[2][1]": lambda h: (
         [fx.optimisation.JointCircle("base", radius=(0.1, 0.2)), fx.Variable("base.joints[2][1]", 0, 1)],
         {},

@@ -13,7 +13,7 @@ from flexapod.design import packing
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.key_names import resolve
 from flexapod.design.schema import KEYS, Key
-from flexapod.design.units import to_si
+from flexapod.design.units import printed, to_si
 from flexapod.errors import ArgumentError, DesignError
 
 HOME = slice(_core.design_size, _core.design_size + 6)
@@ -72,6 +72,12 @@ def entries(key: str) -> tuple[NDArray[np.int64], Key, float]:
         shape = " x ".join(map(str, place.shape)) or "one number"
         raise ArgumentError(f"{key} is outside {name}, which is {shape}. Indices count from 0.") from None
     return np.unique(chosen), rule, scale
+
+
+def unit_name(key: str) -> str:
+    """The unit of a key that `entries` takes, as people write it: "mm" of platform.joints_mm[0]; "" if it has none."""
+    table, _, last = key.partition("[")[0].rpartition(".")
+    return printed(resolve(table, last)[1])
 
 
 def describe(number: int) -> str:

@@ -12,6 +12,7 @@ from .constraints import TotalMass as TotalMass
 from .derivatives import DesignDerivatives as DesignDerivatives
 from .design_results import Check as Check
 from .design_results import OptimalDesign as OptimalDesign
+from .design_results import VariableRange as VariableRange
 from .design_results import Verification as Verification
 from .design_search import optimise as optimise
 from .objectives import Dexterity as Dexterity

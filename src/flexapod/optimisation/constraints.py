@@ -45,10 +45,9 @@ class Footprint(Constraint):
         """List what a design has to keep; see `Constraint.requirements`."""
         one_of(self.plate, "footprint: the plate", get_args(Plate))
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints
-        (x, y), radius = quantities.enclosing_circle(joints[:, :2])
+        (x, y), _ = quantities.enclosing_circle(joints[:, :2])
         quantity = quantities.Radius(self.plate, float(x), float(y))
-        bound = radius if self.most is None else self.most
-        return [requirement(f"footprint of the {self.plate}", quantity, "most", bound, None, measure)]
+        return [requirement(f"footprint of the {self.plate}", quantity, "most", self.most, None, measure)]
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from flexapod.conventions import Array
 from flexapod.design import layout
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, DesignError, shown
+from flexapod.optimisation.design_results import VariableRange
 from flexapod.optimisation.parameters import Parameter
 from flexapod.optimisation.variables import JointCircle, Variable
 
@@ -107,6 +108,13 @@ class DesignMap:
     def values(self, x: Array) -> dict[str, float]:
         """The variables by name, in the unit of their keys."""
         return {p.name: float(v / p.unit) for p, v in zip(self.parameters, x, strict=True)}
+
+    def ranges(self) -> dict[str, VariableRange]:
+        """Where the design has the variables, and their bounds, by name, in the units of their keys."""
+        own = self.values(self.own())
+        return {
+            p.name: VariableRange(p.unit_name, own[p.name], p.low / p.unit, p.high / p.unit) for p in self.parameters
+        }
 
     def from_values(self, values: Mapping[str, float]) -> Array:
         """The variables from values by name (as `values` gives them); those left out as the design has them."""

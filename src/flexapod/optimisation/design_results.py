@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
@@ -38,6 +38,37 @@ class Check:
     margin: float
     kept: bool
 
+    @property
+    def words(self) -> str:
+        """Value and bound as a sentence's part: "longest leg is 0.5 m, must be at most 0.45 m"."""
+        value, bound = (f"{number:.6g} {self.unit}".rstrip() for number in (self.value, self.bound))
+        return f"{self.name} is {value}, must be at {self.side} {bound}"
+
+
+class VariableRange(NamedTuple):
+    """Where a variable began and between what it was searched, in its own unit.
+
+    Attributes
+    ----------
+    unit : str
+        Its unit; "" for a pure number.
+    before : float
+        Where the design to start from has it.
+    low, high : float
+        Its bounds.
+    """
+
+    unit: str
+    before: float
+    low: float
+    high: float
+
+    @property
+    def outside(self) -> bool:
+        """Whether the design to start from has it outside the bounds."""
+        room = 1e-9 * max(abs(self.low), abs(self.high))
+        return not self.low - room <= self.before <= self.high + room
+
 
 @dataclass(frozen=True)
 class Verification:
@@ -68,7 +99,7 @@ class Verification:
 
 @dataclass(frozen=True, eq=False)
 class OptimalDesign:
-    """The design that `flexapod.optimise` found.
+    """The design that `flexapod.optimise` found: the design to start from itself where none is better.
 
     Attributes
     ----------
@@ -76,6 +107,8 @@ class OptimalDesign:
         The design.
     variables : dict of str to float
         Its variables by name, in the units of their keys.
+    ranges : dict of str to VariableRange
+        Where the variables began and their bounds, by name.
     at_bounds : tuple of str
         Names of the variables that are on a bound.
     index : float
@@ -93,6 +126,14 @@ class OptimalDesign:
         The verification of the design.
     start_checks : tuple of Check
         Every constraint of the design to start from.
+    start_breaks : tuple of str
+        What the design to start from breaks, in words; empty where it keeps every constraint.
+    unmoved : tuple of str
+        Names of the constraints, or of the objective, that no variable moves.
+    failures : tuple of str
+        What went wrong on the way, in words, such as a local search that did not converge.
+    stopped : bool
+        Whether `stop` ended the search early.
     history : xarray.Dataset
         The finished trials.
     evaluations : int
@@ -103,6 +144,7 @@ class OptimalDesign:
 
     hexapod: Hexapod
     variables: dict[str, float]
+    ranges: dict[str, VariableRange]
     at_bounds: tuple[str, ...]
     index: float
     start: Hexapod
@@ -111,9 +153,19 @@ class OptimalDesign:
     coincident: int
     verification: Verification
     start_checks: tuple[Check, ...]
+    start_breaks: tuple[str, ...]
+    unmoved: tuple[str, ...]
+    failures: tuple[str, ...]
+    stopped: bool
     history: xr.Dataset
     evaluations: int
     seconds: float
+
+    @property
+    def improved(self) -> bool:
+        """Whether the design keeps every constraint, and has a higher index than `start` or `start` breaks one."""
+        better = self.index > self.start_index or bool(self.start_breaks)
+        return self.hexapod is not self.start and self.verification.holds and better
 
     @property
     def gain(self) -> float:

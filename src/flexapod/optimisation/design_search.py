@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, Literal
@@ -14,22 +14,23 @@ from flexapod.checks import one_of, whole
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, InfeasibleError
-from flexapod.optimisation.design_results import Check, OptimalDesign, Verification
+from flexapod.optimisation.design_results import OptimalDesign
 from flexapod.optimisation.global_search import OnTrial, Progress, Stop, Study, Trial
 from flexapod.optimisation.local_search import finish
-from flexapod.optimisation.objectives import LeastIndex, MeanIndex, Objective
+from flexapod.optimisation.objectives import LeastIndex, Objective
 from flexapod.optimisation.problem import Assessment, Problem
 from flexapod.optimisation.requirements import Constraint
 from flexapod.optimisation.variables import JointCircle, Variable
+from flexapod.optimisation.verification import Beginning, begin, told, verified
 from flexapod.pose import Pose
-from flexapod.workspace.worst import worst_pose
 
 if TYPE_CHECKING:
     import xarray as xr
 
 _FINISHED_FROM = 3  # best trials that are finished by gradients
 _AGREE = 1e-3  # relative amount by which the dense sweep may lie below what the finish reported
-_SEED = 77_003  # added for the verifying sweep: it uses none of the poses that the search has seen
+_DENSE = 77_003  # added to the seed of a denser sweep
+_SAME = 1e-9  # relative difference of indices that is rounding
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,10 @@ class Settings:
     seed: int
     stop: Stop | None
     verify: int = 0
+
+    @property
+    def stopped(self) -> bool:
+        return self.stop is not None and self.stop()
 
 
 def optimise(
@@ -104,7 +109,8 @@ def optimise(
     Returns
     -------
     OptimalDesign
-        The design, verified on poses that the search has not seen.
+        The design, verified on poses that the search has not seen. Where none better than `hexapod` was found, it is
+        `hexapod` itself.
 
     Raises
     ------
@@ -113,7 +119,8 @@ def optimise(
     DesignError
         If `hexapod` is not a Hexapod.
     InfeasibleError
-        If a given start breaks a constraint, or no design that keeps them all was found.
+        If a given start breaks a constraint, if the design breaks one that no variable moves, or if no design that
+        keeps them all was found.
     OutputError
         If the study file belongs to another design or problem, or cannot be used.
 
@@ -147,40 +154,55 @@ def optimise(
     aim = LeastIndex() if objective is None else objective
     problem = Problem(hexapod, variables, aim, constraints, joint, threads)
     settings = Settings(samples, whole(seed, "seed", 0), stop, verify)
-    begin = _start(problem, start, settings)
+    search = Study(problem, study, seed=seed, sampler=sampler, samples=samples) if trials else None
+    begun = begin(problem, settings.verify)
+    first = _start(problem, start, settings)
     found: list[Trial] = []
-    if trials:
-        search = Study(problem, study, seed=seed, sampler=sampler, samples=samples)
+    if search is not None:
         search.run(trials, lambda x: _one(problem, x, settings), progress, on_trial, stop)
         found = search.finished()
-    best_x, best, evaluations = _finish_best(problem, begin, found, settings)
-    if not best.feasible:
+    best = _finish_best(problem, first, found, settings)
+    if not best.assessment.feasible and not begun.keeps:
         raise InfeasibleError(
             f"no design that keeps every constraint was found in {len(found)} trials; the nearest one breaks: "
-            f"{problem.violations(best)}. Loosen a bound, widen the variables, or allow more trials."
+            f"{problem.violations(best.assessment)}. Loosen a bound, widen the variables, or allow more trials."
         )
-    return _told(problem, best_x, found, evaluations, settings, began)
+    return _told(problem, begun, best, found, settings, began)
 
 
 def _told(
-    problem: Problem, x: Array, found: Sequence[Trial], evaluations: int, settings: Settings, began: float
+    problem: Problem, begun: Beginning, best: _Best, found: Sequence[Trial], settings: Settings, began: float
 ) -> OptimalDesign:
-    """The result, verified; the design one began with is judged on the same poses."""
-    design, start = problem.map.hexapod_at(x), problem.hexapod
-    checked, by_start = verify(problem, design, settings.verify), verify(problem, start, settings.verify)
+    """The result, verified on the same poses as the design one began with; that design itself where it is better."""
+    start, ranges = problem.hexapod, problem.map.ranges()
+    failures = [*begun.failures, *best.failures]
+    design, checked = start, begun.verified
+    variables = {name: one.before for name, one in ranges.items()}
+    at_bounds: tuple[str, ...] = ()
+    if best.assessment.feasible:
+        ended = problem.map.hexapod_at(best.x)
+        seen = verified(problem, ended, settings.verify, best.assessment, settings.samples, failures)
+        if begun.breaks or seen.index > (1 + _SAME) * begun.verified.index:
+            design, checked = ended.replace({"name": f"{start.name}-optimised"}), seen
+            variables, at_bounds = problem.map.values(best.x), _at_bounds(problem, best.x)
     return OptimalDesign(
-        hexapod=design.replace({"name": f"{start.name}-optimised"}),
-        variables=problem.map.values(x),
-        at_bounds=_at_bounds(problem, x),
+        hexapod=design,
+        variables=variables,
+        ranges=ranges,
+        at_bounds=at_bounds,
         index=checked.index,
         start=start,
-        start_index=by_start.index,
+        start_index=begun.verified.index,
         searched_index=max((t.values[0] for t in found if t.feasible), default=float("nan")),
         coincident=_coincident(problem, design, checked.pose),
         verification=checked,
-        start_checks=by_start.checks,
+        start_checks=begun.verified.checks,
+        start_breaks=begun.breaks,
+        unmoved=begun.unmoved,
+        failures=tuple(failures),
+        stopped=settings.stopped,
         history=history(problem, found),
-        evaluations=evaluations,
+        evaluations=best.evaluations,
         seconds=perf_counter() - began,
     )
 
@@ -202,29 +224,50 @@ def _one(problem: Problem, x: Array, settings: Settings) -> tuple[Assessment, tu
     return found, (found.index,)
 
 
-def _finish_best(
-    problem: Problem, begin: Array, found: Sequence[Trial], settings: Settings
-) -> tuple[Array, Assessment, int]:
+@dataclass
+class _Best:
+    """The best end of the local searches, and what went wrong on the way."""
+
+    x: Array
+    assessment: Assessment
+    message: str = ""
+    ends: int = 0
+    evaluations: int = 0
+    failures: list[str] = field(default_factory=list)
+
+    def finish(self, problem: Problem, x: Array, samples: int, seed: int, stop: Stop | None, anew: bool) -> None:
+        """Finishes x, and takes the end where it is better, or `anew` where it was judged on denser poses."""
+        try:
+            ended = finish(problem, x, samples, seed, stop)
+        except Exception as error:  # the trials and the other ends are not lost with it
+            self.failures.append(f"A local search ended early: {told(error)}.")
+            return
+        self.evaluations += ended.evaluations
+        self.ends += 1
+        if anew or self.ends == 1 or ended.assessment.better_than(self.assessment):
+            self.x, self.assessment, self.message = ended.x, ended.assessment, ended.message
+
+
+def _finish_best(problem: Problem, begin: Array, found: Sequence[Trial], settings: Settings) -> _Best:
     """Finishes the start and the best trials by gradients; what denser sweeps find worse is finished anew."""
     order = sorted(found, key=lambda t: (not t.feasible, -t.values[0] if t.feasible else t.violation))
     starts = [t.x for t in _apart(problem, order)] or [begin]
     if not any(np.array_equal(x, begin) for x in starts):
         starts.append(begin)
-    best_x, best, evaluations = begin, None, 0
+    best = _Best(starts[0], problem.nothing())
     for x in starts:
-        ended = finish(problem, x, settings.samples, settings.seed, settings.stop)
-        evaluations += ended.evaluations
-        if ended.assessment.better_than(best):
-            best_x, best = ended.x, ended.assessment
-    assert best is not None
+        best.finish(problem, x, settings.samples, settings.seed, settings.stop, anew=False)
+    if not best.ends:
+        best.assessment = problem.assess_at(best.x, settings.samples, settings.seed)
     for dense in (4 * settings.samples, settings.verify):
-        seen = problem.assess_at(best_x, dense, settings.seed + _SEED)
-        if seen.feasible and seen.index >= (1 - _AGREE) * best.index:
-            continue
-        ended = finish(problem, best_x, dense, settings.seed + _SEED, settings.stop)
-        evaluations += ended.evaluations
-        best_x, best = ended.x, ended.assessment
-    return best_x, best, evaluations
+        seen = problem.assess_at(best.x, dense, settings.seed + _DENSE)
+        if not (seen.feasible and seen.index >= (1 - _AGREE) * best.assessment.index):
+            best.finish(problem, best.x, dense, settings.seed + _DENSE, settings.stop, anew=True)
+    if best.message:
+        best.failures.append(
+            f"The local search did not converge ({best.message}): there may be a better design near this one."
+        )
+    return best
 
 
 def _apart(problem: Problem, order: Sequence[Trial]) -> list[Trial]:
@@ -237,37 +280,6 @@ def _apart(problem: Problem, order: Sequence[Trial]) -> list[Trial]:
         if len(kept) == _FINISHED_FROM:
             break
     return kept
-
-
-def verify(problem: Problem, hexapod: Hexapod, samples: int) -> Verification:
-    """Sweeps every workspace of a problem at poses that no search has seen, and descends from the worst."""
-    found = problem.assess(hexapod, samples, _SEED + 1)
-    index, pose = found.index, None
-    box = problem.box(hexapod)
-    if box is not None and index > 0:
-        worst = worst_pose(
-            hexapod,
-            box,
-            joint=problem.joint,
-            samples=samples,
-            seed=_SEED + 2,
-            threads=problem.threads,
-            all_poses=True,
-        )
-        index, pose = min(index, worst.omega_1), worst.pose
-    elif not isinstance(problem.objective, MeanIndex):
-        rows, swept = problem.sweep(hexapod, 0, samples, 0)
-        pose = rows[problem.objective.worst_poses(np.nan_to_num(swept[problem.objective.quantity]))[0]]
-    return Verification(samples, index, pose, _checks(problem, found))
-
-
-def _checks(problem: Problem, found: Assessment) -> tuple[Check, ...]:
-    checks = []
-    for r, value, margin in zip(problem.requirements, found.values, found.margins, strict=True):
-        bound = float(r.bound.min() if r.side == "most" else r.bound.max())
-        kept = bool(margin >= -10 * 1e-6)  # ten times what the search allows itself: it is another sweep
-        checks.append(Check(r.name, r.quantity.unit, r.side, float(value), bound, float(margin), kept))
-    return tuple(checks)
 
 
 def _at_bounds(problem: Problem, x: Array) -> tuple[str, ...]:

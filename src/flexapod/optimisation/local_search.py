@@ -10,7 +10,7 @@ where the lowest are equal, as they are at most optima. It is made sharper from 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -27,6 +27,7 @@ from flexapod.workspace.worst import worst_pose
 _SHARPNESS = (40.0, 400.0, 4000.0, 4000.0, 4000.0)
 _SLACK = 1e-7  # bounds are kept by this much more than asked, so that rounding does not break them
 _PINNED = -1e-9  # instead of it, where a bound can only just be kept: at the end of a variable's range, for one
+_SMOOTH = 4e-3  # by which a smooth extreme may pass a bound that the extreme itself keeps: 2 log(6) / 1000
 _STEEP = 1e-3  # slope over the whole range of the variables from which a margin has room for all of the slack
 _STILL = 1e-9  # slope over that range below which no step moves a margin
 _CLOSE = 1e-5  # relative gain of a round below which the finish ends
@@ -44,12 +45,16 @@ class _Held:
 
 @dataclass(frozen=True)
 class Finished:
-    """Best design of a finish: variables (SI), what it makes of the problem, and how often anything was evaluated."""
+    """Best design of a finish: variables (SI), what it makes of the problem, and how often anything was evaluated.
+
+    message: why no round converged, in words; empty where one did, or none was made.
+    """
 
     x: Array
     assessment: Assessment
     evaluations: int
     rounds: int
+    message: str
 
 
 def finish(
@@ -60,13 +65,15 @@ def finish(
     held: list[_Held] = []
     u, evaluations, rounds = problem.map.unit(start), 0, 0
     _hold(problem, start, held, samples, seed)
-    for sharpness in _SHARPNESS:
+    messages = [] if held else ["its start makes no hexapod"]
+    for sharpness in _SHARPNESS if held else ():
         if stop is not None and stop():
             break
         rounds += 1
         local = _Local(problem, held, sharpness)
         u = local.solve(u)
         evaluations += local.evaluations
+        messages.append(local.message)
         x = problem.map.from_unit(u)[0]
         found = assess_anew(problem, x, samples, seed + rounds)
         gain = found.index / best.index - 1 if best.feasible and best.index > 0 else 1.0
@@ -75,7 +82,7 @@ def finish(
         if sharpness == _SHARPNESS[-1] and found.feasible and gain < _CLOSE:
             break
         _hold(problem, x, held, samples, seed + rounds)
-    return Finished(best_x, best, evaluations, rounds)
+    return Finished(best_x, best, evaluations, rounds, messages[-1] if messages and all(messages) else "")
 
 
 def assess_anew(problem: Problem, x: Array, samples: int, seed: int) -> Assessment:
@@ -84,7 +91,7 @@ def assess_anew(problem: Problem, x: Array, samples: int, seed: int) -> Assessme
     if found.index <= 0:
         return found
     hexapod = problem.map.hexapod_at(x)
-    return Assessment(least_index(problem, hexapod, found.index, samples, seed), found.margins, found.values)
+    return replace(found, index=least_index(problem, hexapod, found.index, samples, seed))
 
 
 def least_index(problem: Problem, hexapod: Hexapod, index: float, samples: int, seed: int) -> float:
@@ -148,7 +155,7 @@ class _Local:
 
     def __init__(self, problem: Problem, held: Sequence[_Held], sharpness: float) -> None:
         self.problem, self.held, self.sharpness = problem, held, sharpness
-        self.evaluations = 0
+        self.evaluations, self.message = 0, ""
         self._at: Array | None = None
         self._found: tuple[Array, Array, Array, Array] | None = None
 
@@ -161,7 +168,9 @@ class _Local:
         start = np.append(u, 0.0)
         toward = np.zeros(n + 1)
         toward[-1] = -1.0
-        for slack in (_SLACK, _PINNED):
+        margin = self._evaluate(u)[2]
+        pinned = np.where(margin > -_SMOOTH, np.minimum(margin, _PINNED), _PINNED)  # no worse than now
+        for slack in (np.full(len(margin), _SLACK), pinned):
             end = minimize(
                 lambda z: -z[-1],
                 start,
@@ -177,9 +186,10 @@ class _Local:
                 break
         return found
 
-    def _margins(self, z: Array, slack: float) -> Array:
+    def _margins(self, z: Array, slack: Array) -> Array:
         index, _, margin, by_margin = self._evaluate(z[:-1])
-        room = slack * np.minimum(1.0, np.abs(by_margin).sum(axis=1) / _STEEP)
+        steep = np.minimum(1.0, np.abs(by_margin).sum(axis=1) / _STEEP)
+        room = np.where(slack > 0, slack * steep, slack)
         return np.concatenate([index - self._reference - z[-1], margin - room])
 
     def _slopes(self, z: Array) -> Array:

@@ -20,7 +20,7 @@ Kind = Literal["set", "add", "scale"]
 
 @dataclass(frozen=True)
 class Parameter:
-    """A variable's name and bounds (SI), its unit in SI units, and where the design has it."""
+    """A variable's name and bounds (SI), its unit in SI units and in words, and where the design has it."""
 
     name: str
     low: float
@@ -28,6 +28,7 @@ class Parameter:
     unit: float = 1.0
     log: bool = False
     start: float = np.nan
+    unit_name: str = ""
 
     def check(self) -> None:
         if not (np.isfinite(self.low) and np.isfinite(self.high)):

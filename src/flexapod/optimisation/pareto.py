@@ -13,13 +13,15 @@ from flexapod.checks import whole
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, InfeasibleError, shown
-from flexapod.optimisation.design_search import Settings, history, verify
+from flexapod.optimisation.design_results import VariableRange
+from flexapod.optimisation.design_search import Settings, history
 from flexapod.optimisation.global_search import OnTrial, Progress, Stop, Study, Trial
 from flexapod.optimisation.local_search import finish
 from flexapod.optimisation.objectives import LeastIndex, Objective
 from flexapod.optimisation.problem import Assessment, Problem
 from flexapod.optimisation.requirements import Constraint, Requirement
 from flexapod.optimisation.variables import JointCircle, Variable
+from flexapod.optimisation.verification import Beginning, begin, told, verify
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,6 +50,16 @@ class ParetoFront:
         The design to start from.
     start : tuple of float
         Its index and its value of the other quantity.
+    start_breaks : tuple of str
+        What the design to start from breaks, in words; empty where it keeps every constraint.
+    ranges : dict of str to VariableRange
+        Where the variables began and their bounds, by name.
+    unmoved : tuple of str
+        Names of the constraints, or of the objective, that no variable moves.
+    failures : tuple of str
+        What went wrong on the way, in words.
+    stopped : bool
+        Whether `stop` ended the search early.
     name, unit : str
         Name and unit of the other quantity.
     history : xarray.Dataset
@@ -61,6 +73,11 @@ class ParetoFront:
     names: tuple[str, ...]
     hexapod: Hexapod
     start: tuple[float, float]
+    start_breaks: tuple[str, ...]
+    ranges: dict[str, VariableRange]
+    unmoved: tuple[str, ...]
+    failures: tuple[str, ...]
+    stopped: bool
     name: str
     unit: str
     history: xr.Dataset
@@ -132,11 +149,11 @@ def pareto_front(
     Raises
     ------
     ArgumentError
-        If bounds contradict each other, or another argument is invalid.
+        If bounds contradict each other, no variable moves `against`, or another argument is invalid.
     DesignError
         If `hexapod` is not a Hexapod.
     InfeasibleError
-        If no design that keeps every constraint was found.
+        If no design that keeps every constraint was found, or if the design breaks one that no variable moves.
     OutputError
         If the study file belongs to another design or problem, or cannot be used.
 
@@ -178,6 +195,10 @@ def pareto_front(
         sampler="nsga2",
         samples=samples,
     )
+    last = len(problem.requirements) - 1
+    begun = begin(problem, 4 * settings.samples, always=[last])
+    if traded.name in begun.unmoved:
+        raise ArgumentError(f"no variable moves the {traded.name}, so that nothing can be traded for it. Vary another.")
     search.run(trials, lambda x: _both(problem, x, settings), progress, on_trial, stop)
     found = search.finished()
     feasible = [t for t in found if t.feasible]
@@ -186,8 +207,19 @@ def pareto_front(
         raise InfeasibleError(
             f"none of {len(found)} trials keeps every constraint. Loosen a bound, or allow more trials."
         )
-    points = _refined(problem, [feasible[i] for i in front], refine, settings)
-    return _front(problem, points, history(problem, found), settings)
+    failures = list(begun.failures)
+    points = _refined(problem, [feasible[i] for i in front], refine, settings, failures)
+    return _front(problem, begun, points, history(problem, found), settings, failures)
+
+
+@dataclass(frozen=True)
+class _Point:
+    """A candidate for the front, verified: its index, and its value of the other quantity."""
+
+    x: Array
+    design: Hexapod
+    index: float
+    against: float
 
 
 def _both(problem: Problem, x: Array, settings: Settings) -> tuple[Assessment, tuple[float, ...]]:
@@ -206,7 +238,9 @@ def _nondominated(values: Sequence[tuple[float, ...]]) -> list[int]:
     return kept
 
 
-def _refined(problem: Problem, front: Sequence[Trial], count: int, settings: Settings) -> list[Array]:
+def _refined(
+    problem: Problem, front: Sequence[Trial], count: int, settings: Settings, failures: list[str]
+) -> list[Array]:
     """Variables of the front's designs, and of `count` improved ones whose bounds are evenly spread along it."""
     xs = [t.x for t in front]
     if count < 1:
@@ -215,37 +249,62 @@ def _refined(problem: Problem, front: Sequence[Trial], count: int, settings: Set
     values = np.array([t.values[1] for t in front])
     levels = np.unique(np.linspace(values[0], values[-1], count))
     for level in levels:
-        begin = front[int(np.flatnonzero(values <= level)[-1])].x
+        first = front[int(np.flatnonzero(values <= level)[-1])].x
         problem.requirements[-1] = replace(traded, bound=np.array(float(level)))
-        xs.append(finish(problem, begin, settings.samples, settings.seed, settings.stop).x)
+        try:
+            xs.append(finish(problem, first, settings.samples, settings.seed, settings.stop).x)
+        except Exception as error:  # the trials and the other points are not lost with it
+            failures.append(f"A local search ended early: {told(error)}.")
     problem.requirements[-1] = traded
     return xs
 
 
-def _front(problem: Problem, xs: Sequence[Array], trials: xr.Dataset, settings: Settings) -> ParetoFront:
-    """Every candidate judged anew, on poses that the search has not seen, and those kept that none beats."""
-    start, judged = problem.hexapod, []
+def _judged(
+    problem: Problem, begun: Beginning, xs: Sequence[Array], settings: Settings, failures: list[str]
+) -> list[_Point]:
+    """Every candidate that keeps the constraints on poses that the search has not seen; the start is one of them."""
+    start, seen = problem.hexapod, begun.verified
+    found = [_Point(problem.map.own(), start, seen.index, seen.checks[-1].value)] if begun.keeps else []
     for x in xs:
-        design = problem.map.hexapod_at(x)
-        seen = verify(problem, design, 4 * settings.samples)
+        try:
+            design = problem.map.hexapod_at(x)
+            seen = verify(problem, design, 4 * settings.samples)
+        except Exception as error:
+            failures.append(f"A design of the front could not be verified: {told(error)}.")
+            continue
         if seen.holds:
-            judged.append((x, design, seen.index, seen.checks[-1].value))
-    if not judged:
+            found.append(_Point(x, design, seen.index, seen.checks[-1].value))
+    if not found:
         raise InfeasibleError(
             f"none of {len(xs)} designs on the front keeps every constraint on poses that the search has not seen. "
             "Search with more poses (samples)."
         )
-    kept = [judged[i] for i in _nondominated([(index, value) for _, _, index, value in judged])]
-    begun = verify(problem, start, 4 * settings.samples)
-    last = problem.requirements[-1]
+    return [found[i] for i in _nondominated([(one.index, one.against) for one in found])]
+
+
+def _front(
+    problem: Problem,
+    begun: Beginning,
+    xs: Sequence[Array],
+    trials: xr.Dataset,
+    settings: Settings,
+    failures: list[str],
+) -> ParetoFront:
+    start, last = problem.hexapod, problem.requirements[-1]
+    kept = _judged(problem, begun, xs, settings, failures)
     return ParetoFront(
-        designs=tuple(d.replace({"name": f"{start.name}-{i + 1}"}) for i, (_, d, _, _) in enumerate(kept)),
-        index=np.array([index for _, _, index, _ in kept]),
-        against=np.array([value for _, _, _, value in kept]),
-        variables=np.array([list(problem.map.values(x).values()) for x, _, _, _ in kept]),
+        designs=tuple(one.design.replace({"name": f"{start.name}-{i + 1}"}) for i, one in enumerate(kept)),
+        index=np.array([one.index for one in kept]),
+        against=np.array([one.against for one in kept]),
+        variables=np.array([list(problem.map.values(one.x).values()) for one in kept]),
         names=tuple(problem.map.names),
         hexapod=start,
-        start=(begun.index, begun.checks[-1].value),
+        start=(begun.verified.index, begun.verified.checks[-1].value),
+        start_breaks=begun.breaks,
+        ranges=begun.ranges,
+        unmoved=begun.unmoved,
+        failures=tuple(failures),
+        stopped=settings.stopped,
         name=last.name,
         unit=last.quantity.unit,
         history=trials,

@@ -17,6 +17,7 @@ from flexapod.errors import ArgumentError, DesignError, PoseError, shown
 from flexapod.mechanics.inputs import as_hexapod, as_joint
 from flexapod.optimisation.constraint_quantities import ConstraintQuantity, Side
 from flexapod.optimisation.design_map import DesignMap
+from flexapod.optimisation.design_results import Check
 from flexapod.optimisation.objectives import Objective
 from flexapod.optimisation.requirements import Constraint, Requirement
 from flexapod.optimisation.variables import JointCircle, Variable
@@ -25,7 +26,9 @@ from flexapod.workspace.box_minimum import quick_minimum
 from flexapod.workspace.quantities import evaluate, index_and_gradient
 from flexapod.workspace.region import Region
 
+NO_INDEX = "the index is zero: a pose is singular, or out of the legs' reach"
 FEASIBLE = 1e-6  # relative amount by which a bound may be passed, for rounding of the search that ends on it
+_AGREED = 10 * FEASIBLE  # the same in a verification, which is another sweep
 _NO_MARGIN = -1e3  # where a quantity has no value
 _STARTS = 16  # of a descent
 _MEASURED = 2**14  # poses swept for bounds that are what the design has itself
@@ -34,11 +37,12 @@ _MEASURED = 2**14  # poses swept for bounds that are what the design has itself
 @dataclass(frozen=True)
 class Assessment:
     """What a design makes of a problem. index rad/s (0 where none can be computed); margins: the least one of each
-    requirement, relative, >= 0 where it is kept; values: its extreme value."""
+    requirement, relative, >= 0 where it is kept; values, bounds: its extreme value there, and the bound of that one."""
 
     index: float
     margins: Array
     values: Array
+    bounds: Array
 
     @property
     def feasible(self) -> bool:
@@ -80,6 +84,7 @@ class Problem:
         self.requirements: list[Requirement] = []
         for constraint in constraints:
             self.requirements += constraint.requirements(hexapod, objective.region, self._measure)
+        self.held: dict[int, Check] = {}  # requirements that no variable moves, by their numbers among all, as checked
         self._check_home([r.region for r in self.requirements if r.region is not None])
         self._check_bounds()
 
@@ -148,33 +153,44 @@ class Problem:
                     least = quick_minimum(index_and_gradient(hexapod, self.joint), starts, box.low, box.high)
                     index = min(index, least)
             values |= {id(r): r.quantity.measure(found, own, r.side) for r in requirements}
-        margins, extremes = [], []
+        made = []
         for r in self.requirements:
             value = values[id(r)]
             margin = np.nan_to_num(r.margins(value), nan=_NO_MARGIN, posinf=-_NO_MARGIN, neginf=_NO_MARGIN)
             worst = int(np.argmin(margin))
-            margins.append(margin[worst])
-            extremes.append(value[worst])
-        return Assessment(index, np.array(margins), np.array(extremes))
+            made.append((margin[worst], value[worst], np.broadcast_to(r.bound, value.shape)[worst]))
+        return Assessment(index, *np.array(made).reshape(-1, 3).T)
 
     def assess_at(self, x: Array, samples: int, seed: int = 0) -> Assessment:
         """The same for values of the variables; those that make no hexapod have no index and keep nothing."""
         try:
             return self.assess(self.map.hexapod_at(x), samples, seed)
-        except (DesignError, PoseError):  # of this design: the arguments were checked when the problem was made
-            none = np.full(len(self.requirements), np.nan)
-            return Assessment(0.0, np.full(len(self.requirements), _NO_MARGIN), none)
+        except (DesignError, PoseError, ArithmeticError, np.linalg.LinAlgError):
+            return self.nothing()  # of this design: the arguments were checked when the problem was made
+
+    def nothing(self) -> Assessment:
+        """What is made of a design of which nothing can be computed."""
+        none = np.full(len(self.requirements), np.nan)
+        return Assessment(0.0, np.full(len(self.requirements), _NO_MARGIN), none, none)
+
+    def checks(self, found: Assessment) -> tuple[Check, ...]:
+        """Every requirement as it was assessed, those that no variable moves among them."""
+        made = []
+        for r, value, bound, margin in zip(self.requirements, found.values, found.bounds, found.margins, strict=True):
+            kept = bool(margin >= -_AGREED)
+            made.append(Check(r.name, r.quantity.unit, r.side, float(value), float(bound), float(margin), kept))
+        left = iter(made)
+        return tuple(self.held.get(k) or next(left) for k in range(len(made) + len(self.held)))
+
+    def hold(self, numbers: Sequence[int], checks: Sequence[Check]) -> None:
+        """Takes requirements that no variable moves out of the search; `checks` has what the start makes of all."""
+        self.held = {k: checks[k] for k in numbers}
+        self.requirements = [r for k, r in enumerate(self.requirements) if k not in self.held]
 
     def violations(self, assessment: Assessment) -> str:
         """In words: every requirement that is not kept, with its value and its bound."""
-        words = []
-        for r, margin, value in zip(self.requirements, assessment.margins, assessment.values, strict=True):
-            if margin < -FEASIBLE:
-                bound = r.bound.min() if r.side == "most" else r.bound.max()
-                words.append(f"{r.name} is {value:.6g}, must be at {r.side} {bound:.6g} {r.quantity.unit}".rstrip())
-        if not words:
-            words = ["the index is zero: a pose is singular, or out of the legs' reach"]
-        return "; ".join(words)
+        words = [check.words for check in self.checks(assessment) if check.margin < -FEASIBLE]
+        return "; ".join(words or [NO_INDEX])
 
     def describe(self) -> dict[str, Any]:
         """Everything that makes this problem and no other."""

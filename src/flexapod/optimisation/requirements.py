@@ -35,6 +35,8 @@ class Requirement:
         The bound, in the unit of the quantity: one number, or one for each leg.
     region : Region or None
         Where it holds; None for a property of the design.
+    own : bool, optional
+        Whether the bound is what the design to start from has, so that this design keeps it by definition.
     """
 
     name: str
@@ -42,6 +44,7 @@ class Requirement:
     side: Side
     bound: Array
     region: Region | None
+    own: bool = False
 
     def margins(self, value: Array, column: Array | None = None) -> Array:
         """Return the relative margins of values, >= 0 where the bound is kept."""
@@ -109,11 +112,12 @@ def requirement(
     name: str, quantity: ConstraintQuantity, side: Side, bound: float | None, region: Region | None, measure: Measure
 ) -> Requirement:
     """One bound of a quantity; None is what the design to start from has."""
+    own = bound is None
     if bound is None:
         values = measure(quantity, side, region)
         bound = float(values.max() if side == "most" else values.min())
     positive(bound, f"{name}: the bound", quantity.unit)
-    return Requirement(name, quantity, side, np.array(float(bound)), region)
+    return Requirement(name, quantity, side, np.array(float(bound)), region, own)
 
 
 class OneBound(Constraint):

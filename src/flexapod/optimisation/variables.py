@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, get_args
 
 import numpy as np
 
-from flexapod.checks import one_of
+from flexapod.checks import number, one_of
 from flexapod.conventions import TWO_PI, Array
 from flexapod.design import layout
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.schema import Key
+from flexapod.design.units import UNITS, si_unit, to_si
 from flexapod.design.universal_axes import keeps_tangents
 from flexapod.errors import ArgumentError
 from flexapod.optimisation.parameters import AffineMap, CircleMap, Kind, Parameter, Part
 
 Range = tuple[float, float]
+#: The parts of a joint circle and their dimensions.
+CIRCLE = {"radius": "length", "half_angle": "angle", "turn": "angle", "height": "length"}
 
 
 @dataclass(frozen=True)
@@ -75,7 +78,8 @@ class Variable:
         one_of(self.kind, f"{self._name}: kind", get_args(Kind))
         factors = self._factors()
         unit = layout.entries(next(iter(factors)))[2] if self.kind != "scale" else 1.0
-        parameter = Parameter(self._name, self.low * unit, self.high * unit, unit, self.log)
+        named = layout.unit_name(next(iter(factors))) if self.kind != "scale" else ""
+        parameter = Parameter(self._name, self.low * unit, self.high * unit, unit, self.log, unit_name=named)
         parameter.check()
         found = [(layout.entries(key), factor) for key, factor in factors.items()]
         index = np.concatenate([place for (place, _, _), _ in found])
@@ -144,14 +148,18 @@ class JointCircle:
     axes : {"tangent", "keep"}, optional
         Whether the axes of the base's universal joints become tangents of the circle, or stay as they are. Those of
         legs that the design has within 15 degrees of the tangent at home stay in any case.
+    units : mapping of str to str, optional
+        Other units than m and rad, by the name of the part, such as "mm" for radius.
 
     Notes
     -----
-    Which legs form a pair is read from the joints of the design.
+    Which legs form a pair is read from the joints of the design. The variables are named after plate and part:
+    `base.circle.radius`, or `base.circle.radius_mm` with that unit.
 
     Examples
     --------
     >>> circle = fx.optimisation.JointCircle("base", radius=(0.1, 0.2), half_angle=(0.05, 0.5))
+    >>> same = fx.optimisation.JointCircle("base", radius=(100, 200), half_angle=(0.05, 0.5), units={"radius": "mm"})
     """
 
     plate: Literal["base", "platform"]
@@ -160,6 +168,7 @@ class JointCircle:
     turn: float | Range | None = None
     height: float | Range | None = None
     axes: Literal["tangent", "keep"] = "tangent"
+    units: Mapping[str, str] = field(default_factory=dict, hash=False, kw_only=True)
 
     def parts(self, hexapod: Hexapod) -> list[Part]:
         """Make the map of this circle for a design.
@@ -183,24 +192,34 @@ class JointCircle:
         one_of(self.axes, "axes of a joint circle", ("tangent", "keep"))
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints
         third, side, own = _pairs(joints)
-        parameters: list[Parameter | float] = []
-        for name in ("radius", "half_angle", "turn", "height"):
-            given = getattr(self, name)
-            if given is None:
-                parameters.append(own[name])
-            elif np.ndim(given) == 0:
-                parameters.append(float(given))
-            elif np.shape(given) != (2,):
-                raise ArgumentError(f"{self.plate}.{name} is {given!r}; give a number, or a pair (least, most).")
-            else:
-                low, high = given
-                parameters.append(Parameter(f"{self.plate}.{name}", float(low), float(high), start=own[name]))
-                parameters[-1].check()  # type: ignore[union-attr]
-        if isinstance(parameters[0], Parameter) and parameters[0].low <= 0:
-            raise ArgumentError(f"{self.plate}.radius may go down to {parameters[0].low:.6g} m; it must be > 0.")
+        for part in self.units:
+            one_of(part, "units of a joint circle: the part", CIRCLE)
+        four = [self._part(name, own[name]) for name in CIRCLE]
+        least = four[0].low if isinstance(four[0], Parameter) else four[0]
+        if least <= 0:
+            raise ArgumentError(f"{self.plate}.circle.radius may go down to {least:.6g} m; it must be > 0.")
         tangent = keeps_tangents(hexapod.base_joints, hexapod.platform_joints, hexapod.home)
         follow = tangent & (self.plate == "base" and self.axes == "tangent")
-        return [CircleMap(self.plate, parameters, third, side, follow)]
+        return [CircleMap(self.plate, four, third, side, follow)]
+
+    def _part(self, name: str, own: float) -> Parameter | float:
+        """A variable between its bounds, or the number that holds this part."""
+        given, dimension = getattr(self, name), CIRCLE[name]
+        if given is None:
+            return own
+        unit, title = si_unit(dimension), f"{self.plate}.circle.{name}"
+        if name in self.units:
+            unit = one_of(self.units[name], f"the unit of {title}", UNITS[dimension])
+            title += f"_{unit}"
+        scale = float(to_si(1.0, dimension, unit))
+        if np.ndim(given) == 0:
+            return scale * number(given, title, unit)
+        if np.shape(given) != (2,):
+            raise ArgumentError(f"{title} is {given!r}; give a number, or a pair (least, most).")
+        low, high = (scale * float(bound) for bound in given)
+        parameter = Parameter(title, low, high, scale, start=own, unit_name=unit)
+        parameter.check()
+        return parameter
 
 
 def _pairs(joints: Array) -> tuple[Array, Array, dict[str, float]]:

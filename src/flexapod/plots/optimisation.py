@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator, NullLocator
 
+from flexapod.conventions import LEGS, Array
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.kinematics import home_pose
 from flexapod.optimisation.design_results import OptimalDesign
@@ -50,7 +53,8 @@ def search(found: OptimalDesign) -> Figure:
 
     Notes
     -----
-    Crosses: trials that break a constraint.
+    Crosses: trials that break a constraint. The first trial is the design begun with as the variables make it: within
+    their bounds, and with joints on a circle where a `JointCircle` holds them.
 
     Examples
     --------
@@ -64,10 +68,11 @@ def search(found: OptimalDesign) -> Figure:
         ax.plot(trial[feasible], index[feasible], "o", ms=4, color=BLUE, mew=0, alpha=0.75, label="trial")
         best = np.fmax.accumulate(np.where(feasible, index, np.nan))
         ax.step(trial, best, where="post", color=BLUE, lw=1.4, label="best so far")
+        if trial[0] == 0:
+            ax.plot(0, index[0], "s", ms=10, color=ORANGE, mfc="none", label="the same as the variables make it")
     ax.axhline(found.index, color=GREEN, lw=1.8, label=f"finished and verified: {found.index:.5g}")
     ax.axhline(found.start_index, color=ORANGE, lw=1.4, ls=DASHED, label=f"design begun with: {found.start_index:.5g}")
-    if not trial.size:
-        ax.set_xticks([])
+    ax.xaxis.set_major_locator(MaxNLocator(integer=True) if trial.size else NullLocator())
     told = found.history["index"].attrs
     ax.set(xlabel="trial", ylabel=told["label"] + (f", {told['units']}" if told["units"] != "1" else ""))
     ax.set_ylim(bottom=0, top=1.08 * max(found.index, found.start_index, *index[np.isfinite(index)]))
@@ -77,7 +82,7 @@ def search(found: OptimalDesign) -> Figure:
 
 
 def plan(found: OptimalDesign) -> Figure:
-    """Draw both designs from above and from the side, at home: joints and legs, in mm.
+    """Draw both designs from above and from the side, at home and to one scale: joints and numbered legs, in mm.
 
     Parameters
     ----------
@@ -91,7 +96,7 @@ def plan(found: OptimalDesign) -> Figure:
 
     Notes
     -----
-    Dashed: the design begun with.
+    Dashed: the design begun with. Numbers stand on the legs of the design found.
 
     Examples
     --------
@@ -100,26 +105,52 @@ def plan(found: OptimalDesign) -> Figure:
     figure = new_figure(9.6, 4.8)
     above, beside = figure.subplots(1, 2)
     shapes = ((found.start, ORANGE, (0, (4, 2)), 1.2), (found.hexapod, BLUE, "-", 1.8))
+    views = ((above, (0, 1)), (beside, (0, 2)))
+    corners = []
     for hexapod, color, style, width in shapes:
         pose = home_pose(hexapod)
         position, turn = (np.zeros(3), np.eye(3)) if pose is None else (pose.position, pose.matrix)
         base = 1e3 * hexapod.base_joints
         platform = 1e3 * (position + hexapod.platform_joints @ turn.T)
-        for ax, (i, k) in ((above, (0, 1)), (beside, (0, 2))):
+        corners += [base, platform]
+        for ax, (i, k) in views:
             for b, p in zip(base, platform, strict=True):
                 ax.plot([b[i], p[i]], [b[k], p[k]], color=color, lw=width, ls=style)
             ax.plot(base[:, i], base[:, k], "s", ms=5, color=color, mec="white", mew=0.7, zorder=4)
             ax.plot(platform[:, i], platform[:, k], "o", ms=6, color=color, mec="white", mew=0.7, zorder=4)
+    _one_scale(views, np.concatenate(corners))
+    for ax, (i, k) in views:
+        _number(ax, base[:, (i, k)], platform[:, (i, k)])
     above.set(xlabel="x, mm", ylabel="y, mm", aspect="equal", title="from above")
     beside.set(xlabel="x, mm", ylabel="z, mm", aspect="equal", title="from the side")
     lines = [Line2D([], [], color=c, ls=s, lw=w) for _, c, s, w in shapes]
     lines += [Line2D([], [], color=FAINT, ls="none", marker=m, ms=6) for m in "so"]
-    names = ["design begun with", "better design", "base joint", "platform joint"]
+    names = ["design begun with", "design found", "base joint", "platform joint"]
     for ax in (above, beside):
         dress(ax)
         ax.title.set(color=INK, fontsize=10)
     figure.legend(lines, names, ncols=4, **OUTSIDE)
     return figure
+
+
+def _one_scale(views: Sequence[tuple[Axes, tuple[int, int]]], points: Array) -> None:
+    """Limits of the same extent along all axes."""
+    middle = (points.min(axis=0) + points.max(axis=0)) / 2
+    half = 0.58 * np.ptp(points, axis=0).max()
+    for ax, (i, k) in views:
+        ax.set(xlim=(middle[i] - half, middle[i] + half), ylim=(middle[k] - half, middle[k] + half))
+
+
+def _number(ax: Axes, base: Array, platform: Array) -> None:
+    """Numbers on the legs; those that lie behind one another share a place."""
+    middle = base + 0.4 * (platform - base)
+    near = 0.05 * np.ptp(np.concatenate([base, platform]), axis=0).max()
+    places: dict[tuple[int, ...], list[int]] = {}
+    for leg, at in enumerate(middle):
+        places.setdefault(tuple(np.round(at / near).astype(int)), []).append(leg)
+    for legs in places.values():
+        ax.text(*middle[legs[0]], ", ".join(LEGS[leg] for leg in legs), ha="center", va="center", fontsize=8, color=INK,
+                bbox={"boxstyle": "round,pad=0.2", "fc": "white", "ec": "none"}, zorder=5)  # fmt: skip
 
 
 def front(found: ParetoFront) -> Figure:

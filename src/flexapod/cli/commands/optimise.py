@@ -22,7 +22,7 @@ def command(**given: Any) -> None:
 
     \b
     flexapod optimise mukherjee-ii --around 0.005 5 --keep footprint --keep stroke \\
-        --vary base.circle.radius_mm=20:30 --vary platform.circle.radius_mm=30:60 \\
+        --vary base.circle.radius_mm=20:32 --vary platform.circle.radius_mm=30:60 \\
         --vary base.circle.half_angle_deg=5:55 --vary home.position_mm[2]=70:100
     """
     from flexapod.cli.studies.optimise import compute

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
-from functools import partial
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -19,11 +18,9 @@ from flexapod.optimisation import constraints as c
 from flexapod.optimisation.objectives import LeastIndex, MeanIndex, Objective
 from flexapod.optimisation.requirements import Constraint
 from flexapod.optimisation.uncertain_parameters import Uncertain
-from flexapod.optimisation.variables import JointCircle, Variable
+from flexapod.optimisation.variables import CIRCLE, JointCircle, Variable
 from flexapod.workspace.box import Workspace
 from flexapod.workspace.region import Region, as_region
-
-_CIRCLE = {"radius": "length", "half_angle": "angle", "turn": "angle", "height": "length"}
 
 
 def variables(texts: Iterable[str]) -> list[Variable | JointCircle]:
@@ -36,8 +33,10 @@ def variables(texts: Iterable[str]) -> list[Variable | JointCircle]:
         keys = keys.lstrip("+*")
         plate, _, part = keys.partition(".circle.")
         if part:
-            name, unit = _unit("--vary", part, _CIRCLE)
-            circles.setdefault(plate, {})[name] = (unit(low), unit(high))
+            name, unit = _named("--vary", part, CIRCLE)
+            parts = circles.setdefault(plate, {"units": {}})
+            parts[name] = low, high
+            parts["units"] |= {name: unit} if unit else {}
             continue
         ties = {key.lstrip("-"): -1.0 if key.startswith("-") else 1.0 for key in keys.split(",")}
         found.append(Variable(ties, low, high, kind))  # type: ignore[arg-type]
@@ -52,8 +51,10 @@ def constraints(texts: Iterable[str]) -> list[Constraint]:
 def keep(text: str) -> Constraint:
     """One of them."""
     given, equals, value = text.partition("=")
-    name, unit = _unit("--keep", given.strip(), KEEPS)
-    bound = unit(_number("--keep", text, value)) if equals else None
+    name, unit = _named("--keep", given.strip(), KEEPS)
+    bound = _number("--keep", text, value) if equals else None
+    if unit and bound is not None:
+        bound = float(to_si(bound, KEEPS[name] or "", unit))
     if name == "limits" and equals:
         raise click.UsageError("--keep limits takes no bound: it keeps the [limits] of the design.")
     makers = {
@@ -152,18 +153,14 @@ def _number(option: str, text: str, number: str) -> float:
         raise click.UsageError(f"{option} {text}: {number!r} is no number.") from None
 
 
-def _si(number: float, dimension: str, unit: str) -> float:
-    return float(to_si(number, dimension, unit))
-
-
-def _unit(option: str, given: str, known: dict[str, Any]) -> tuple[str, Callable[[float], float]]:
-    """`stroke_mm` -> its name and what turns its numbers into SI units."""
+def _named(option: str, given: str, known: Mapping[str, str | None]) -> tuple[str, str]:
+    """`stroke_mm` -> its name and its unit; "" where it names none."""
     for name in sorted(known, key=len, reverse=True):
         if given == name:
-            return name, float
-        unit = given[len(name) + 1 :]
-        if given.startswith(f"{name}_") and known[name] and unit in UNITS[known[name]]:
-            return name, partial(_si, dimension=known[name], unit=unit)
+            return name, ""
+        unit, dimension = given[len(name) + 1 :], known[name]
+        if given.startswith(f"{name}_") and dimension and unit in UNITS[dimension]:
+            return name, unit
     raise click.UsageError(
         f"{option}: there is no {given!r}. There are {', '.join(known)}; lengths, angles and masses may carry a unit, "
         "as in stroke_mm or universal-angle_deg."

@@ -9,12 +9,10 @@ import numpy as np
 from flexapod import plots
 from flexapod.conventions import TWO_PI
 from flexapod.mechanics.cautions import Caution
-from flexapod.optimisation.design_results import Check, OptimalDesign
+from flexapod.optimisation.design_results import Check, OptimalDesign, VariableRange
 from flexapod.optimisation.pareto import ParetoFront
 from flexapod.report.numbers import brief, file_name, percent, shown, six_words
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
-
-UNITS = "In the unit of each key; SI where it has none."
 
 
 def optimal(found: OptimalDesign, objective: str) -> Study:
@@ -25,29 +23,45 @@ def optimal(found: OptimalDesign, objective: str) -> Study:
                    f"Both at home. Raised: {objective}.{where}")  # fmt: skip
     search = Drawing("search", "The search", partial(plots.optimisation.search, found),
                      "One mark a trial; constraints as above.")  # fmt: skip
-    values = [shown(v, 6) + " (on its bound)" * (name in found.at_bounds) for name, v in found.variables.items()]
-    variables = Table([Column("variable", list(found.variables)), Column("value", values)], UNITS)
-    sections = [Section(plan.title, [plan]), Section("Variables", [variables])]
+    sections = [Section(plan.title, [plan]), Section("Variables", [_variables(found)])]
     if found.verification.checks:
         sections.append(Section("Constraints", [_constraints(found)]))
-    name = file_name(found.hexapod.name)
+    kept = found.hexapod is found.start
+    name = file_name(f"{found.start.name}-optimised")
     return Study(
         hexapod=found.hexapod,
         subject="optimal design",
-        about=f"Better than {found.start.name}: {objective}.",
+        about=f"{_about(found)}: {objective}.",
         data=_optimal_data(found, objective),
         rows=_optimal_rows(found),
         sections=[*sections, Section(search.title, [search])],
         cautions=_cautions(found),
-        files={f"{name}.toml": found.hexapod.to_toml, f"{name}.html": None, f"{name}.png": plan.draw},
+        files={
+            **({} if kept else {f"{name}.toml": found.hexapod.to_toml}),
+            f"{name}.html": None,
+            f"{name}.png": plan.draw,
+        },
     )
+
+
+def _about(found: OptimalDesign) -> str:
+    """What the design is to the one begun with, said first."""
+    start = found.start.name
+    if found.hexapod is found.start:
+        return f"No design better than {start} was found"
+    if not found.improved:
+        return f"Begun with {start}, and not verified"
+    if found.start_breaks:
+        return f"{start} itself is not allowed ({'; '.join(found.start_breaks)}); this design keeps every constraint"
+    return f"Better than {start}"
 
 
 def _optimal_rows(found: OptimalDesign) -> list[Row]:
     gain = f"rad/s ({100 * found.gain:+.3g} %), verified at {found.verification.points} poses"
+    start = "rad/s, but it breaks a constraint" if found.start_breaks else "rad/s"
     return [
         Row("Index, verified", found.index, f"rad/s = {shown(found.index / TWO_PI, 4)} Hz", 5, on="page"),
-        Row("Design begun with", found.start_index, "rad/s", 5, on="page"),
+        Row("Design begun with", found.start_index, start, 5, on="page"),
         Row("Gain", percent(found.gain), "of the index", on="page"),
         Row("Trials", str(found.history.sizes["trial"]), f"in {brief(found.seconds, 3)} s", on="page"),
         Row("index", f"{found.start_index:.6g} -> {found.index:.6g}", gain, on="terminal"),
@@ -55,7 +69,7 @@ def _optimal_rows(found: OptimalDesign) -> list[Row]:
 
 
 def _cautions(found: OptimalDesign) -> list[Caution]:
-    cautions = []
+    cautions = _begun(found, found.start.name)
     if not found.verification.holds:
         broken = ", ".join(check.name for check in found.verification.checks if not check.kept)
         cautions.append(Caution("broken", f"The dense sweep breaks: {broken}. Search with more poses."))
@@ -66,6 +80,45 @@ def _cautions(found: OptimalDesign) -> list[Caution]:
         text = f"On their bounds: {', '.join(found.at_bounds)}. Wider bounds may give more."
         cautions.append(Caution("at_bounds", text))
     return cautions
+
+
+def _begun(found: OptimalDesign | ParetoFront, start: str) -> list[Caution]:
+    """What both kinds of search say of their beginning and of their way."""
+    cautions = []
+    if found.start_breaks:
+        text = f"The design begun with is not allowed: {'; '.join(found.start_breaks)}."
+        cautions.append(Caution("start_breaks", text))
+    outside = [_outside(name, one) for name, one in found.ranges.items() if one.outside]
+    if outside:
+        text = f"The search cannot reach {start} itself: {'; '.join(outside)}. Widen the bounds to begin there."
+        cautions.append(Caution("outside", text))
+    if found.unmoved:
+        cautions.append(Caution("unmoved", f"No variable moves: {', '.join(found.unmoved)}."))
+    cautions += [Caution("failure", text) for text in found.failures]
+    if found.stopped:
+        trials = found.history.sizes["trial"]
+        cautions.append(Caution("stopped", f"The search was cut short after {trials} trials: its best so far.",
+                                {"trials": trials}))  # fmt: skip
+    return cautions
+
+
+def _outside(name: str, one: VariableRange) -> str:
+    before, low, high = (brief(number, 6) for number in (one.before, one.low, one.high))
+    return f"{name} is {before}, its bounds are {low} to {high} {one.unit}".rstrip()
+
+
+def _variables(found: OptimalDesign) -> Table:
+    ranges = found.ranges.values()
+    return Table(
+        [
+            Column("variable", list(found.ranges)),
+            Column("unit", [one.unit for one in ranges]),
+            Column("before", [one.before for one in ranges], digits=6, marked=[one.outside for one in ranges]),
+            Column("least", [brief(one.low, 6) for one in ranges]),
+            Column("largest", [brief(one.high, 6) for one in ranges]),
+            Column("now", list(found.variables.values()), digits=6),
+        ]
+    )
 
 
 def _constraints(found: OptimalDesign) -> Table:
@@ -87,6 +140,8 @@ def _optimal_data(found: OptimalDesign, objective: str) -> dict[str, object]:
         "design": found.hexapod.name,
         "digest": found.hexapod.digest,
         "objective": objective,
+        **_begun_data(found),
+        "improved": found.improved,
         "index_rad_s": found.index,
         "start_index_rad_s": found.start_index,
         "searched_index_rad_s": found.searched_index,
@@ -103,27 +158,38 @@ def _optimal_data(found: OptimalDesign, objective: str) -> dict[str, object]:
     }
 
 
+def _begun_data(found: OptimalDesign | ParetoFront) -> dict[str, object]:
+    return {
+        "start_breaks": found.start_breaks,
+        "unmoved": found.unmoved,
+        "failures": found.failures,
+        "cut_short": found.stopped,
+        "variable_ranges": {name: one._asdict() for name, one in found.ranges.items()},
+    }
+
+
 def front(found: ParetoFront, objective: str) -> Study:
     """A Pareto front, its figure and its designs. objective: in words."""
     best = int(np.argmax(found.index))
-    against = ", ".join(filter(None, (found.name, found.unit)))
+    by_name = dict(zip(found.names, found.variables.T, strict=True))
     columns = [
         Column("design", [str(k + 1) for k in range(len(found.designs))]),
         Column("index", found.index, "rad/s", 5),
-        Column(against, found.against, digits=5),
-        *(Column(name, values, digits=5) for name, values in zip(found.names, found.variables.T, strict=True)),
+        Column(found.name, found.against, found.unit, 5),
+        *(Column(name, values, found.ranges[name].unit, 5) for name, values in by_name.items()),
     ]
     drawing = Drawing("front", f"Index against {found.name}", partial(plots.optimisation.front, found),
                       "Of the designs on the line none is better in both.")  # fmt: skip
     name = file_name(found.hexapod.name)
     data = {
         "objective": objective,
+        **_begun_data(found),
         "against": found.name,
         "unit": found.unit,
         "start": {"index_rad_s": found.start[0], "against": found.start[1]},
         "index_rad_s": found.index,
         "against_values": found.against,
-        "variables": dict(zip(found.names, found.variables.T, strict=True)),
+        "variables": by_name,
         "trials": found.history.sizes["trial"],
     }
     return Study(
@@ -139,8 +205,9 @@ def front(found: ParetoFront, objective: str) -> Study:
         ],
         sections=[
             Section(drawing.title, [drawing]),
-            Section("Designs", [Table(columns, f"Variables: {UNITS[0].lower()}{UNITS[1:]}")]),
+            Section("Designs", [Table(columns)]),
         ],
+        cautions=_begun(found, found.hexapod.name),
         files={
             f"{name}-front.html": None,
             f"{name}-front.png": drawing.draw,
