@@ -216,3 +216,24 @@ def test_where_nothing_is_better_no_design_is_written(capsys, tmp_path):
     code, out, _ = run(capsys, *told, "--json")
     found = json.loads(out)
     assert (found["improved"], found["gain"], found["variables"]["platform.mass"]) == (False, 0.0, 30.31)
+
+
+def test_robust_states_its_assumptions_and_counts_legs_from_one(capsys, tmp_path):
+    told = ["robust", "motion-base", "--uncertain", "legs.stiffness=15%", "--uncertain", "platform.mass_t=0.5,normal"]
+    told += ["--payload", "0:500", "--payload-at", 0, "-0.5:0.5", 1.2, "--samples", 64, "--seed", 3]
+    code, out, _ = run(capsys, *told, "--sensitivity", 16, "--out", tmp_path)
+    assert code == 0
+    page = (tmp_path / "motion-base-robust.html").read_text(encoding="utf-8")
+    for words in ("legs.stiffness, leg 1", "legs.stiffness, leg 6", "uniform", "normal", "fixed", "payload.z", "N/m"):
+        assert words in out
+        assert words in page
+    assert "64 designs of a scrambled Sobol sequence, seed 3" in page
+    assert "searches ended at this index" in page
+    assert "leg 0" not in page
+    assert "[0]" not in page
+    code, out, _ = run(capsys, *told, "--sensitivity", 0, "--json")
+    found = json.loads(out)
+    assert (found["seed"], found["samples"], found["poses"]) == (3, 64, 1)
+    assert found["worst_at"]["platform.mass_t"] == pytest.approx(6.0)
+    assert found["parameters"]["payload.mass"]["high"] == 500
+    assert found["parameters"]["legs.stiffness[0]"]["words"] == "legs.stiffness, leg 1"

@@ -107,7 +107,7 @@ def test_worst_case_is_below_every_sample_and_at_a_corner():
     found = fx.robustness(machine, uncertain, box, samples=512, pose_samples=32)
     assert found.worst <= found.samples["index"].min()
     assert found.worst_at["legs.stiffness[3]"] == pytest.approx(0.9 * 5e7)
-    assert found.worst_at["platform.mass_center_mm[2]"] == pytest.approx(0.11807, rel=1e-6)  # higher is worse
+    assert found.worst_at["platform.mass_center_mm[2]"] == pytest.approx(118.07, rel=1e-6)  # higher is worse
     changed = machine.replace({"legs.stiffness": 0.9 * 5e7, "platform.mass_center_mm": [0, 0, 118.07]})
     home = np.concatenate([machine.home.position, machine.home.rpy])
     assert found.worst == pytest.approx(
@@ -173,3 +173,68 @@ def test_the_same_seed_gives_the_same_shares_and_confidence():
         fx.robustness(fx.load("motion-base"), parts, samples=16, sensitivity=16, seed=0).sensitivity for _ in range(2)
     )
     assert first.identical(again)
+
+
+@pytest.mark.parametrize(("amount", "worst"), [(0.0075, 20.787983), (0.01, 17.932368), (0.015, 11.304789)])
+def test_the_worst_case_of_many_joints_is_the_corner_that_hundreds_of_descents_find(amount, worst):
+    """The corner by 600 greedy descents; eight neighbouring starts ended up to 12 % above it."""
+    machine = fx.load("cubic-isolator")
+    joints = [fx.Uncertain(f"{plate}.joints", amount, relative=False) for plate in ("base", "platform")]
+    found = fx.robustness(machine, joints, samples=1024)
+    assert found.worst == pytest.approx(worst, rel=1e-6)
+    assert 1 < found.agreed < found.searches
+    by_key = {}
+    for name, value in found.worst_at.items():
+        by_key[name.partition("[")[0]] = [*by_key.get(name.partition("[")[0], []), value]
+    there = machine.replace({key: np.reshape(values, (6, 3)).tolist() for key, values in by_key.items()})
+    assert fx.stability_index(there, fx.home_pose(machine)) == pytest.approx(found.worst, rel=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_worst_case_is_at_least_as_low_as_every_corner(seed):
+    """Twelve parameters: too many for all corners, few enough to try them here."""
+    machine = fx.load("mukherjee-i")
+    straying = [fx.Uncertain("legs.stiffness", 0.3), fx.Uncertain("legs.upper.mass", 0.5)]
+    found = fx.robustness(machine, straying, samples=64, seed=seed)
+    ensemble = Ensemble(machine, straying)
+    corners = np.array(np.meshgrid(*[[0.0, 1.0]] * 12)).reshape(12, -1).T
+    rows = rows_of(fx.Pose(machine.home.position[None], machine.home.matrix[None]))
+    every = _core.sweep_designs(ensemble.designs(corners), _core.Joint.universal, rows, False, 1, 1)[:, 0, 0]
+    assert found.worst <= every.min() * (1 + 1e-9)
+
+
+def test_few_parameters_have_all_their_corners():
+    machine = fx.load("precision-positioner")
+    straying = [fx.Uncertain("base.joints_mm[:][2]", 20, relative=False), fx.Uncertain("platform.mass", 0.1)]
+    found = fx.robustness(machine, straying, samples=2)
+    corners = np.array(np.meshgrid(*[[0.0, 1.0]] * 7)).reshape(7, -1).T
+    rows = rows_of(fx.Pose(machine.home.position[None], machine.home.matrix[None]))
+    designs = Ensemble(machine, straying).designs(corners)
+    every = _core.sweep_designs(designs, _core.Joint.universal, rows, False, 1, 1)[:, 0, 0]
+    assert found.worst <= every.min() * (1 + 1e-9)
+
+
+def test_values_are_in_the_units_of_their_keys_and_what_was_assumed_is_told():
+    machine = fx.load("motion-base")
+    payload = fx.optimisation.Payload((0, 500), (0.0, (-0.5, 0.5), 1.2))
+    straying = [
+        fx.Uncertain("platform.mass_t", 0.5, "normal", relative=False),
+        fx.Uncertain("legs.stiffness_N_per_um[2]", 0.1),
+        fx.Uncertain("base.joints_mm", 2, relative=False),
+        payload,
+    ]
+    found = fx.robustness(machine, straying, samples=64, seed=5)
+    assert found.worst_at["platform.mass_t"] == pytest.approx(6.0)
+    assert found.worst_at["legs.stiffness_N_per_um[2]"] == pytest.approx(7.2)
+    assert abs(found.samples["platform.mass_t"].values.mean() - 4) < 0.5
+    joint = found.ranges["base.joints_mm[3][1]"]
+    assert (joint.words, joint.unit) == ("base.joints_mm, leg 4, y", "mm")
+    assert joint[3:] == pytest.approx(1e3 * machine.base_joints[3, 1] + np.array([0, -2, 2]))
+    assert found.ranges["legs.stiffness_N_per_um[2]"][:3] == ("legs.stiffness_N_per_um, leg 3", "N/um", "uniform")
+    assert found.ranges["platform.mass_t"][:3] == ("platform.mass_t", "t", "normal")
+    assert [name for name in found.ranges if name.startswith("payload")] == [f"payload.{p}" for p in ("mass", *"xyz")]
+    assert found.ranges["payload.mass"][1:3] == ("kg", "uniform")
+    assert found.ranges["payload.z"][2::2][0] == "fixed"
+    assert found.samples.attrs["seed"] == 5
+    again = machine.replace({name: value for name, value in found.worst_at.items() if name.startswith("platform")})
+    assert again.platform_mass == pytest.approx(6000)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import _core
-from flexapod.conventions import Array
+from flexapod.conventions import LEGS, ROTATIONS, TRANSLATIONS, Array
 from flexapod.design import packing
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.key_names import resolve
@@ -82,5 +82,21 @@ def unit_name(key: str) -> str:
 
 def describe(number: int) -> str:
     """The key of one of the numbers, such as platform.joints[0][2]."""
-    key, place = next((key, place) for key, place in PLACES.items() if number in place)
-    return key + "".join(f"[{i}]" for i in np.argwhere(place == number)[0])
+    return _owner(number) + "".join(f"[{i}]" for i in indices(number))
+
+
+def indices(number: int) -> list[int]:
+    """The indices of one of the numbers within its key, counted from 0."""
+    return [int(i) for i in np.argwhere(PLACES[_owner(number)] == number)[0]]
+
+
+def words(number: int) -> str:
+    """Which of its key's numbers it is, for readers: "leg 3", "leg 3, y", "xz"; "" for a key of one number."""
+    at = indices(number)
+    leg = [f"leg {LEGS[at.pop(0)]}"] if at and len(PLACES[_owner(number)]) == len(LEGS) else []
+    axes = ROTATIONS if _owner(number) == "home.orientation" else TRANSLATIONS
+    return ", ".join([*leg, *filter(None, ("".join(axes[i] for i in at),))])
+
+
+def _owner(number: int) -> str:
+    return next(key for key, place in PLACES.items() if number in place)

@@ -26,6 +26,7 @@ from .requirements import Requirement as Requirement
 from .uncertain_parameters import Payload as Payload
 from .uncertain_parameters import Uncertain as Uncertain
 from .uncertain_parameters import UncertainParameter as UncertainParameter
+from .uncertain_parameters import UncertainRange as UncertainRange
 from .uncertainty import Robustness as Robustness
 from .uncertainty import robustness as robustness
 from .variables import JointCircle as JointCircle

@@ -11,7 +11,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, PLACES, numbers
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.inputs import as_hexapod
-from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, quantile
+from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, UncertainRange, quantile
 
 
 class Ensemble:
@@ -63,6 +63,22 @@ class Ensemble:
             return p.width[0] + (p.width[1] - p.width[0]) * u
         away, own = quantile(p.distribution, u, p.spread), self.base[p.index[0]]
         return own * away if p.distribution == "lognormal" else own + away * p.width[0]
+
+    def told(self, k: int, u: Array) -> Array:
+        """The same in the unit of the parameter's key."""
+        return self.value(k, u) / self.parameters[k].unit
+
+    def ranges(self) -> dict[str, UncertainRange]:
+        """What is assumed of every parameter, and of what the payload holds fixed, by name."""
+        found = {}
+        for p in [*(p for p in self.parameters if p.index is not None), *self.payload]:
+            if p.fixed:
+                found[p.name] = UncertainRange(p.words, p.unit_name, "fixed", np.nan, p.width[0], p.width[0])
+                continue
+            low, high = self.told(self.names.index(p.name), np.array([0.0, 1.0])).tolist()
+            nominal = np.nan if p.index is None else float(self.base[p.index[0]] / p.unit)
+            found[p.name] = UncertainRange(p.words, p.unit_name, p.distribution, nominal, low, high)
+        return found
 
 
 def _add_payload(designs: Array, mass: Array, at: Array) -> None:

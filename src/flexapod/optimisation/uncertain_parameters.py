@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.checks import one_of, positive
 from flexapod.conventions import TRANSLATIONS, Array
+from flexapod.design import layout
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import entries, numbers
 from flexapod.errors import ArgumentError
@@ -83,16 +84,23 @@ class Uncertain:
             )
         width = self.spread * np.abs(value) if self.relative else np.full(len(index), self.spread * unit)
         sets = [[k] for k in range(len(index))] if self.each else [list(range(len(index)))]
+        stem, unit_name = self.target.partition("[")[0], layout.unit_name(self.target)
         found = []
         for chosen in sets:
-            name = self.target if len(sets) == 1 else f"{self.target}[{chosen[0]}]"
+            only = index[chosen[0]] if len(chosen) == 1 else None
+            name = self.target if only is None else stem + "".join(f"[{i}]" for i in layout.indices(only))
+            words = self.target if only is None else ", ".join(filter(None, (stem, layout.words(only))))
             low = (value - width * _REACH[self.distribution])[chosen].min()
             if rule.least is not None and (low < rule.least or (rule.open_ and low <= rule.least)):
                 raise ArgumentError(
-                    f"{name} may go down to {low / unit:.6g}; {rule.meaning} must be "
+                    f"{words} may go down to {low / unit:.6g}; {rule.meaning} must be "
                     f"{'>' if rule.open_ else '>='} {rule.least:.6g}. Lessen the spread, or take another distribution."
                 )
-            found.append(UncertainParameter(name, self.distribution, index[chosen], width[chosen], self.spread))
+            found.append(
+                UncertainParameter(
+                    name, self.distribution, index[chosen], width[chosen], self.spread, words, unit, unit_name
+                )
+            )
         return found
 
 
@@ -136,13 +144,38 @@ class Payload:
         low, high = self.mass
         if not 0 <= low <= high < np.inf:
             raise ArgumentError(f"the payload's mass is from {low} to {high} kg; it must be >= 0, the least first.")
-        found = [UncertainParameter("payload.mass", "uniform", None, np.array([low, high]), 0.0)]
+        found = [_of_payload("mass", np.array([low, high], dtype=np.float64), "kg")]
         for axis, given in zip(TRANSLATIONS, self.position, strict=True):
             pair = np.broadcast_to(np.asarray(given, dtype=np.float64), 2)
             if not (np.isfinite(pair).all() and pair[0] <= pair[1]):
                 raise ArgumentError(f"the payload's {axis} is {given!r} m; it must be a number, or (least, most).")
-            found.append(UncertainParameter(f"payload.{axis}", "uniform", None, np.array(pair), 0.0))
+            found.append(_of_payload(axis, np.array(pair), "m"))
         return found
+
+
+class UncertainRange(NamedTuple):
+    """What was assumed of an uncertain parameter, in the unit of its key.
+
+    Attributes
+    ----------
+    words : str
+        Its name for readers, with legs counted from 1.
+    unit : str
+        Its unit; "" for a pure number.
+    distribution : str
+        Its distribution; "fixed" for a number of the payload that does not vary.
+    nominal : float
+        Where the design has it; NaN for the payload.
+    low, high : float
+        Its least and largest value. A normal or lognormal distribution is cut off at four standard deviations.
+    """
+
+    words: str
+    unit: str
+    distribution: str
+    nominal: float
+    low: float
+    high: float
 
 
 @dataclass(frozen=True)
@@ -161,6 +194,10 @@ class UncertainParameter:
         The spread of each number, SI; for the payload its smallest and largest value.
     spread : float
         The spread as given.
+    words : str
+        The name for readers, with legs counted from 1.
+    unit, unit_name : float, str
+        The unit of its key in SI units, and as people write it.
     """
 
     name: str
@@ -168,11 +205,19 @@ class UncertainParameter:
     index: Any
     width: Array
     spread: float
+    words: str = ""
+    unit: float = 1.0
+    unit_name: str = ""
 
     @property
     def fixed(self) -> bool:
         """Whether its range is a single number."""
         return self.index is None and self.width[0] == self.width[1]
+
+
+def _of_payload(name: str, pair: Array, unit_name: str) -> UncertainParameter:
+    name = f"payload.{name}"
+    return UncertainParameter(name, "uniform", None, pair, 0.0, name, unit_name=unit_name)
 
 
 def quantile(distribution: str, u: Array, spread: float) -> Array:

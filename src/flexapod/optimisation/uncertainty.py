@@ -15,10 +15,10 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.optimisation.ensemble import Ensemble
-from flexapod.optimisation.uncertain_parameters import Payload, Uncertain
+from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, UncertainRange
+from flexapod.optimisation.worst_case import worst_case
 from flexapod.optional import needed
 from flexapod.pose import Pose
-from flexapod.workspace.box_minimum import pattern_minimum
 from flexapod.workspace.region import RegionLike, as_region, home_of
 from flexapod.workspace.sobol import Sobol
 
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float], object]
 _BLOCK = 2**20  # designs times poses computed at once
-_STARTS = 8  # worst samples from which the worst case is searched
 _QUANTILES = (0.001, 0.01, 0.05, 0.5, 0.95, 0.99)
 
 
@@ -38,7 +37,9 @@ class Robustness:
     Attributes
     ----------
     samples : xarray.Dataset
-        Over ``sample``: ``index``, rad/s, and every parameter, SI.
+        Over ``sample``: ``index``, rad/s, and every parameter, in the unit of its key.
+    ranges : dict of str to UncertainRange
+        What was assumed of each parameter, by name.
     nominal : float
         Index of the design as it is, rad/s.
     mean, deviation : float
@@ -46,21 +47,26 @@ class Robustness:
     quantiles : dict of float to float
         Index, rad/s, by the share of samples below it.
     worst : float
-        Smallest index over the ranges of the parameters, rad/s, found from the worst samples downhill.
+        Smallest index that was found over the ranges of the parameters, rad/s.
     worst_at : dict of str to float
-        The parameters there, SI.
+        The parameters there, in the units of their keys (the payload: kg, m).
+    searches, agreed : int
+        Number of searches for it, and how many of them ended at this index.
     sensitivity : xarray.Dataset or None
         Over ``parameter``: the Sobol indices ``first`` and ``total``, shares of the variance of the index, and their
         95 % confidence half-widths ``first_confidence`` and ``total_confidence``.
     """
 
     samples: xr.Dataset
+    ranges: dict[str, UncertainRange]
     nominal: float
     mean: float
     deviation: float
     quantiles: dict[float, float]
     worst: float
     worst_at: dict[str, float]
+    searches: int
+    agreed: int
     sensitivity: xr.Dataset | None
 
 
@@ -122,8 +128,10 @@ def robustness(
 
     Notes
     -----
-    The frequencies of all designs are exact, and computed many at a time. The worst case is a pattern search from the
-    worst samples. The sensitivities are Sobol indices [1]_, estimated after Saltelli [2]_.
+    The frequencies of all designs are exact, and computed many at a time. For the worst case, all corners of the ranges
+    are computed where there are up to ten parameters; with more, one end after another is exchanged from many corners.
+    Pattern searches from the lowest corners and samples, apart from one another, follow. The sensitivities are Sobol
+    indices [1]_, estimated after Saltelli [2]_.
 
     References
     ----------
@@ -150,20 +158,22 @@ def robustness(
     u = Sobol(len(ensemble.names), seed).points(0, samples)
     share = samples / (samples + sensitivity * (len(ensemble.names) + 2))
     values = index(u, None if progress is None else lambda done: progress(share * done))
-    # The index is monotonic in stiffness and, mostly, in mass: the worst case is then a corner of the ranges.
-    worst, worst_u = pattern_minimum(index, u[np.argsort(values)[:_STARTS]])
+    worst = worst_case(index, u, values, seed)
     analysis = None
     if sensitivity:
         rest = None if progress is None else lambda done: progress(share + (1 - share) * done)
         analysis = _sensitivity(ensemble, index, sensitivity, seed, rest)
     return Robustness(
-        samples=_samples(ensemble, u, values, hexapod, {"joint": joint, "poses": len(rows)}),
+        samples=_samples(ensemble, u, values, hexapod, {"joint": joint, "poses": len(rows), "seed": seed}),
+        ranges=ensemble.ranges(),
         nominal=nominal,
         mean=float(values.mean()),
         deviation=float(values.std(ddof=1)),
         quantiles={q: float(np.quantile(values, q)) for q in _QUANTILES},
-        worst=worst,
-        worst_at={name: float(ensemble.value(k, worst_u[k : k + 1])[0]) for k, name in enumerate(ensemble.names)},
+        worst=worst.index,
+        worst_at={name: float(ensemble.told(k, worst.at[k : k + 1])[0]) for k, name in enumerate(ensemble.names)},
+        searches=worst.searches,
+        agreed=worst.agreed,
         sensitivity=analysis,
     )
 
@@ -226,6 +236,6 @@ def _sensitivity(ensemble: Ensemble, index: _Index, base: int, seed: int, progre
 def _samples(ensemble: Ensemble, u: Array, values: Array, hexapod: Hexapod, about: dict[str, Any]) -> xr.Dataset:
     import xarray as xr
 
-    data: dict[str, Any] = {name: ("sample", ensemble.value(k, u[:, k])) for k, name in enumerate(ensemble.names)}
+    data: dict[str, Any] = {name: ("sample", ensemble.told(k, u[:, k])) for k, name in enumerate(ensemble.names)}
     data["index"] = ("sample", values, in_unit("rad/s", "dynamic stability index"))
     return xr.Dataset(data, attrs={"design": hexapod.name, "digest": hexapod.digest, **about})

@@ -276,7 +276,7 @@ def importance(found: Robustness) -> Figure:
             y + offset, np.maximum(told[name].values, 0), 0.36, color=color, label=label, xerr=error,
             error_kw={"ecolor": INK, "lw": 0.8, "capsize": 2},
         )  # fmt: skip
-    ax.set_yticks(y, [str(name) for name in told.parameter.values])
+    ax.set_yticks(y, [found.ranges[str(name)].words for name in told.parameter.values])
     ax.set(xlabel="share of the variance of the index")
     ax.set_xlim(left=0)
     figure.legend(ncols=2, **OUTSIDE)

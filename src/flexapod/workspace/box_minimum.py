@@ -141,8 +141,8 @@ def quick_minimum(
     return float(value.min())
 
 
-def pattern_minimum(function: Callable[[Array], Array], starts: Array, steps: int = 60) -> tuple[float, Array]:
-    """Least value and place of a function of the unit cube without a gradient, from all starts (k, n) at once.
+def pattern_minima(function: Callable[[Array], Array], starts: Array, steps: int = 60) -> tuple[Array, Array]:
+    """Low values (k,) and their places of a function of the unit cube without a gradient, from starts (k, n) at once.
 
     A pattern search: each coordinate is moved both ways, and then all to their better sides. Steps are cut off at the
     faces of the cube, so that a minimum at a corner is reached exactly. function: points (m, n) to values (m,).
@@ -167,5 +167,4 @@ def pattern_minimum(function: Callable[[Array], Array], starts: Array, steps: in
         reach = np.where(better, reach, reach / 2)
         if reach.max() < 1e-4:
             break
-    first = int(np.argmin(best))
-    return float(best[first]), point[first]
+    return best, point
