@@ -60,7 +60,7 @@ def test_a_singular_pose_is_told_not_failed(client: TestClient) -> None:
     flat = {"platform.joints": MACHINE.platform_joints.tolist(), "base.joints": MACHINE.base_joints.tolist()}
     state = client.post("/api/state", json={"design": TEXT, "changes": flat, "pose": [0, 0, 0, 0, 0, 0]}).json()
     assert state["legs"]["force"] is None
-    assert "singular" in state["warnings"][0]
+    assert "singular" in state["grave"][0]
     assert state["damped"] is None
 
 
@@ -110,7 +110,7 @@ def test_a_cloud_is_the_library_s_at_those_poses(client: TestClient) -> None:
     answer = client.post("/api/jobs/cloud", json=ASKED | {"box": BOX, "points": 1000, "seed": 3})
     parts = frames(answer.content)
     assert [message["type"] for message, _ in parts] == ["job", "points", "done"]
-    rows = np.frombuffer(b"".join(data for _, data in parts), dtype="<f4").reshape(-1, 8)
+    rows = np.frombuffer(b"".join(data for _, data in parts), dtype="<f4").reshape(-1, 9)
     assert len(rows) == 1000
     six = rows[:, :6].astype(float)
     assert np.all(six >= np.float32(BOX["low"]))

@@ -40,18 +40,23 @@ test('the range of lines leaves room, and cuts off what has no top', () => {
   expect(high).toBe(3e4)
 })
 
+const sum = (counts: Uint32Array) => counts.reduce((a, b) => a + b)
+
 test('the nearest point of a cloud is found, and pixels are counted', () => {
   const places = [
     [10, 0.5],
     [100, 0.25],
   ] // cond(H), index
-  const data = new Float32Array(places.flatMap(([condition, index]) => [0, 0, 0, 0, 0, 0, index, condition]))
+  const data = new Float32Array(places.flatMap(([condition, index], i) => [0, 0, 0, 0, 0, 0, index, condition, i]))
   const points = { data, count: data.length / WIDTH }
   const box = { left: 0, top: 0, width: 300, height: 200 }
   const frame: Frame = { x: log, y: { label: 'index', min: 0, max: 1 }, box }
   const density = new Density()
   const counts = density.counts(points, frame, [30, 20])
-  expect(counts.reduce((a, b) => a + b)).toBe(8) // four pixels each
+  expect(sum(counts.counted)).toBe(8) // four pixels each
+  expect(sum(counts.beyond)).toBe(0)
+  const within = density.counts(points, frame, [30, 20], false)
+  expect([sum(within.counted), sum(within.beyond)]).toEqual([4, 4])
   expect(density.nearest(points, frame, [101, 99])).toBe(0)
   expect(density.nearest(points, frame, [203, 148])).toBe(1)
   expect(density.nearest(points, frame, [20, 20])).toBe(-1)

@@ -15,6 +15,7 @@ const OTHERS: Partial<Page> = {
   colour: 'strain',
   view: '1,-2,3,0,0,0.5',
   points: '10000',
+  limits: 'all',
   scale: 'log',
   map: 'condition',
   across: 'yaw',

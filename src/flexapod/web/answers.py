@@ -162,7 +162,7 @@ class Limits(TypedDict):
 
 
 class Snapshot(TypedDict):
-    """The machine at one pose: does it stand? `shape` and `strain` (legs' shares of the energy) have a row per mode."""
+    """The machine at one pose. `shape` and `strain` have a row per mode; beside what is `grave` no limit matters."""
 
     pose: list[float]
     stability: Literal["stable", "falls over", "singular"]
@@ -179,6 +179,7 @@ class Snapshot(TypedDict):
     legs: Legs
     leg_distance: OptionalNumber
     limits: Limits
+    grave: list[str]
     warnings: list[str]
     near_repeated: list[tuple[int, int]]
 
@@ -228,13 +229,12 @@ class JobStarted(TypedDict):
 
 
 class Progress(TypedDict):
-    """How far a job is; `points` and `rows` come with float32 numbers. `within`: points so far within the limits."""
+    """How far a job is. With `points` and `rows` come binary float32 numbers."""
 
     type: Literal["points", "rows", "progress"]
     done: float
     total: float
     seconds: float
-    within: int | None
 
 
 class WorstPose(TypedDict):

@@ -86,7 +86,7 @@ def _with_progress(compute: Callable[[Callable[[float], object]], Any]) -> Gener
             return value
         if what == "error":
             raise value
-        yield {"type": "progress", "done": value, "total": 1.0, "seconds": 0.0, "within": None}, b""
+        yield {"type": "progress", "done": value, "total": 1.0, "seconds": 0.0}, b""
 
 
 def _motion(spec: dict[str, Any], duration: float) -> Excitation:

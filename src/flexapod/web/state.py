@@ -17,6 +17,8 @@ from flexapod.pose import Pose
 from flexapod.web.answers import DampedModes, Geometry, Limits, LoneMode, Snapshot, StaticLegs
 from flexapod.web.requests import Question
 
+GRAVE = ("singular", "near_singular", "unsupported", "unstable")  #: codes of cautions that come before limits
+
 
 def snapshot(question: Question) -> Snapshot:
     """Geometry, frequencies, modes, forces and limits at a pose. Raises PoseError if a leg cannot reach it."""
@@ -45,7 +47,8 @@ def snapshot(question: Question) -> Snapshot:
         },
         "leg_distance": float(leg_distance(hexapod, pose)),
         "limits": _limits(hexapod, pose),
-        "warnings": [one.text for one in state.cautions if one.code not in ("limit", "design")],
+        "grave": [one.text for one in state.cautions if one.code in GRAVE],
+        "warnings": [one.text for one in state.cautions if one.code not in (*GRAVE, "limit", "design")],
         "near_repeated": near_repeated(modes.omega),
     }
 

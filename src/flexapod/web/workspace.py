@@ -19,29 +19,24 @@ from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.sampling import random_poses
 
 CHUNK = 50_000  #: poses between two messages: about 0.01 s
-MOST_POINTS = 5_000_000  #: of a cloud, for the browser's memory: 32 bytes each
+MOST_POINTS = 5_000_000  #: of a cloud, for the browser's memory: 36 bytes each
 
 
 def cloud(spec: dict[str, Any]) -> Iterator[Message]:
-    """Random poses in a box: rows of x, y, z, roll, pitch, yaw (m, degrees), stability index and cond(H).
+    """Random poses in a box: rows of x, y, z, roll, pitch, yaw (m, degrees), index, cond(H), whether limits hold.
 
-    Beyond the design's limits both are NaN, unless `all_poses` is asked for; `within` counts those within so far. A
-    pose is rounded to float32 before the computation, so that its numbers belong to the pose that the page gets.
+    A pose is rounded to float32 before the computation, so that its numbers belong to the pose that the page gets.
     """
     question, count = requests.question(spec), int(requests.number(spec, "points", 100_000, 1, MOST_POINTS))
     poses = random_poses(_box(spec), count, seed=int(requests.number(spec, "seed", 0, 0, 2**31)))
-    everywhere = requests.yes_or_no(spec, "all_poses", False)
-    began, within = time.perf_counter(), 0
+    began = time.perf_counter()
     for start in range(0, count, CHUNK):
         stop = min(start + CHUNK, count)
         six = poses.rows(start, stop)
         six[:, 3:] = np.degrees(six[:, 3:])
         six = six.astype("f4").astype(float)
         found = _quantities(question, six, ("omega_1", "cond_H", "within_limits"))
-        inside = found[:, 2] > 0
-        within += int(inside.sum())
-        values = found[:, :2] if everywhere else np.where(inside[:, None], found[:, :2], np.nan)
-        yield _progress("points", stop, count, began, within), float32(np.concatenate([six, values], axis=1))
+        yield _progress("points", stop, count, began), float32(np.concatenate([six, found], axis=1))
 
 
 def slice_map(spec: dict[str, Any]) -> Iterator[Message]:
@@ -100,7 +95,5 @@ def _quantities(question: requests.Question, six: Array, names: tuple[str, ...])
     return np.stack([np.asarray(found[name], dtype=float) for name in names], axis=1)
 
 
-def _progress(
-    kind: Literal["points", "rows"], done: int, total: int, began: float, within: int | None = None
-) -> Progress:
-    return {"type": kind, "done": done, "total": total, "seconds": time.perf_counter() - began, "within": within}
+def _progress(kind: Literal["points", "rows"], done: int, total: int, began: float) -> Progress:
+    return {"type": kind, "done": done, "total": total, "seconds": time.perf_counter() - began}

@@ -1,6 +1,7 @@
 // The page: header, pose and parameters, 3-D view, panels; and what asks the server when something changes.
 
 import './style.css'
+import { followPrinting } from '../charts/printing'
 import { beginTheme, onTheme } from '../charts/theme'
 import { Animation } from '../machine3d/animation'
 import { Scene } from '../machine3d/scene'
@@ -119,6 +120,7 @@ async function startOf(): Promise<Start> {
 
 async function begin(): Promise<void> {
   beginTheme()
+  followPrinting()
   const start = await startOf()
   document.body.textContent = ''
   built = build(start)

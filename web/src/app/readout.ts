@@ -30,10 +30,15 @@ function limits({ limits: { any, ok, exceeded } }: Snapshot): string {
   return ok ? 'within' : `${exceeded.length} exceeded`
 }
 
+let spokenBefore: string[] = []
+
+/** The main numbers; and the state at rest and how many limits are exceeded, if these have changed. */
 function spokenWords(s: Snapshot): string {
   const numbers = `Index ${sig(s.index, 4)} radians per second, condition number ${sig(s.condition, 3)}.`
-  const state = { stable: '', 'falls over': 'The machine falls over. ', singular: 'Singular pose. ' }[s.stability]
-  return `${state}${numbers} ${s.limits.exceeded.join('. ')}`
+  const states = [`At rest: ${s.stability}.`, s.limits.any ? `Limits: ${limits(s)}.` : '']
+  const news = states.filter((words, i) => words !== spokenBefore[i])
+  spokenBefore = states
+  return [...news, numbers].filter(Boolean).join(' ')
 }
 
 export function readout(): HTMLElement {
@@ -51,8 +56,8 @@ export function readout(): HTMLElement {
     if (!s) return
     for (const { id, text, value, element } of cells) {
       value.textContent = text(s)
-      const wrong = { limits: !s.limits.ok, stability: s.stability !== 'stable' }[id]
-      element.classList.toggle('exceeded', wrong ?? false)
+      element.classList.toggle('exceeded', id === 'limits' && !s.limits.ok)
+      element.classList.toggle('grave', id === 'stability' && s.stability !== 'stable')
     }
     speak()
   })

@@ -10,6 +10,7 @@ export class CanvasPlot {
   readonly element: HTMLElement
   readonly tip = h('div', { class: 'tip', hidden: true })
   private readonly over = svg('svg')
+  private size: [number, number] = [0, 0] // px, when it was last painted
 
   /** `right`: px beside the canvas, for the colour bar. */
   constructor(
@@ -27,9 +28,9 @@ export class CanvasPlot {
 
   /** Where the canvas lies, px. */
   box(): Box2 {
-    const { clientWidth, clientHeight } = this.element
-    const width = Math.max(50, clientWidth - MARGIN.left - this.right)
-    const height = Math.max(50, clientHeight - MARGIN.top - MARGIN.bottom)
+    const [across, down] = this.size
+    const width = Math.max(50, across - MARGIN.left - this.right)
+    const height = Math.max(50, down - MARGIN.top - MARGIN.bottom)
     return { left: MARGIN.left, top: MARGIN.top, width, height }
   }
 
@@ -43,18 +44,28 @@ export class CanvasPlot {
     return [event.clientX - at.left - MARGIN.left, event.clientY - at.top - MARGIN.top]
   }
 
+  /** Take the size of the element, before anything is painted for it. */
+  measure(): void {
+    this.size = [this.element.clientWidth, this.element.clientHeight]
+  }
+
+  /** The canvas lies by shares of the element, as the axes do: on paper too, where nothing is painted again. */
   paint(image: ImageData): void {
     const box = this.box()
+    const [across, down] = this.size
+    this.element.style.setProperty('--shape', `${across} / ${down}`)
     this.canvas.width = image.width
     this.canvas.height = image.height
-    const px = { left: `${box.left}px`, top: `${box.top}px`, width: `${box.width}px`, height: `${box.height}px` }
-    Object.assign(this.canvas.style, px)
+    const share = (part: number, whole: number) => `${(100 * part) / whole}%`
+    const [left, top] = [share(box.left, across), share(box.top, down)]
+    const [width, height] = [share(box.width, across), share(box.height, down)]
+    Object.assign(this.canvas.style, { left, top, width, height })
     this.canvas.getContext('2d')!.putImageData(image, 0, 0)
   }
 
   /** Draw the axes and what else lies over the canvas. */
   cover(parts: SVGElement[]): void {
-    this.over.setAttribute('viewBox', `0 0 ${this.element.clientWidth} ${this.element.clientHeight}`)
+    this.over.setAttribute('viewBox', `0 0 ${this.size.join(' ')}`)
     this.over.replaceChildren(...parts)
   }
 
@@ -66,7 +77,7 @@ export class CanvasPlot {
 
   /** The plot as a figure for a file. */
   figure(parts: SVGElement[]): SVGSVGElement {
-    const { clientWidth: width, clientHeight: height } = this.element
+    const [width, height] = this.size
     const { left: x, top: y, ...size } = this.box()
     const figure = svg('svg', { xmlns: 'http://www.w3.org/2000/svg', viewBox: `0 0 ${width} ${height}`, width, height })
     const image = svg('image', { x, y, ...size, href: this.canvas.toDataURL(), preserveAspectRatio: 'none' })

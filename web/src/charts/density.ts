@@ -1,12 +1,13 @@
 // Any number of points: how many fall on each pixel, as colours, and which point is nearest to a place.
 
 import type { Box2 } from './axes'
-import type { ColourMap } from './colourmaps'
+import type { ColourMap, Rgb } from './colourmaps'
 import { fraction, type Scale } from './scale'
 
-export const WIDTH = 8 // numbers of one point: x y z roll pitch yaw index cond(H)
+export const WIDTH = 9 // numbers of one point: x y z roll pitch yaw index cond(H) within
 export const INDEX = 6
 export const CONDITION = 7
+export const WITHIN = 8 // 1 where the limits hold
 const CELL = 6 // px of the grid in which the nearest point is looked up
 const NEAR = 14 // px within which a point is found
 
@@ -22,13 +23,23 @@ export interface Frame {
   box: Box2
 }
 
-/** Colours of the pixels by the number of points on them; a pixel without points stays clear. */
-export function shaded(counts: Uint32Array, most: number, size: [number, number], colour: ColourMap): ImageData {
+/** How many points fall on each pixel: those that count, and those beyond the limits where these do not count. */
+export interface Counts {
+  counted: Uint32Array
+  beyond: Uint32Array
+}
+
+/** Colours of the pixels by the number of points on them, over grey ones for `beyond`; others stay clear. */
+export function shaded(found: Counts, most: number, size: [number, number], colour: ColourMap, grey: Rgb): ImageData {
   const image = new ImageData(...size)
+  const counts = found.counted
   const scale = 1 / Math.log(most)
   const palette = Array.from({ length: 257 }, (_, i) => colour(i / 256))
   for (let p = 0; p < counts.length; p++) {
-    if (!counts[p]) continue
+    if (!counts[p]) {
+      if (found.beyond[p]) image.data.set([...grey, 255], 4 * p)
+      continue
+    }
     const [r, g, b] = palette[Math.round(256 * Math.min(1, Math.log(counts[p]) * scale))]
     image.data.set([r, g, b, 255], 4 * p)
   }
@@ -40,9 +51,9 @@ export class Density {
   private next = new Int32Array(0) // point in the same cell, after each point
   private columns = 0
 
-  /** Counts of points on `w` by `h` pixels. The lookup grid is filled on the way. */
-  counts({ data, count }: Points, { x, y, box }: Frame, [w, h]: [number, number]): Uint32Array {
-    const counts = new Uint32Array(w * h)
+  /** Counts of points on `w` by `h` pixels; `all` count, or those within the limits. The lookup grid is filled too. */
+  counts({ data, count }: Points, { x, y, box }: Frame, [w, h]: [number, number], all = true): Counts {
+    const found = { counted: new Uint32Array(w * h), beyond: new Uint32Array(w * h) }
     this.columns = Math.ceil(box.width / CELL) + 1
     this.first = new Int32Array(this.columns * (Math.ceil(box.height / CELL) + 1)).fill(-1)
     if (this.next.length < count) this.next = new Int32Array(data.length / WIDTH)
@@ -61,9 +72,10 @@ export class Density {
       this.first[cell] = i
       const px = Math.min(w - dot, Math.floor(tx * w))
       const py = Math.min(h - dot, Math.floor(ty * h))
+      const counts = all || data[i * WIDTH + WITHIN] ? found.counted : found.beyond
       for (let a = 0; a < dot; a++) for (let b = 0; b < dot; b++) counts[(py + a) * w + px + b]++
     }
-    return counts
+    return found
   }
 
   /** The point nearest to a place in the box, px; -1 if none is near. */

@@ -6,6 +6,7 @@ import { axes, type Box2, bar } from './axes'
 import { CanvasPlot } from './canvas-plot'
 import { cividis, css, type Rgb } from './colourmaps'
 import { fraction, rangeWords, type Scale, valueAt } from './scale'
+import { beyond } from './theme'
 
 export interface Grid {
   side: number
@@ -27,6 +28,7 @@ export class Heatmap {
   readonly element = this.plot.element
   private grid: Grid | null = null
   private column = 0
+  private everywhere = false // also poses beyond the limits have their colour; otherwise they are grey
   private scale: Scale = { label: '', min: 0, max: 1 }
   private here: [number, number] | null = null
   private cursor: [number, number] | null = null
@@ -44,7 +46,8 @@ export class Heatmap {
     this.element.addEventListener('keydown', (event) => this.key(event))
   }
 
-  show(grid: Grid, column: number): void {
+  show(grid: Grid, column: number, everywhere: boolean): void {
+    this.everywhere = everywhere
     this.grid = grid
     this.column = column
     this.draw()
@@ -60,20 +63,27 @@ export class Heatmap {
     this.draw()
   }
 
+  /** Whether the pose whose values begin at a place counts: within the limits, or all do. */
+  private counts({ values }: Grid, at: number): boolean {
+    return this.everywhere || values[at + 2] !== 0
+  }
+
   private range(grid: Grid): void {
     let [low, high] = [Infinity, -Infinity]
     for (let i = this.column; i < grid.values.length; i += 3) {
-      const v = grid.values[i]
+      const v = this.counts(grid, i - this.column) ? grid.values[i] : Number.NaN
       if (v < low) low = v
       if (v > high && v < 1e9) high = v
     }
     const log = this.column === 1
+    if (low === Infinity) low = 1
     if (!(high > low)) high = low * 1.01 + 1e-12
     this.scale = { label: log ? 'cond(H)' : 'index ω₁, rad/s', min: log ? Math.max(low, 1) : low, max: high, log }
   }
 
   private paint(): void {
     if (!this.plot.visible || !this.grid) return
+    this.plot.measure()
     this.range(this.grid)
     this.plot.paint(this.image(this.grid))
     this.plot.cover(this.vectors(this.grid))
@@ -82,16 +92,16 @@ export class Heatmap {
     this.element.setAttribute('aria-label', `${words} Arrow keys move the machine.`)
   }
 
-  private image({ side, values }: Grid): ImageData {
+  private image(grid: Grid): ImageData {
+    const { side, values } = grid
     const image = new ImageData(side, side)
     for (let j = 0; j < side; j++) {
       for (let i = 0; i < side; i++) {
         const at = 3 * (j * side + i)
         const v = values[at + this.column]
         if (!Number.isFinite(v)) continue
-        const outside = values[at + 2] === 0
-        const rgb = this.colour(fraction(this.scale, v))
-        image.data.set([...rgb, outside ? 90 : 255], 4 * ((side - 1 - j) * side + i))
+        const rgb = this.counts(grid, at) ? this.colour(fraction(this.scale, v)) : beyond()
+        image.data.set([...rgb, 255], 4 * ((side - 1 - j) * side + i))
       }
     }
     return image

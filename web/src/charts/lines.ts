@@ -5,6 +5,7 @@ import 'uplot/dist/uPlot.min.css'
 import { h } from '../widgets/dom'
 import { sig } from '../widgets/format'
 import { type Lines, lineFigure, type Series } from './line-figure'
+import { onPrint } from './printing'
 import { type Scale, ticks, tickText } from './scale'
 import { type Theme, theme } from './theme'
 
@@ -22,6 +23,10 @@ export class LinePlot {
     private readonly sync = '',
   ) {
     new ResizeObserver(() => this.fit()).observe(this.element)
+    onPrint(
+      () => this.shown && this.element.append(h('div', { class: 'printed' }, this.figure())),
+      () => this.element.querySelector('.printed')?.remove(),
+    )
   }
 
   show(lines: Lines): void {

@@ -4,16 +4,11 @@ import { h, perFrame, svg } from '../widgets/dom'
 import { count, sig } from '../widgets/format'
 import { axes, bar } from './axes'
 import { CanvasPlot } from './canvas-plot'
+import { CloudPoints, type Point } from './cloud-points'
 import { css, type Rgb, viridis } from './colourmaps'
-import { CONDITION, Density, type Frame, INDEX, shaded, WIDTH } from './density'
+import { Density, type Frame, shaded } from './density'
 import { fraction, rangeWords, type Scale } from './scale'
-import { theme } from './theme'
-
-export interface Point {
-  six: number[] // x, y, z (m), roll, pitch, yaw (degrees)
-  index: number
-  condition: number
-}
+import { beyond, theme } from './theme'
 
 type Place = Pick<Point, 'index' | 'condition'>
 
@@ -31,12 +26,13 @@ export class Scatter {
   private readonly plot = new CanvasPlot(h('canvas'), 84, this.draw)
   readonly element = this.plot.element
   private readonly density = new Density()
-  private points = { data: new Float32Array(0), count: 0 }
+  private readonly points = new CloudPoints()
   private x: Scale = { label: 'cond(H)', min: 1, max: 10, log: true }
   private y: Scale = { label: 'index ω₁, rad/s', min: 0, max: 1, log: false }
   private most = 1 // points on a pixel
   private picked = -1
   private here: Place | null = null
+  private everywhere = false
 
   constructor(private readonly chosen: (point: Point) => void) {
     this.element.addEventListener('pointermove', (event) => this.hover(event))
@@ -50,16 +46,12 @@ export class Scatter {
 
   /** Begin anew, for `total` points. */
   begin(total: number): void {
-    this.points = { data: new Float32Array(total * WIDTH), count: 0 }
+    this.points.begin(total)
     this.pick(-1)
   }
 
   add(part: Float32Array): void {
-    const { data, count } = this.points
-    if (count * WIDTH + part.length > data.length) return
-    data.set(part, count * WIDTH)
-    this.points.count += part.length / WIDTH
-    this.draw()
+    if (this.points.add(part)) this.draw()
   }
 
   /** Whether the axis of the index is logarithmic. */
@@ -67,6 +59,17 @@ export class Scatter {
     this.y = { ...this.y, log: on, min: on ? 1e-3 : 0 }
     this.range()
     this.draw()
+  }
+
+  /** Whether poses beyond the limits count as well; otherwise they are grey. */
+  set all(on: boolean) {
+    this.everywhere = on
+    this.draw()
+  }
+
+  /** How many poses are within the limits. */
+  get within(): number {
+    return this.points.within
   }
 
   /** The machine's own pose, drawn as a ring. */
@@ -80,41 +83,20 @@ export class Scatter {
   }
 
   point(i: number): Point {
-    const numbers = this.points.data.subarray(i * WIDTH, (i + 1) * WIDTH)
-    return { six: Array.from(numbers.subarray(0, 6)), index: numbers[INDEX], condition: numbers[CONDITION] }
+    return this.points.at(i)
   }
 
-  *rows(): Generator<number[]> {
-    for (let i = 0; i < this.size; i++) yield Array.from(this.points.data.subarray(i * WIDTH, (i + 1) * WIDTH))
+  rows(): Generator<number[]> {
+    return this.points.rows()
   }
 
-  /** The points sorted by index, as places in the cloud; those without one left out. */
+  /** Places of the points that count, sorted by index. */
   order(): Uint32Array {
-    const { data, count } = this.points
-    const index = (i: number) => data[i * WIDTH + INDEX]
-    const places = new Uint32Array(count).map((_, i) => i).filter((i) => Number.isFinite(index(i)))
-    return places.sort((a, b) => index(a) - index(b))
+    return this.points.order(this.everywhere)
   }
 
   private range(): void {
-    const { data, count } = this.points
-    let [low, high, top, least] = [Infinity, 0, 0, Infinity]
-    for (let i = 0; i < count; i++) {
-      const condition = data[i * WIDTH + CONDITION]
-      const index = data[i * WIDTH + INDEX]
-      if (condition < low) low = condition
-      if (condition > high && condition < 1e9) high = condition
-      if (index > top) top = index
-      if (index < least && (index > 1e-9 || !this.y.log)) least = index
-    }
-    if (count === 0 || low === Infinity) return
-    this.x = { ...this.x, min: low / 1.05, max: Math.max(high * 1.05, low * 1.2) }
-    if (this.y.log) {
-      this.y = { ...this.y, min: least / 1.1, max: top * 1.1 }
-      return
-    }
-    const room = 0.05 * (top - least)
-    this.y = { ...this.y, min: least > 0.4 * top ? least - room : 0, max: top + room || 1 }
+    ;[this.x, this.y] = this.points.ranged(this.x, this.y)
   }
 
   private frame(): Frame {
@@ -123,13 +105,14 @@ export class Scatter {
 
   private paint(): void {
     if (!this.plot.visible) return
+    this.plot.measure()
     this.range()
     const frame = this.frame()
     const ratio = Math.min(2, devicePixelRatio)
     const size: [number, number] = [Math.round(frame.box.width * ratio), Math.round(frame.box.height * ratio)]
-    const counts = this.density.counts(this.points, frame, size)
-    this.most = counts.reduce((most, n) => Math.max(most, n), 2)
-    this.plot.paint(shaded(counts, this.most, size, colour))
+    const counts = this.density.counts(this.points, frame, size, this.everywhere)
+    this.most = counts.counted.reduce((most, n) => Math.max(most, n), 2)
+    this.plot.paint(shaded(counts, this.most, size, colour, beyond()))
     this.plot.cover(this.vectors())
     const words = `Scatter of ${count(this.size)} poses. ${rangeWords(this.x, this.y)}.`
     const keys = 'Arrow keys step through poses by index, Enter moves the machine there.'
@@ -198,12 +181,13 @@ export class Scatter {
 }
 
 function colour(t: number): Rgb {
-  return viridis(theme().dark ? 0.3 + 0.7 * t : 0.72 - 0.72 * t)
+  return viridis(theme().dark ? 0.4 + 0.6 * t : 0.58 - 0.58 * t)
 }
 
-function words({ six, index, condition }: Point): string {
+function words({ six, index, condition, within }: Point): string {
   const [x, y, z] = six.slice(0, 3).map((v) => sig(v, 4))
   const [roll, pitch, yaw] = six.slice(3).map((v) => sig(v, 3))
   const numbers = `ω₁ ${sig(index)} rad/s   cond(H) ${sig(condition)}`
-  return `${numbers}\nx ${x}  y ${y}  z ${z} m\nroll ${roll}°  pitch ${pitch}°  yaw ${yaw}°`
+  const state = within ? '' : '\nbeyond the limits'
+  return `${numbers}\nx ${x}  y ${y}  z ${z} m\nroll ${roll}°  pitch ${pitch}°  yaw ${yaw}°${state}`
 }

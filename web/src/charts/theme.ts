@@ -1,12 +1,14 @@
 // Colours of the light and dark theme, for canvases and figures, and colours of categories.
 
-/** Okabe and Ito's colours for categories, in an order in which neighbours differ most. */
-const ON_LIGHT = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9']
+import type { Rgb } from './colourmaps'
+
+/** Okabe and Ito's colours for categories, the last three darker so that lines show on white, neighbours far apart. */
+export const ON_LIGHT = ['#0072b2', '#d55e00', '#009e73', '#b8608f', '#b57a00', '#2f90c9']
 /** The same hues, lighter for a dark background. */
-const ON_DARK = ['#4d9bff', '#ff7f2a', '#1fc796', '#e08fc0', '#f2b632', '#8fd3ff']
+export const ON_DARK = ['#4d9bff', '#ff7f2a', '#1fc796', '#e08fc0', '#f2b632', '#8fd3ff']
 export const categories = (): string[] => (theme().dark ? ON_DARK : ON_LIGHT)
 /** Line styles that tell categories apart without colours: translations solid, rotations dashed. */
-export const DASHES = [[], [], [], [6, 3], [6, 3], [6, 3]]
+export const DASHES = [[], [], [], [7, 3], [2, 2], [9, 3, 2, 3]]
 export const EXCEEDED = '#d55e00'
 
 export interface Theme {
@@ -31,6 +33,9 @@ export function theme(): Theme {
   }
 }
 
+/** The grey of poses beyond the limits. */
+export const beyond = (): Rgb => (theme().dark ? [88, 98, 110] : [201, 206, 213])
+
 const preferred = matchMedia('(prefers-color-scheme: dark)')
 const listeners: (() => void)[] = []
 
@@ -38,9 +43,19 @@ export function onTheme(listener: () => void): void {
   listeners.push(listener)
 }
 
-function apply(dark: boolean): void {
-  document.documentElement.dataset.theme = dark ? 'dark' : 'light'
+let dark = false
+let paper = false
+
+function apply(chosen = dark): void {
+  dark = chosen
+  document.documentElement.dataset.theme = dark && !paper ? 'dark' : 'light'
   for (const listener of listeners) listener()
+}
+
+/** While the page is printed, it is light. */
+export function usePaper(on: boolean): void {
+  paper = on
+  apply()
 }
 
 /** Follow the system until a person chooses; the choice is kept on this computer. */
@@ -53,7 +68,6 @@ export function beginTheme(): void {
 }
 
 export function toggleTheme(): void {
-  const dark = document.documentElement.dataset.theme !== 'dark'
-  localStorage.setItem('theme', dark ? 'dark' : 'light')
-  apply(dark)
+  localStorage.setItem('theme', dark ? 'light' : 'dark')
+  apply(!dark)
 }

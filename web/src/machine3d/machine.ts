@@ -136,18 +136,19 @@ export class Machine {
     if (this.colours.length) this.paint(this.colours, this.exceeded)
   }
 
-  private buildPlates({ dark, text }: Theme): void {
+  private buildPlates(look: Theme): void {
+    const { dark } = look
     const size = this.size
     const [below, above] = [phong(dark ? 0x47525f : 0x9aa5b1), { transparent: true, opacity: 0.9 }]
-    this.base.add(plate(this.joints.base, -0.06 * size, below), ...frame(0.45 * size, 0.008 * size, text))
+    this.base.add(plate(this.joints.base, -0.06 * size, below), ...frame(0.45 * size, 0.008 * size, look))
     this.platform.add(
       plate(this.joints.platform, 0.06 * size, phong(dark ? 0x7d93a8 : 0xb7c6d6, above)),
-      ...frame(0.38 * size, 0.008 * size, text),
-      ...massCentre(this.masses, size, text),
+      ...frame(0.38 * size, 0.008 * size, look),
+      ...massCentre(this.masses, size, look),
     )
   }
 
-  private buildLegs(axes: THREE.Vector3[], { dark, text }: Theme): void {
+  private buildLegs(axes: THREE.Vector3[], { dark, text, paper }: Theme): void {
     const r = 0.034 * this.size
     const tube = new THREE.CylinderGeometry(r, r, 1, 18)
     const rod = new THREE.CylinderGeometry(0.58 * r, 0.58 * r, 1, 14)
@@ -159,7 +160,7 @@ export class Machine {
         lower: new THREE.Mesh(tube, phong(0x888888)),
         upper: new THREE.Mesh(rod, phong(0x888888)),
         warning: new THREE.Mesh(ring, phong(EXCEEDED, { emissive: 0x7a3500 })),
-        number: label(String(i + 1), text),
+        number: label(String(i + 1), text, paper),
       }
       leg.warning.visible = false
       this.root.add(leg.lower, leg.upper, leg.warning, leg.number)

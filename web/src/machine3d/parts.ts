@@ -1,6 +1,7 @@
 // Parts of the drawn machine: plates, joints, frames, labels.
 
 import * as THREE from 'three'
+import type { Theme } from '../charts/theme'
 
 const Y = new THREE.Vector3(0, 1, 0)
 const AXES: [string, THREE.Vector3, number][] = [
@@ -39,13 +40,17 @@ export function plate(joints: THREE.Vector3[], thickness: number, material: THRE
 }
 
 /** Text that faces the viewer and keeps its size on the screen. */
-export function label(text: string, colour: string): THREE.Sprite {
+export function label(text: string, colour: string, halo: string): THREE.Sprite {
   const canvas = document.createElement('canvas')
   canvas.width = canvas.height = 64
   const context = canvas.getContext('2d')!
   context.font = '600 44px system-ui, sans-serif'
   context.textAlign = 'center'
   context.textBaseline = 'middle'
+  context.lineJoin = 'round'
+  context.lineWidth = 11
+  context.strokeStyle = halo
+  context.strokeText(text, 32, 34) // it is read on dark and on bright legs
   context.fillStyle = colour
   context.fillText(text, 32, 34)
   const texture = new THREE.CanvasTexture(canvas)
@@ -56,6 +61,7 @@ export function label(text: string, colour: string): THREE.Sprite {
   sprite.renderOrder = 10
   sprite.userData.label = text
   sprite.userData.colour = colour
+  sprite.userData.halo = halo
   return sprite
 }
 
@@ -68,7 +74,7 @@ export function pin(at: THREE.Vector3, axis: THREE.Vector3, r: number, material:
 }
 
 /** The axes x, y, z as arrows of radius `r` with their names. */
-export function frame(length: number, r: number, text: string): THREE.Object3D[] {
+export function frame(length: number, r: number, { text, paper }: Theme): THREE.Object3D[] {
   return AXES.flatMap(([name, direction, colour]) => {
     const more = { emissive: colour, emissiveIntensity: 0.35, depthTest: false, transparent: true }
     const material = phong(colour, more)
@@ -78,19 +84,19 @@ export function frame(length: number, r: number, text: string): THREE.Object3D[]
     shaft.position.copy(direction).multiplyScalar(length / 2)
     tip.position.copy(direction).multiplyScalar(length)
     shaft.renderOrder = tip.renderOrder = 4 // seen through the plates
-    const sign = label(name, text)
+    const sign = label(name, text, paper)
     sign.position.copy(direction).multiplyScalar(length + 20 * r)
     return [shaft, tip, sign]
   })
 }
 
 /** The platform's mass centre, labelled G; `size` of the machine, m. */
-export function massCentre(at: THREE.Vector3, size: number, text: string): THREE.Object3D[] {
+export function massCentre(at: THREE.Vector3, size: number, { text, paper }: Theme): THREE.Object3D[] {
   const more = { emissive: 0x5a3d00, depthTest: false, transparent: true, opacity: 0.95 }
   const ball = new THREE.Mesh(new THREE.SphereGeometry(0.045 * size, 20, 14), phong(0xe69f00, more))
   ball.renderOrder = 5
   ball.position.copy(at)
-  const sign = label('G', text)
+  const sign = label('G', text, paper)
   sign.position.copy(at).add(new THREE.Vector3(0, 0, 0.12 * size))
   return [ball, sign]
 }

@@ -13,11 +13,15 @@ import { dataTable, row, titleBar, toolBar } from '../widgets/layout'
 import { Result } from '../widgets/result'
 import { setPose } from './pose'
 
-const CSV_HEAD = ['x_m', 'y_m', 'z_m', 'roll_deg', 'pitch_deg', 'yaw_deg', 'index_rad_s', 'cond_h']
+const CSV_HEAD = ['x_m', 'y_m', 'z_m', 'roll_deg', 'pitch_deg', 'yaw_deg', 'index_rad_s', 'cond_h', 'within_limits']
 const COUNTS = (['10000', '100000', '300000', '1000000'] as const).map((n) => [n, `${count(Number(n))} poses`] as const)
 const SCALES = [
   ['linear', 'linear'],
   ['log', 'logarithmic'],
+] as const
+const LIMITS = [
+  ['within', 'poses within the limits count'],
+  ['all', 'all poses count'],
 ] as const
 const SHARES: [string, number][] = [
   ['lowest', 0],
@@ -35,6 +39,7 @@ export class CloudPart {
   readonly element: HTMLElement
   private readonly scatter = new Scatter((point) => setPose(rounded(point.six)))
   private readonly runner = new Runner()
+  private seconds = 0
   private readonly summary = h('div', { class: 'scroll' })
   private readonly result: Result
 
@@ -54,6 +59,10 @@ export class CloudPart {
     store.on(['scale'], () => {
       this.scatter.logarithmic = page.scale === 'log'
     })
+    store.on(['limits'], () => {
+      this.scatter.all = page.limits === 'all'
+      this.tell()
+    })
     onTheme(this.scatter.draw)
     const worst = worstPose()
     this.element = h(
@@ -72,7 +81,16 @@ export class CloudPart {
     const seed = numberBox('seed', 'Seed of the random poses', { class: 'number tiny', inputmode: 'numeric' })
     const scale = choose('scale', 'Axis of the index', SCALES)
     const run = button('Run', () => this.result.ask())
-    return toolBar(total, h('span', {}, 'seed'), seed.input, seed.wrong, scale, run, worst)
+    return toolBar(
+      total,
+      h('span', {}, 'seed'),
+      seed.input,
+      seed.wrong,
+      scale,
+      choose('limits', 'Which poses count', LIMITS),
+      run,
+      worst,
+    )
   }
 
   private async run(): Promise<void> {
@@ -83,10 +101,20 @@ export class CloudPart {
     const whole = await this.runner.run('cloud', question, (message, data) => {
       if (message.type === 'points') this.scatter.add(floats(data))
     })
-    const seconds = (performance.now() - began) / 1000
-    if (whole) this.runner.say(`${count(this.scatter.size)} poses in ${duration(seconds)}`)
-    if (this.scatter.size) this.summarise()
+    this.seconds = (performance.now() - began) / 1000
+    if (whole) this.tell()
+    else if (this.scatter.size) this.summarise()
     this.element.dataset.points = String(this.scatter.size)
+  }
+
+  /** How many poses, and which share of them is within the limits. */
+  private tell(): void {
+    const { size, within } = this.scatter
+    if (!size) return
+    const others = within === size ? '' : page.limits === 'all' ? ', and all count' : ', the others are grey'
+    const share = page.snapshot?.limits.any ? `; ${sig((100 * within) / size, 3)} % within the limits${others}` : ''
+    this.runner.say(`${count(size)} poses in ${duration(this.seconds)}${share}`)
+    this.summarise()
   }
 
   private summarise(): void {
@@ -111,7 +139,7 @@ function cloudQuestion() {
 /** Finds the least index in the box and moves the machine there. */
 function worstPose(): { button: HTMLElement; element: HTMLElement } {
   const runner = new Runner()
-  const question = () => ({ ...store.machine(), box: page.box })
+  const question = () => ({ ...store.machine(), box: page.box, all_poses: page.limits === 'all' })
   const find = () => {
     const asked = question()
     element.hidden = false
@@ -126,7 +154,9 @@ function worstPose(): { button: HTMLElement; element: HTMLElement } {
   const result = new Result({ question, ask: find, live: false, again }, [runner.element])
   const element = h('div', { id: 'worst', hidden: true }, result.framed())
   return {
-    button: button('Worst pose', find, { title: 'Find the lowest index in the box and move there' }),
+    button: button('Worst pose', find, {
+      title: 'Find the lowest index in the box, of the poses that count, and move there',
+    }),
     element,
   }
 }

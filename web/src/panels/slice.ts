@@ -22,7 +22,8 @@ const QUANTITIES = [
   ['condition', 'cond(H)'],
 ] as const
 const NAMES = COORDINATES.map((c) => [c, c] as const)
-const DONE = `${count(SIDE ** 2)} poses; the other four coordinates are the machine's. Paler: beyond the limits.`
+const DONE = `${count(SIDE ** 2)} poses; the other four coordinates are the machine's.`
+const GREY = ' Grey: beyond the limits.'
 
 function scaleOf(i: number): Scale {
   return { label: `${COORDINATES[i]}, ${unitOf(i)}`, min: page.box.low[i], max: page.box.high[i] }
@@ -62,7 +63,7 @@ export class SlicePart {
       [csv, figures],
     )
     store.on(['pose'], () => this.mark())
-    store.on(['map'], () => this.show(this.heat.shown))
+    store.on(['map', 'limits'], () => this.show(this.heat.shown))
     onTheme(this.heat.draw)
     const [across, up] = [choose('across', 'Coordinate across', NAMES), choose('up', 'Coordinate up', NAMES)]
     const tools = [choose('map', 'Quantity', QUANTITIES), h('span', {}, 'over'), across, h('span', {}, 'and'), up]
@@ -92,11 +93,11 @@ export class SlicePart {
       this.show(grid)
       this.mark()
     })
-    if (whole) this.runner.say(DONE)
+    if (whole) this.runner.say(DONE + (grid.values.some((v, i) => i % 3 === 2 && v === 0) ? GREY : ''))
   }
 
   private show(grid: Grid | null): void {
-    if (grid) this.heat.show(grid, page.map === 'condition' ? 1 : 0)
+    if (grid) this.heat.show(grid, page.map === 'condition' ? 1 : 0, page.limits === 'all')
   }
 
   private mark(): void {

@@ -33,6 +33,7 @@ export function viewPanel(scene: Scene): HTMLElement {
     const exceeded = s.limits.by_leg.map((words) => words.length > 0)
     scene.machine.paint(painted?.colours ?? Array(6).fill(plain), exceeded)
     notes.replaceChildren(
+      ...s.grave.map((words) => h('li', { class: 'grave' }, words)),
       ...s.limits.exceeded.map((words) => h('li', { class: 'exceeded' }, `▲ ${words}`)),
       ...s.warnings.map((words) => h('li', {}, words)),
     )

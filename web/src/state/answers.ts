@@ -134,7 +134,7 @@ export interface Limits {
   by_leg: string[][]
 }
 
-/** The machine at one pose: does it stand? `shape` and `strain` (legs' shares of the energy) have a row per mode. */
+/** The machine at one pose. `shape` and `strain` have a row per mode; beside what is `grave` no limit matters. */
 export interface Snapshot {
   pose: number[]
   stability: 'stable' | 'falls over' | 'singular'
@@ -151,6 +151,7 @@ export interface Snapshot {
   legs: Legs
   leg_distance: OptionalNumber
   limits: Limits
+  grave: string[]
   warnings: string[]
   near_repeated: [number, number][]
 }
@@ -194,13 +195,12 @@ export interface JobStarted {
   waiting: boolean
 }
 
-/** How far a job is; `points` and `rows` come with float32 numbers. `within`: points so far within the limits. */
+/** How far a job is. With `points` and `rows` come binary float32 numbers. */
 export interface Progress {
   type: 'points' | 'rows' | 'progress'
   done: number
   total: number
   seconds: number
-  within: number | null
 }
 
 /** The pose (m, degrees) of the lowest index (rad/s) in the box. `within`: part of it that is within the limits. */

@@ -69,6 +69,7 @@ export const OPTIONS = {
   // workspace
   points: choice(['10000', '100000', '300000', '1000000'], '100000'),
   seed: number(1, 0, 2 ** 31),
+  limits: choice(['within', 'all'], 'within'), // which poses count
   scale: choice(['linear', 'log'], 'linear'),
   map: choice(['index', 'condition'], 'index'),
   across: choice(COORDINATES, 'x'),

@@ -78,15 +78,23 @@ export function settled(ms: number, run: () => void): () => void {
   }
 }
 
+const waiting = new Set<() => void>()
+
 /** Calls `run` at most once per frame. */
 export function perFrame(run: () => void): () => void {
-  let waiting = false
   return () => {
-    if (waiting) return
-    waiting = true
+    if (waiting.has(run)) return
+    waiting.add(run)
     requestAnimationFrame(() => {
-      waiting = false
-      run()
+      if (waiting.delete(run)) run()
     })
+  }
+}
+
+/** Run now what waits for the next frame. */
+export function flushFrames(): void {
+  for (const run of [...waiting]) {
+    waiting.delete(run)
+    run()
   }
 }
