@@ -149,3 +149,15 @@ def test_a_pose_that_locks_a_joint_has_index_zero():
     assert worst.omega_1 < 1e-9
     near = worst.pose + 1e-7 * np.random.default_rng(0).normal(size=(200, 6))
     assert float(fx.sweep(CUBIC, near).omega_1.min()) < 0.05
+
+
+def test_the_sampling_time_is_that_of_the_poses_within_the_limits():
+    design, box = LIMITED[0]
+    found = fx.sweep(design, fx.random_poses(box, 400_000, seed=3), quantities=("omega", "within_limits"))
+    omega, inside = found.omega.values[:, 5], found.within_limits.values
+    for all_poses, dense in ((False, omega[inside].max()), (True, omega.max())):
+        highest = 2 * np.pi / (20 * fx.control.sampling_time(design, box, all_poses=all_poses))
+        assert dense < highest < 1.2 * dense
+    assert omega.max() > 1.02 * omega[inside].max()
+    with pytest.raises(fx.PoseError, match="within the limits"):
+        fx.control.sampling_time(design, fx.Box(z=(3.5, 3.6)))

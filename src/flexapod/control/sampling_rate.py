@@ -15,12 +15,9 @@ from flexapod.mechanics.inputs import as_hexapod
 from flexapod.mechanics.modes import advised_sampling_time, natural_modes
 from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
-from flexapod.workspace.box import Box
-from flexapod.workspace.box_minimum import smooth_minimum
-from flexapod.workspace.descents import SquaredFrequency
-from flexapod.workspace.quantities import evaluate
+from flexapod.workspace.descents import BoxSearch, SquaredFrequency, starts_of
+from flexapod.workspace.limit_margins import LimitMargins, is_limited
 from flexapod.workspace.region import RegionLike, as_region, home_of
-from flexapod.workspace.sampling import low_discrepancy
 
 _STARTS = 4
 
@@ -32,6 +29,7 @@ def sampling_time(
     joint: JointModel = "universal",
     samples: int = 2**14,
     threads: int | None = None,
+    all_poses: bool = False,
 ) -> float:
     """Compute the largest sensible sampling time of a controller.
 
@@ -48,6 +46,8 @@ def sampling_time(
         Number of poses of a box that are sampled, before the highest are refined.
     threads : int, optional
         Number of threads. All cores by default.
+    all_poses : bool, optional
+        If True, poses of a box beyond the design's limits count as well. If False (default), they do not.
 
     Returns
     -------
@@ -61,13 +61,13 @@ def sampling_time(
     DesignError
         If `hexapod` is neither a Hexapod nor a number.
     PoseError
-        If no pose of the region can be taken.
+        If no pose of the region can be taken, or none of a box is within the limits.
 
     Notes
     -----
     The sampling time is 2 pi/(20 omega_max) after the paper's conclusion 3, with omega_max the highest natural
-    frequency. Along a trajectory it is refined between samples; over a box, from the highest poses of a Sobol sequence
-    with the gradient method L-BFGS-B.
+    frequency. Along a trajectory it is refined between samples; over a box, as by `flexapod.worst_pose`, from poses of
+    a Sobol sequence that are high and lie apart, and from corners.
 
     Examples
     --------
@@ -87,7 +87,16 @@ def sampling_time(
         home = home_of(hexapod, where)
         box = where.box(home)
         if box is not None:
-            highest = _in_box(hexapod, box, joint, whole(samples, "samples"), thread_count(threads))
+            search = BoxSearch(
+                SquaredFrequency(hexapod, joint, mode=6, highest=True),
+                box,
+                None if all_poses or not is_limited(hexapod) else LimitMargins(hexapod),
+                whole(samples, "samples"),
+                seed=0,
+                threads=thread_count(threads),
+            )
+            ends = [search.descend(start) for start in starts_of(search.sample(), box, _STARTS)]
+            highest = max(search.index.root(end) for end in ends)
         else:
             values = natural_modes(hexapod, Pose.from_rpy(*where.rows(home, 0).T), joint=joint).omega[..., 5]
             highest = float(np.nanmax(values)) if np.isfinite(values).any() else np.nan
@@ -105,19 +114,3 @@ def _on_path(highest: Callable[[Pose], Array], path: Trajectory) -> float:
     span = (times[max(peak - 1, 0)], times[min(peak + 1, len(times) - 1)])
     refined = minimize_scalar(lambda t: -highest(path([t]).pose)[0], bounds=span, method="bounded")
     return float(max(values[peak], -refined.fun))
-
-
-def _in_box(hexapod: Hexapod, box: Box, joint: JointModel, samples: int, threads: int) -> float:
-    rows = low_discrepancy(box, samples).rows(0, samples)
-    values = np.nan_to_num(evaluate(hexapod, rows, ("omega",), joint, threads)["omega"][:, 5])
-    if not values.any():
-        return np.nan
-    square = SquaredFrequency(hexapod, joint, mode=6)
-
-    def lower(six: Array) -> tuple[float, Array]:
-        value, slope = square(six)
-        return -value, -slope
-
-    starts = rows[np.argsort(-values)[:_STARTS]]
-    ends = [smooth_minimum(lower, start, box.low, box.high) for start in starts]
-    return float(max(values.max(), *(square.root(end) for end in ends)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,10 +29,14 @@ _MARGIN = 1e-6  # by which that one is to be within them
 
 
 class SquaredFrequency:
-    """The square of one of the six natural frequencies at x, y, z, roll, pitch, yaw, (6,), with exact derivatives."""
+    """The square of one of the six natural frequencies at x, y, z, roll, pitch, yaw, (6,), with exact derivatives.
 
-    def __init__(self, hexapod: Hexapod, joint: JointModel, mode: int) -> None:
+    highest: it is sought where it is highest, so that its negative is what a search lowers.
+    """
+
+    def __init__(self, hexapod: Hexapod, joint: JointModel, mode: int, *, highest: bool = False) -> None:
         self.hexapod, self.joint_name, self.joint, self.mode = hexapod, joint, as_joint(joint), mode - 1
+        self.sign = -1.0 if highest else 1.0
         self.scale = 1.0  # largest omega_6 met, rad/s
 
     def __call__(self, six: Array) -> tuple[float, Array]:
@@ -44,11 +48,20 @@ class SquaredFrequency:
         omega = _core.natural_modes(self.hexapod.packed, self.joint, s.platform, s.base)[0][0]
         by_twist = _core.frequency_derivatives(self.hexapod.packed, self.joint, s.platform, s.base)[1]
         self.scale = max(self.scale, float(omega[-1]))
-        return float(omega[self.mode] ** 2), by_twist[0, self.mode] @ twist_of_coordinates(six)
+        slope = by_twist[0, self.mode] @ twist_of_coordinates(six)
+        return self.sign * float(omega[self.mode] ** 2), self.sign * slope
+
+    def swept(self, rows: Array, threads: int) -> Array:
+        """The frequency at many poses, rad/s, with the sign of what a search lowers."""
+        if self.mode == 0:
+            omega = evaluate(self.hexapod, rows, ("omega_1",), self.joint_name, threads)["omega_1"]
+        else:
+            omega = evaluate(self.hexapod, rows, ("omega",), self.joint_name, threads)["omega"][:, self.mode]
+        return self.sign * omega
 
     def root(self, six: Array) -> float:
         """The frequency itself, rad/s."""
-        return float(np.sqrt(max(self(six)[0], 0.0)))
+        return float(np.sqrt(max(self.sign * self(six)[0], 0.0)))
 
     def gradient(self, six: Array) -> Array:
         """Of the frequency by the six coordinates; NaN where it is zero."""
@@ -76,7 +89,7 @@ class Sample(NamedTuple):
 
 @dataclass(frozen=True)
 class BoxSearch:
-    """A search of a box for the least index of a design; where limits are given, of the part that is within them."""
+    """A search of a box for an extreme frequency; where limits are given, of the part that is within them."""
 
     index: SquaredFrequency
     box: Box
@@ -94,11 +107,11 @@ class BoxSearch:
         even, corners, share = rows[-self.samples :], rows[1 : -self.samples], 1.0
         if self.limits is not None:
             even, share = self._within(even)
-            corners = corners[self._evaluate(corners, "within_limits")]
+            corners = corners[self._inside(corners)]
             if not len(even) + len(corners):
                 even = self._sought(self.limits)[None]
         rows = np.concatenate([even, corners])
-        omega = self._evaluate(rows, "omega_1")
+        omega = self.index.swept(rows, self.threads)
         if not np.isfinite(omega).any():
             raise PoseError(f"no pose of {self.box!r} could be computed. Look at the status of a sweep of it.")
         return Sample(rows, omega, len(corners), share)
@@ -109,17 +122,17 @@ class BoxSearch:
             return smooth_minimum(self.index, start, self.box.low, self.box.high)
         return constrained_minimum(self.index, self.limits, start, self.box.low, self.box.high)
 
-    def _evaluate(self, rows: Array, quantity: str) -> Any:
+    def _inside(self, rows: Array) -> np.ndarray:
         index = self.index
-        return evaluate(index.hexapod, rows, (quantity,), index.joint_name, self.threads)[quantity]
+        return evaluate(index.hexapod, rows, ("within_limits",), index.joint_name, self.threads)["within_limits"]
 
     def _within(self, even: Array) -> tuple[Array, float]:
         """Those of an even sample that are within the limits, and of more where they are few; which part that is."""
-        found, drawn = [even[self._evaluate(even, "within_limits")]], len(even)
+        found, drawn = [even[self._inside(even)]], len(even)
         sequence = low_discrepancy(self.box, max(_MOST, drawn), seed=self.seed)
         while (count := sum(map(len, found))) < _ENOUGH and drawn < _MOST:
             more = sequence.rows(drawn, min(4 * drawn, _MOST))
-            found.append(more[self._evaluate(more, "within_limits")])
+            found.append(more[self._inside(more)])
             drawn += len(more)
         return np.concatenate(found), count / drawn
 
