@@ -18,6 +18,7 @@ from flexapod.control.gain_search import ascending_gains, best_gain, default_gai
 from flexapod.control.plant import Plant, damping_ratios, poles
 from flexapod.conventions import Array, Complex, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
+from flexapod.mechanics.cautions import response_attributes
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.pose import PoseLike
@@ -170,8 +171,19 @@ def root_locus(
             "leak_rad_s": leak,
             "best_gain": gain,
             "best_damping": damping,
+            "assumptions": ASSUMPTIONS,
+            **response_attributes(plant.linear),
         },
     )
+
+
+#: What the model of control leaves out, and what that does to its numbers.
+ASSUMPTIONS = (
+    "The machine without control has the friction of its design and no structural loss, and its joints no stiffness. "
+    "Real legs lose energy by themselves, so that control gains less than is told here; with joints that resist "
+    "turning the zeros of force feedback lie above 0 and damping ends below 1: a damping ratio of 1 and zeros at 0 "
+    "are limits of the model."
+)
 
 
 def _followed(pole: Complex) -> Complex:

@@ -9,6 +9,10 @@ import numpy as np
 from flexapod.control.linear_controller import Controller
 from flexapod.control.plant import Plant, damping_ratios, is_stable, poles
 from flexapod.conventions import Array, Complex
+from flexapod.mechanics.modes import advised_sampling_time
+
+_KEPT_DAMPING = 0.2  # of the continuous loop: a sampled one that keeps less is sampled too slowly
+_HALVINGS = 20
 
 
 class ClosedLoop(NamedTuple):
@@ -52,6 +56,32 @@ def assess(plant: Plant, controller: Controller, nearness: float = 0.1) -> Close
     vibrating = pole.imag > 0
     near = tuple(np.flatnonzero(vibrating & (distance < nearness)).tolist())
     return ClosedLoop(pole, ratio, omega, distance, near, float(ratio.min()), bool(is_stable(pole, plant)), controller)
+
+
+def loop_sampling_time(plant: Plant, controller: Controller, longest: float, delay: int = 0) -> float:
+    """Largest sensible sampling time of a continuous controller, s, at most `longest`, which the machine alone allows.
+
+    Where the sampled loop is unstable with that, or keeps less than a fifth of the damping, the loop is faster than the
+    machine, as where forces and not springs hold the platform. Then it is a twentieth of a period of the loop's fastest
+    pole, halved until the sampled loop keeps its damping.
+    """
+    ideal = assess(plant, controller)
+    if not ideal.stable:
+        return longest
+    wanted = _KEPT_DAMPING * ideal.worst_damping
+
+    def keeps(dt: float) -> bool:
+        loop = assess(plant, controller.sampled(dt, delay=delay))
+        return loop.stable and loop.worst_damping >= wanted
+
+    if keeps(longest):
+        return longest
+    dt = min(longest, advised_sampling_time(float(np.abs(ideal.pole).max())))
+    for _ in range(_HALVINGS):
+        if keeps(dt):
+            break
+        dt /= 2
+    return dt
 
 
 def instability_message(found: ClosedLoop) -> str:

@@ -6,11 +6,13 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from flexapod.control.closed_loop_poles import assess, instability_message
 from flexapod.control.linear_controller import ControlLaw, Controller, controller_for
 from flexapod.control.plant import Plant
 from flexapod.conventions import AXES, Array, Complex, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
+from flexapod.mechanics.cautions import response_attributes
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import linearise
 from flexapod.pose import PoseLike
@@ -57,6 +59,8 @@ def controlled_transmissibility(
     xarray.Dataset
         Complex ``controlled`` and ``passive`` (omega, output, base), the absolute displacement of the platform (m, rad)
         per displacement of the base (m, rad); and ``leg_force`` (omega, leg, base), N per displacement of the base.
+        Attributes: ``stability`` of the loop ("stable" or "unstable"), ``passive_stability`` of the machine without
+        control ("stable" or "falls over"), and ``caution``, what that means where one of them does not decay.
 
     Raises
     ------
@@ -114,8 +118,26 @@ def controlled_transmissibility(
             "output_unit": ("output", units),
             "base_unit": ("base", units),
         },
-        {"design": hexapod.name, "digest": hexapod.digest, "controller": law.name},
+        {
+            "design": hexapod.name,
+            "digest": hexapod.digest,
+            "controller": law.name,
+            **_stability(plant, law),
+        },
     )
+
+
+def _stability(plant: Plant, law: Controller) -> dict[str, str]:
+    """Whether the loop and the machine without control decay, and what it means where one does not."""
+    loop, passive = assess(plant, law), response_attributes(plant.linear)
+    texts = [] if loop.stable else [f"No motion approaches the response with control: {instability_message(loop)}"]
+    if passive["caution"]:
+        texts.append(f"Without control: {passive['caution']}")
+    return {
+        "stability": "stable" if loop.stable else "unstable",
+        "passive_stability": passive["stability"],
+        "caution": " ".join(texts),
+    }
 
 
 def _response(plant: Plant, omega: Array, controller: Controller | None) -> tuple[Complex, Complex]:

@@ -221,9 +221,9 @@ def _riccati(control: Any, A: Array, B: Array, Q: Array, R: Array, S: Array) -> 
     """The optimal gain R^-1 (B^T X + S^T)."""
     try:
         _, _, gain = control.care(A, B, Q, R, S)
-    except (ValueError, np.linalg.LinAlgError, ArithmeticError) as error:
+    except (ValueError, np.linalg.LinAlgError, ArithmeticError, RuntimeError, Warning) as error:
         raise UnstableError(
-            f"no optimal controller exists for these weights: {error}. The measurement may not show every motion, or a "
-            "weight is zero; raise the weights."
+            f"no optimal controller exists for these weights: {' '.join(str(error).split()).rstrip('.')}. The "
+            "measurement may not show every motion, or a weight is too small: raise noise or effort."
         ) from error
     return np.asarray(gain)

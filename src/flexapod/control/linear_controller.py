@@ -16,6 +16,7 @@ from flexapod.mechanics.linearisation import Linearisation
 from flexapod.optional import needed
 
 Measurement = Literal["leg_length", "leg_rate", "leg_force", "position", "velocity", "acceleration"]
+_MOST_STATES = 700  # of a sampled controller: the loop has an eigenvalue for each
 MEASUREMENTS = tuple(cast(Measurement, measure.name) for measure in _core.Measure)
 
 
@@ -108,7 +109,13 @@ class Controller:
             control = needed("control", "control", "sampling a controller needs python-control")
             system = control.sample_system(control.ss(self.A, self.B, self.C, self.D), dt, method=method)
             found = replace(found, A=system.A, B=system.B, C=system.C, D=system.D)
-        for _ in range(whole(delay, "delay, in samples,", 0)):
+        late, order = whole(delay, "delay, in samples,", 0), found.order
+        if order + 6 * late > _MOST_STATES:
+            raise ArgumentError(
+                f"delay is {shown(delay)} samples; each adds six states, and a controller of order {order} may have "
+                f"{_MOST_STATES} in all. Give at most {(_MOST_STATES - order) // 6}, or sample more slowly."
+            )
+        for _ in range(late):
             found = found._late()
         return found
 

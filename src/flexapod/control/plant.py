@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from flexapod.control.linear_controller import MEASUREMENTS, Controller, Measurement, signals
 from flexapod.conventions import Array, Complex
-from flexapod.errors import UnstableError
+from flexapod.errors import ArgumentError, UnstableError
 from flexapod.mechanics.linearisation import Linearisation
 
 
@@ -103,7 +103,15 @@ def held(plant: Plant, dt: float) -> tuple[Array, Array, Array]:
 
 def poles(plant: Plant, controller: Controller) -> Complex:
     """Poles of the closed loop, rad/s, by size. Those of a sampled loop are log(z)/dt; z = 0 (a delay) is left out."""
-    found = np.linalg.eigvals(joined(plant, controller)).astype(complex)
+    with np.errstate(over="ignore", invalid="ignore"):
+        loop = joined(plant, controller)
+    if not np.isfinite(loop).all():
+        raise ArgumentError(
+            f"the loop of {controller.name} holds numbers beyond all bounds: its gains or its sampling time are too "
+            f"large for a machine with poles of up to {np.abs(np.linalg.eigvals(plant.A)).max():.3g} rad/s. Lower "
+            "them, or move away from a singular pose."
+        )
+    found = np.linalg.eigvals(loop).astype(complex)
     if controller.dt is not None:
         found = np.log(found[np.abs(found) > 1e-9]) / controller.dt
     return found[np.lexsort((found.imag, np.abs(found)))]

@@ -14,7 +14,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import states
 from flexapod.mechanics.joint_limits import check_limits
 from flexapod.mechanics.kinematics import condition_number
-from flexapod.mechanics.linearisation import DampedModes
+from flexapod.mechanics.linearisation import DampedModes, Linearisation
 from flexapod.mechanics.mode_pairs import ModePairs
 from flexapod.mechanics.mode_shapes import ModeDescription, twist_of_center
 from flexapod.mechanics.modes import mode_clusters
@@ -72,6 +72,26 @@ def grows(modes: DampedModes) -> NDArray[np.bool_]:
 def stands(modes: DampedModes) -> bool:
     """Whether the machine stays at rest: no mode grows."""
     return not grows(modes).any()
+
+
+def response_cautions(linear: Linearisation) -> list[Caution]:
+    """What to say of a response about rest: that nothing approaches it where the machine does not stay at rest."""
+    damped = linear.modes()
+    if stands(damped):
+        return []
+    count, growth = int(grows(damped).sum()), float(damped.pole.real.max())
+    text = (
+        f"Not stable at rest: {count} mode{'s' * (count > 1)} of the machine grow{'s' * (count == 1)} (e-fold in "
+        f"{1 / growth:.2g} s), under its own weight it falls over. The response is that of the linear equations; no "
+        "motion of the machine approaches it. Stiffen the legs, lower the mass centre, or control it."
+    )
+    return [Caution("unstable", text, {"modes": count, "growth": growth})]
+
+
+def response_attributes(linear: Linearisation) -> dict[str, str]:
+    """Attributes of a Dataset of responses: whether the machine stands at rest, and what that means for them."""
+    found = response_cautions(linear)
+    return {"stability": "falls over" if found else "stable", "caution": found[0].text if found else ""}
 
 
 def pose_cautions(

@@ -12,6 +12,7 @@ from flexapod import _core
 from flexapod._suggestions import suggests
 from flexapod.conventions import TWO_PI, Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
+from flexapod.errors import SingularPoseError
 from flexapod.mechanics.inputs import ZERO, as_joint, single_pose, states, wrench
 from flexapod.mechanics.modes import MODE_WORDS
 from flexapod.mechanics.springs import spring_matrix
@@ -232,6 +233,10 @@ def linearise(
     M, C, K, M_b, C_b, K_b, H = _core.tangent(
         hexapod.packed, as_joint(joint), s.platform, s.base, wrench(force, moment, ()), rest.unstretched_length
     )
+    if not (np.isfinite(K).all() and np.isfinite(C).all()):
+        raise SingularPoseError(
+            "no leg forces of finite size hold this pose: it is singular but for rounding. Move the platform away."
+        )
     r = unpack(s.platform[0])["position"] - unpack(s.base[0])["position"]
     F = spring_matrix(hexapod, pose, base=base)
     carry = np.eye(6)

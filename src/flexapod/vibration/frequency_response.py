@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from flexapod.checks import numbers
 from flexapod.conventions import AXES, LEGS, Array, Complex, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
+from flexapod.mechanics.cautions import response_attributes
 from flexapod.mechanics.inputs import ZERO, single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.pose import Pose, PoseLike
@@ -70,6 +71,9 @@ def transmissibility(
         - command (omega, output, leg): motion per change of a leg's unstretched length, output_unit/m
         - leg_force (omega, leg, base): change of a leg's spring force (positive: compression) per base motion, N
 
+        The attribute `stability` is "stable" or "falls over"; then `caution` says that no motion of the machine
+        approaches the response.
+
     Raises
     ------
     ArgumentError
@@ -118,7 +122,7 @@ def transmissibility(
     }
     variables = {name: (RESPONSES[name][0], array, RESPONSES[name][1]) for name, array in arrays.items()}
     coordinates = {"omega": ("omega", w, in_unit("rad/s", "frequency")), **COORDINATES}
-    return xr.Dataset(variables, coordinates, attributes(hexapod, pose, point, eta))
+    return xr.Dataset(variables, coordinates, attributes(hexapod, pose, point, eta, linear))
 
 
 COORDINATES = {
@@ -157,7 +161,7 @@ def leg_forces(linear: Linearisation, steady: SteadyResponse, eta: Array) -> Com
     return -stiffness[:, None] * (linear.H.T @ steady.relative)
 
 
-def attributes(hexapod: Hexapod, pose: Pose, point: ArrayLike, eta: Array) -> dict[str, object]:
+def attributes(hexapod: Hexapod, pose: Pose, point: ArrayLike, eta: Array, linear: Linearisation) -> dict[str, object]:
     """What a response was computed for, as attributes of its Dataset."""
     return {
         "design": hexapod.name,
@@ -166,4 +170,5 @@ def attributes(hexapod: Hexapod, pose: Pose, point: ArrayLike, eta: Array) -> di
         "rpy_rad": pose.rpy.tolist(),
         "point_m": np.asarray(point, dtype=float).tolist(),
         "loss_factor": eta.tolist(),
+        **response_attributes(linear),
     }

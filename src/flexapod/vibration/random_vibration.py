@@ -13,6 +13,7 @@ from flexapod.conventions import AXES, LEGS, Array, Complex, JointModel, in_mixe
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.excitation.spectra import Quantity, Spectrum
+from flexapod.mechanics.cautions import grows
 from flexapod.mechanics.inputs import ZERO, single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.pose import PoseLike
@@ -131,6 +132,7 @@ def random_response(
     eta = loss_factors(loss_factor)
     pose = single_pose(hexapod, pose)
     linear = linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
+    _check_stands(linear)
     poles = complex_poles(linear, eta)
     given = asked(omega, frequency)
     if isinstance(psd, Spectrum | Mapping):
@@ -144,7 +146,7 @@ def random_response(
     panels = Panels(graded(spectrum.grid, poles))
     filters = _Filters(linear, shift(pose, point), eta, spectrum.quantity)
     densities = filters.spectra(panels.omega, spectrum.density(panels.omega))
-    return _dataset(panels, densities).assign_attrs(attributes(hexapod, pose, point, eta))
+    return _dataset(panels, densities).assign_attrs(attributes(hexapod, pose, point, eta, linear))
 
 
 def _dataset(panels: Panels, densities: dict[str, Array]) -> xr.Dataset:
@@ -202,6 +204,16 @@ def _power(H: Complex, base: Complex) -> Array:
     if base.ndim == 2:
         return np.einsum("nij,nj->ni", np.abs(H) ** 2, base.real)
     return np.maximum(np.einsum("nij,nij->ni", H @ base, H.conj()).real, 0.0)
+
+
+def _check_stands(linear: Linearisation) -> None:
+    """With a loss factor the poles at omega > 0 do not show what grows: the machine's own do."""
+    growing = np.flatnonzero(grows(linear.modes()))
+    if growing.size:
+        raise ArgumentError(
+            f"the machine is not stable at rest ({growing.size} of its modes grow), so its random response never "
+            "becomes stationary. Stiffen the legs, or lower the mass centre."
+        )
 
 
 def _check_damped(poles: Complex, grid: Array) -> None:

@@ -18,6 +18,7 @@ from flexapod.conventions import AXES, TWO_PI, Array, Complex, JointModel, in_mi
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.excitation.sines import harmonic
+from flexapod.mechanics.cautions import response_attributes
 from flexapod.mechanics.inputs import single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.pose import Motion, Pose, PoseLike, unpack
@@ -134,7 +135,7 @@ def stepped_sine(
     shaker = _Shaker(hexapod, pose, tangent, float(amplitude), axis, joint)
     linear = shaker.linear_response(w)
     found = _shoot(shaker, w, linear, tolerance, progress)
-    return _dataset(shaker, w, linear, found)
+    return _dataset(shaker, w, linear, found).assign_attrs(response_attributes(tangent))
 
 
 class _Found(NamedTuple):

@@ -192,7 +192,7 @@ class ResponseMode(TypedDict):
 
 
 class FrequencyResponse(TypedDict):
-    """Magnitude and phase (degrees) by output, input and frequency (rad/s)."""
+    """Magnitude and phase (degrees) by output, input and frequency (rad/s); `caution` where no motion approaches it."""
 
     omega: Vector
     magnitude: OptionalCube
@@ -202,6 +202,7 @@ class FrequencyResponse(TypedDict):
     output_units: list[str]
     input_units: list[str]
     modes: list[ResponseMode]
+    caution: str
 
 
 class ComplexVector(TypedDict):

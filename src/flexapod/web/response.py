@@ -43,7 +43,8 @@ def response(asked: dict[str, Any]) -> FrequencyResponse:
         "inputs": names[str(inputs)],
         "output_units": units[str(outputs)],
         "input_units": units[str(inputs)],
-        "modes": [{"name": str(i + 1), "omega": w} for i, w in enumerate(modes.omega) if w > 0],
+        "modes": [{"name": str(i + 1), "omega": p.imag} for i, p in enumerate(modes.pole) if p.imag > 0],
+        "caution": data.attrs["caution"],
     }
 
 

@@ -162,7 +162,7 @@ export interface ResponseMode {
   omega: number
 }
 
-/** Magnitude and phase (degrees) by output, input and frequency (rad/s). */
+/** Magnitude and phase (degrees) by output, input and frequency (rad/s); `caution` where no motion approaches it. */
 export interface FrequencyResponse {
   omega: number[]
   magnitude: OptionalNumber[][][]
@@ -172,6 +172,7 @@ export interface FrequencyResponse {
   output_units: string[]
   input_units: string[]
   modes: ResponseMode[]
+  caution: string
 }
 
 /** Real and imaginary parts. */

@@ -15,6 +15,7 @@ from flexapod.cli.options import common
 from flexapod.cli.options.control import Options
 from flexapod.cli.output.stages import Report
 from flexapod.control.active_damping import root_locus
+from flexapod.control.closed_loop_poles import loop_sampling_time
 from flexapod.control.controlled_response import controlled_transmissibility
 from flexapod.control.controllers import GAIN_UNIT, PID, damping_law
 from flexapod.control.gain_search import best_gain, default_gains
@@ -74,11 +75,12 @@ def compute(options: Options, report: Report) -> Study:
 def _find(hexapod: Hexapod, pose: Pose, options: Options, report: Report) -> ControlFindings:
     report("design", 0.0)
     tangent = linearise(hexapod, pose, joint=options.joint)
-    recommended = sampling_time(hexapod, pose, joint=options.joint)
-    dt = options.dt or recommended
-    made = _made(hexapod, pose, tangent, options, dt)
+    machine_alone = sampling_time(hexapod, pose, joint=options.joint)
+    made = _made(hexapod, pose, tangent, options, options.dt or machine_alone)
     report("design", 1.0)
     continuous = made.law.on(tangent)
+    recommended = loop_sampling_time(Plant(tangent), continuous, machine_alone, options.delay)
+    dt = options.dt or recommended
     sampled = continuous.sampled(dt, delay=options.delay)
     ideal = closed_loop(hexapod, pose, continuous, joint=options.joint)
     real = closed_loop(hexapod, pose, sampled, joint=options.joint)

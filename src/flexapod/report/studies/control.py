@@ -12,6 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from flexapod import plots
+from flexapod.control.active_damping import ASSUMPTIONS
 from flexapod.control.closed_loop_poles import ClosedLoop
 from flexapod.conventions import TWO_PI, printed_unit
 from flexapod.design.hexapod import Hexapod
@@ -97,12 +98,14 @@ def _drawing(name: str, title: str, plot: str, data: xr.Dataset | None, words: s
 
 def cautions(f: ControlFindings) -> list[Caution]:
     """What to beware of in the loop."""
-    found = []
+    found = [Caution("model", ASSUMPTIONS)]
+    if f.response.attrs["caution"]:
+        found.insert(0, Caution("unstable", f.response.attrs["caution"]))
     if f.dt > f.recommended * (1 + 1e-9):
         told, advised = told_apart(1e3 * f.dt, 1e3 * f.recommended)
         text = (
-            f"The sampling time of {told} ms is above 2\u03c0/(20 \u03c9) = {advised} ms, "
-            "with \u03c9 the highest natural frequency; sample faster."
+            f"The sampling time of {told} ms is above {advised} ms, which is 2\u03c0/(20 \u03c9) with \u03c9 the "
+            "highest natural frequency, or less where the loop needs it to keep its damping; sample faster."
         )
         found.append(Caution("sampling", text, {"dt": f.dt, "recommended": f.recommended}))
     if f.sampled.near:

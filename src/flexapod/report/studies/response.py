@@ -75,13 +75,18 @@ def study(f: ResponseFindings, peaks: Array) -> Study:
         data=_data(f, peaks),
         rows=[] if f.stepped is None else [Row("Non-linear stepped sine,", stepped_words(f.stepped))],
         sections=sections,
-        cautions=[Caution("spectrum", text) for text in f.notes],
+        cautions=[*_stability(f), *(Caution("spectrum", text) for text in f.notes)],
         files=files,
         dataset=f.response,
     )
 
 
 TITLES = {"response": "Frequency response", "stepped": "Non-linear stepped sine", "random": "Random motion of the base"}
+
+
+def _stability(f: ResponseFindings) -> list[Caution]:
+    text = f.response.attrs["caution"]
+    return [Caution("unstable", text)] if text else []
 
 
 def _figure(f: ResponseFindings, name: str) -> Figure:
