@@ -71,19 +71,22 @@ def one_of(value: Any, name: str, choices: Collection[str]) -> str:
     raise ArgumentError(f"{name} is {shown(value)}; it must be one of {', '.join(map(repr, choices))}.{hint}")
 
 
-def numbers(value: ArrayLike, name: str, shape: tuple[int | None, ...] = (None,)) -> Array:
-    """Finite float64 numbers of a shape, in which None stands for any size; a copy."""
+def numbers(value: ArrayLike, name: str, shape: tuple[int | None, ...] | None = (None,)) -> Array:
+    """Finite float64 numbers of a shape, in which None stands for any size, or of any shape; a copy."""
     try:
         array = floats(value)
     except (TypeError, ValueError):
         raise ArgumentError(f"{name} is {shown(value)}; it must hold numbers.") from None
-    fits = array.ndim == len(shape) and all(want in (None, size) for want, size in zip(shape, array.shape, strict=True))
-    if not fits:
+    if shape is not None and not _fits(array.shape, shape):
         wanted = ", ".join("n" if size is None else str(size) for size in shape)
         raise ArgumentError(f"{name} has shape {array.shape}; it must have shape ({wanted}{',' * (len(shape) == 1)}).")
     if not np.isfinite(array).all():
         raise ArgumentError(f"{name} holds NaN or infinity; all its numbers must be finite.")
     return array
+
+
+def _fits(found: tuple[int, ...], shape: tuple[int | None, ...]) -> bool:
+    return len(found) == len(shape) and all(want in (None, size) for want, size in zip(shape, found, strict=True))
 
 
 def thread_count(threads: int | None) -> int:

@@ -546,6 +546,43 @@ def test_velocity_and_acceleration_are_those_seen_from_the_base():
     assert run.relative_velocity.attrs["mixed_units"] == "output_unit/s"
 
 
+def test_a_recording_gives_the_duration():
+    hexapod, pose = machine()
+    times = np.arange(0.0, 0.01, 1e-5)
+    record = fx.excitation.time_series(times, 1e-9 * np.sin(100 * times), "z")
+    for duration in (None, 0.01, 0.009995):
+        dataset = fx.simulate(hexapod, pose, base_motion=record, duration=duration, samples=3)
+        assert dataset.time.values[-1] == pytest.approx(times[-1], rel=1e-15)
+    two = fx.simulation.SimulationRun(hexapod, pose, base_motion=record, force=record.on({"z": "x"}).delayed(0.001))
+    assert fx.simulate_many([two], samples=3).time.values[-1] == pytest.approx(times[-1], rel=1e-15)
+
+
+def test_the_balance_may_begin_later():
+    hexapod, pose = machine("cubic-isolator")
+    drive = fx.harmonic("z", 1e-5, 40.0)
+    late = fx.simulate(hexapod, pose, base_motion=drive, times=np.linspace(0.2, 0.3, 50))
+    assert late.attrs["energy_error"] < 1e-6
+    assert late.attrs["warnings"] == []
+
+
+def test_a_balance_that_is_off_is_told():
+    hexapod, pose = machine("mukherjee-ii")
+    shaken = {"base_motion": fx.harmonic("z", 1e-6, 750.0), "samples": 400}
+    with pytest.warns(UserWarning, match=r"the energy balance is off by 0\.\d+ of the largest"):
+        fx.simulate(hexapod, pose, duration=5.0, rtol=1e-2, **shaken)
+    assert fx.simulate(hexapod, pose, duration=0.1, **shaken).attrs["warnings"] == []
+
+
+def test_limits_of_many_runs_are_told_once():
+    hexapod, pose = machine("motion-base")
+    lift = [sum((fx.excitation.smooth_step(str(leg), size, 0.1) for leg in range(1, 7)), fx.Excitation())
+            for size in (0.01, 0.7, 0.8)]  # fmt: skip
+    runs = [fx.simulation.SimulationRun(hexapod, pose, leg_command=command) for command in lift]
+    with pytest.warns(UserWarning, match="run 1, and 1 of 3 runs besides: limit exceeded: length of legs") as caught:
+        fx.simulate_many(runs, 0.2, samples=40)
+    assert len(caught) == 1
+
+
 def test_coarse_recording_warns():
     hexapod, pose = machine()
     times = np.linspace(0, 0.1, 101)
@@ -577,6 +614,11 @@ def test_a_quiet_recording_is_not_stepped_over():
     [
         ({"duration": 0.0}, ArgumentError, "duration is 0"),
         ({}, ArgumentError, "duration is missing"),
+        ({"duration": 1.0, "samples": 10**12}, ArgumentError, "samples is 1000000000000; at most 10000000"),
+        ({"duration": 1.0, "threads": 0.5}, ArgumentError, "threads is 0.5"),
+        ({"duration": 10**400}, ArgumentError, "an integer of 1329 bits"),
+        ({"times": "now"}, ArgumentError, "times is 'now'"),
+        ({"duration": 1.0, "atol": "fine"}, ArgumentError, "atol is 'fine'"),
         ({"duration": 1.0, "times": [0, 1]}, ArgumentError, "must not be"),
         ({"times": [0.0, 1.0, 0.5]}, ArgumentError, "ascending"),
         ({"times": [-1.0, 1.0]}, ArgumentError, ">= 0"),

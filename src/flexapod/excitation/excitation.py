@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod._core import TermKind
-from flexapod.checks import not_negative, one_of, positive
+from flexapod.checks import not_negative, number, numbers, one_of, positive
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, Array
 from flexapod.errors import ArgumentError, shown
 from flexapod.pose import Motion, PoseLike, as_pose
@@ -64,16 +64,16 @@ class Term:
 
     def scaled(self, factor: float) -> Term:
         """The same function of time times a number."""
-        numbers = self.numbers.copy()
+        scaled = self.numbers.copy()
         if self.kind == TermKind.sinusoids:
-            numbers[::3] *= factor
+            scaled[::3] *= factor
         elif self.kind == TermKind.chirp:
-            numbers[0] *= factor
+            scaled[0] *= factor
         else:
-            pieces = numbers[1:].view(PIECE)
+            pieces = scaled[1:].view(PIECE)
             pieces["coefficients"] *= factor
             pieces["sine"] *= factor
-        return replace(self, numbers=numbers)
+        return replace(self, numbers=scaled)
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +121,8 @@ class Excitation:
         return Excitation(self.terms + other.terms, self.rotation if self._turns() else other.rotation)
 
     def __mul__(self, factor: float) -> Excitation:
-        return replace(self, terms=tuple(term.scaled(float(factor)) for term in self.terms))
+        factor = number(factor, "the factor of an excitation")
+        return replace(self, terms=tuple(term.scaled(factor) for term in self.terms))
 
     __rmul__ = __mul__
 
@@ -181,6 +182,11 @@ class Excitation:
         axes : dict
             Old axis to new axis.
         """
+        missing = [channel for channel in self.channels if axes.get(channel) not in AXES + LEGS]
+        if missing:
+            raise ArgumentError(
+                f"axes takes {missing[0]!r} to {shown(axes.get(missing[0]))}; give each axis a new one."
+            )
         return replace(self, terms=tuple(replace(term, channel=axes[term.channel]) for term in self.terms))
 
     def for_use(self, use: Use) -> Excitation:
@@ -219,7 +225,7 @@ class Excitation:
         value, rate, acceleration : ndarray, shape (..., 6)
             In the axes x, y, z, roll, pitch, yaw, or the legs; zero for those that are not driven.
         """
-        t = np.asarray(times, dtype=float)
+        t = numbers(times, "times", None)
         found = _core.excitation(self.packed, np.ascontiguousarray(t.ravel()))
         value, rate, acceleration = np.moveaxis(found, 1, 0).reshape(3, *t.shape, 6)
         return value, rate, acceleration
@@ -240,7 +246,7 @@ class Excitation:
             With the batch axes of `times`.
         """
         check_use(self, "base_motion")
-        t = np.asarray(times, dtype=float)
+        t = numbers(times, "times", None)
         rest = Motion.fixed(None if base is None else as_pose(base, "base")).packed
         rows = _core.base_motion(self.packed, self.rotation == "rpy", rest, np.ascontiguousarray(t.ravel()))
         return Motion.unpacked(rows.reshape(*t.shape, _core.motion_size))

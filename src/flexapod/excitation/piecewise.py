@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod._core import TermKind
-from flexapod.checks import number, positive
+from flexapod.checks import number, numbers, positive
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError
 from flexapod.excitation.excitation import PIECE, Excitation, Use, one_term
@@ -127,9 +127,7 @@ def polynomial(axis: str, coefficients: ArrayLike) -> Excitation:
     >>> float(spin.evaluate(2.0)[0][5])
     1.0
     """
-    c = np.atleast_1d(np.asarray(coefficients, dtype=float))
-    if not np.isfinite(c).all():
-        raise ArgumentError("coefficients holds NaN or infinity; all numbers must be finite.")
+    c = np.atleast_1d(numbers(coefficients, "coefficients", None))
     if c.ndim != 1 or not 1 <= c.size <= 8:
         raise ArgumentError(f"coefficients have shape {c.shape}; one to eight numbers are needed.")
     return _pieces(axis, [_piece(0.0, c)])

@@ -14,7 +14,7 @@ from scipy.interpolate import PPoly, make_interp_spline
 from flexapod.checks import one_of
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, Array, unit_of
 from flexapod.design.units import QUANTITIES
-from flexapod.errors import ArgumentError
+from flexapod.errors import ArgumentError, shown
 from flexapod.excitation.excitation import Excitation, Use
 from flexapod.excitation.piecewise import sampled_term
 from flexapod.excitation.samples import Samples, Trend, checked, drift, filtered, unwrapped, without_trend
@@ -102,7 +102,9 @@ def time_series(
     >>> round(float(shaken.evaluate(0.5)[0][2]), 6)
     -0.000959
     """
-    names = [axis] if isinstance(axis, str) else list(axis)
+    names = [axis] if isinstance(axis, str) else list(axis) if isinstance(axis, Sequence) else []
+    if not names or len(set(names)) < len(names):
+        raise ArgumentError(f"axis is {shown(axis)}; it must be one axis for each column of values, each once.")
     uses: list[Use] = ["" if recorded == "value" else "motion"] * len(names)
     samples = checked(times, values, names, (), "")
     return _excitation(samples, names, uses, recorded, detrend, highpass)

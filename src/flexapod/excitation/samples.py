@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import one_of, positive
+from flexapod.checks import floats, one_of, positive
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError
 
@@ -45,7 +45,10 @@ class Samples:
 
 def checked(times: ArrayLike, values: ArrayLike, titles: Sequence[str], lines: Sequence[int], file: str) -> Samples:
     """Samples without a hole in them. Raises ArgumentError that names the first bad one."""
-    t, x = np.asarray(times, dtype=float), np.asarray(values, dtype=float)
+    try:
+        t, x = floats(times), floats(values)
+    except (TypeError, ValueError):
+        raise ArgumentError("times and values must hold numbers; one of them is something else.") from None
     if x.ndim == 1:
         x = x[:, None]
     if t.ndim != 1 or x.shape != (t.size, len(titles)):

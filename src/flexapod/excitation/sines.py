@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod._core import TermKind
-from flexapod.checks import number, one_of, positive
+from flexapod.checks import number, numbers, one_of, positive
 from flexapod.conventions import TWO_PI
 from flexapod.errors import ArgumentError
 from flexapod.excitation.excitation import Excitation, one_term
@@ -69,14 +69,17 @@ def harmonic(
     if (omega is None) == (frequency is None):
         raise ArgumentError("give one of omega (rad/s) and frequency (Hz).")
     if omega is None:
-        omega = TWO_PI * np.asarray(frequency, dtype=float)
-    given = (amplitude, omega, phase)
-    if any(np.size(v) == 0 for v in given):
+        omega = TWO_PI * numbers(frequency, "frequency", None)  # type: ignore[arg-type]
+    given = [numbers(v, name, None) for v, name in ((amplitude, "amplitude"), (omega, "omega"), (phase, "phase"))]
+    try:
+        count = np.broadcast_shapes(*(v.shape for v in given), (1,))[-1]
+    except ValueError:
+        shapes = " and ".join(str(v.shape) for v in given)
+        raise ArgumentError(f"amplitude, omega and phase have shapes {shapes}; they must be equal or 1.") from None
+    if count == 0:
         raise ArgumentError("amplitude, omega or phase is empty; at least one sine is needed.")
-    parts = np.broadcast_arrays(*(np.atleast_1d(np.asarray(v, dtype=float)) for v in given))
+    parts = np.broadcast_arrays(*(np.atleast_1d(v) for v in given))
     triples = np.stack([part.ravel() for part in parts], axis=1)
-    if not np.isfinite(triples).all():
-        raise ArgumentError("amplitude, omega or phase holds NaN or infinity; all numbers must be finite.")
     if np.any(triples[:, 1] < 0):
         raise ArgumentError(f"omega is {triples[:, 1].min():.6g} rad/s; it must be >= 0.")
     return one_term(axis, TermKind.sinusoids, triples.ravel())
@@ -134,5 +137,5 @@ def sine_sweep(
     one_of(hold, "hold", _POWERS)
     start, end = positive(omega_start, "omega_start", "rad/s"), positive(omega_end, "omega_end", "rad/s")
     size, time = number(amplitude, "amplitude"), positive(duration, "duration", "s")
-    numbers = np.array([size, start, end, time, float(law == "log"), _POWERS[hold]])
-    return one_term(axis, TermKind.chirp, numbers, use="" if hold == "displacement" else "motion")
+    six = np.array([size, start, end, time, float(law == "log"), _POWERS[hold]])
+    return one_term(axis, TermKind.chirp, six, use="" if hold == "displacement" else "motion")

@@ -17,6 +17,7 @@ from flexapod.excitation.noise_models import HIGH_NOISE, LOW_NOISE
 Quantity = Literal["displacement", "velocity", "acceleration", "force", "moment"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 MOTIONS: tuple[Quantity, ...] = QUANTITIES[:3]
+MOST = 1e100  # of an RMS, whose square must be a number
 LOADS: dict[Quantity, str] = {"force": "N", "moment": "N m"}
 
 VC_SPEED = {"VC-A": 50.0, "VC-B": 25.0, "VC-C": 12.5, "VC-D": 6.25, "VC-E": 3.12, "VC-F": 1.56, "VC-G": 0.78}  # um/s
@@ -112,7 +113,8 @@ def flat_spectrum(rms: float, omega_min: float, omega_max: float, *, quantity: Q
     if not 0 < low < high:
         raise ArgumentError(f"frequencies are {low} to {high} rad/s; the first must be > 0 and below the second.")
     one_of(quantity, "quantity", QUANTITIES)
-    return Spectrum(_Limited(_Flat(positive(rms, "rms") ** 2 / (high - low)), low, high), quantity, low, high)
+    level = _square(positive(rms, "rms"), "rms") / (high - low)
+    return Spectrum(_Limited(_Flat(level), low, high), quantity, low, high)
 
 
 def vc_curve(name: str) -> Spectrum:
@@ -232,8 +234,14 @@ def sea_spectrum(height: float, period: float, gamma: float = 1.0) -> Spectrum:
 
     low, high = 0.3 * peak, 10 * peak  # outside it lies 1e-4 of the energy
     grid = np.geomspace(low, high, 20001)
-    level = float((H / 4) ** 2 / np.trapezoid(_Waves(1.0, peak, gamma)(grid), grid))
+    level = float(_square(H, "height") / 16 / np.trapezoid(_Waves(1.0, peak, gamma)(grid), grid))
     return Spectrum(_Limited(_Waves(level, peak, gamma), low, high), "displacement", low, high, "m")
+
+
+def _square(value: float, name: str) -> float:
+    if value > MOST:
+        raise ArgumentError(f"{name} is {value:g}; it must be at most {MOST:g}.")
+    return value**2
 
 
 @dataclass(frozen=True)

@@ -114,7 +114,7 @@ def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figur
     density, cumulative = dataset[f"psd_{quantity}"], dataset[f"cumulative_{quantity}"]
     along = density.dims[1]
     hertz = dataset.omega.values / TWO_PI
-    groups = [TRANSLATIONS, ROTATIONS] if along == "output" else [LEGS[:3], LEGS[3:]]
+    groups: list[Sequence[str]] = [TRANSLATIONS, ROTATIONS] if along == "output" else [LEGS[:3], LEGS[3:]]
     everything = [name for group in groups for name in group]
     drawn = dict(zip(everything, moves(cumulative.values[-1:]), strict=True))
     figure, grid, groups = _halves(groups, drawn)

@@ -84,11 +84,11 @@ def moves(curves: NDArray[Any]) -> NDArray[Any]:
     return largest > ROUNDING * largest.max(initial=0.0)
 
 
-def panels(figure: Figure, count: int, **shared: bool) -> list[Axes]:
+def panels(figure: Figure, count: int, sharex: bool = False) -> list[Axes]:
     """So many axes, in one row or in two."""
     rows = 1 if count <= 3 else 2
     columns = math.ceil(max(count, 1) / rows)
-    axes = figure.subplots(rows, columns, squeeze=False, **shared).ravel()
+    axes = figure.subplots(rows, columns, squeeze=False, sharex=sharex).ravel()
     for ax in axes[max(count, 1) :]:
         ax.remove()
     above = axes[:count][-columns:]

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from flexapod.checks import positive, whole
+from flexapod.checks import numbers, positive, whole
 from flexapod.conventions import Array, JointModel
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.modes import advised_sampling_time, natural_modes
@@ -21,6 +21,7 @@ from flexapod.simulation.notes import of_recordings, of_results
 from flexapod.simulation.run import SimulationRun
 
 MOST_SAMPLES = 20_000
+MOST_ASKED = 10_000_000
 
 
 def simulate_many(
@@ -152,14 +153,16 @@ def _sample_times(times: ArrayLike | None, duration: float | None, samples: int 
     if times is not None:
         if duration is not None or samples is not None:
             raise ArgumentError("times is given, so duration and samples must not be.")
-        return np.asarray(times, dtype=np.float64)
+        return numbers(times, "times", None)
     if duration is None:
         raise ArgumentError("duration is missing, and no recording gives it; give the length in s, or times.")
     end = positive(duration, "duration", "s")
     if samples is None:
         needed = MOST_SAMPLES if highest <= 0 else int(min(np.ceil(end / advised_sampling_time(highest)), MOST_SAMPLES))
         samples = min(MOST_SAMPLES, max(needed, 1)) + 1
-    return np.linspace(0.0, end, whole(samples, "samples", 2))
+    if whole(samples, "samples", 2) > MOST_ASKED:
+        raise ArgumentError(f"samples is {samples}; at most {MOST_ASKED} instants are kept. Simulate in parts.")
+    return np.linspace(0.0, end, samples)
 
 
 def _end(runs: Sequence[SimulationRun], duration: float | None) -> float | None:

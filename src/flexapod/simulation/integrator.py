@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from flexapod import _core
 from flexapod.checks import number, numbers, one_of, thread_count
 from flexapod.conventions import ROTATIONS, TRANSLATIONS, Array, JointModel
-from flexapod.errors import ArgumentError, PoseError
+from flexapod.errors import ArgumentError, PoseError, shown
 from flexapod.excitation.excitation import Excitation, check_use
 from flexapod.mechanics.inputs import as_joint, single_pose
 from flexapod.mechanics.kinematics import inverse_kinematics
@@ -62,8 +62,12 @@ class IntegratorOptions:
             raise ArgumentError(f"rtol is {self.rtol:g}; it must be between 1e-15 and 1e-2.")
         for name in ("atol", "max_step", "max_steps"):
             value = getattr(self, name)
-            if value is not None and not value > 0:
-                raise ArgumentError(f"{name} is {value}; it must be > 0.")
+            try:
+                holds = value is None or float(value) > 0
+            except (TypeError, ValueError, OverflowError):
+                holds = False
+            if not holds:
+                raise ArgumentError(f"{name} is {shown(value)}; it must be > 0.")
         thread_count(self.threads)
 
 

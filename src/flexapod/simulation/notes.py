@@ -99,6 +99,7 @@ def _exceeded(quantity: LimitedQuantity, times: Array) -> Iterator[str]:
 
 
 def _of_balance(result: xr.Dataset) -> list[str]:
+    """An error that is more than the rounding of the energies stored, which hides the balance of a small motion."""
     if "energy_error" not in result or not result.sizes["time"]:
         return []
     share, error = float(result.energy_error_relative), float(np.abs(result.energy_error).max())

@@ -14,6 +14,7 @@ from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import Linearisation
 from flexapod.mechanics.springs import SPRING_LEG
 
+MOST_LOSS = 1e30  #: of a loss factor
 _BLOCK = 4096  # frequencies solved at a time: bounds the memory
 
 
@@ -35,8 +36,11 @@ def loss_factors(value: ArrayLike) -> Array:
         eta = np.broadcast_to(floats(value), (6,))
     except (TypeError, ValueError) as error:
         raise ArgumentError(f"loss_factor is {value!r}; give one number, or six for the legs") from error
-    if not (np.isfinite(eta).all() and (eta >= 0).all()):
-        raise ArgumentError(f"loss_factor is {value!r}; it must be finite and not negative. Use 0 for lossless legs.")
+    if not ((eta >= 0) & (eta <= MOST_LOSS)).all():
+        raise ArgumentError(
+            f"loss_factor is {value!r}; it must be finite and not negative, and at most {MOST_LOSS:g}. Use 0 for "
+            "lossless legs."
+        )
     return eta
 
 
