@@ -156,7 +156,7 @@ def write_text(values: Values, forms: Iterable[ShortForm] = ()) -> str:
     document = tomlkit.document()
     document.add("name", tomlkit.item(values["name"]))
     for key, value in written(values, forms).items():
-        if key in TEXT_KEYS:
+        if key == "name":
             continue
         *path, last = key.split(".")
         here: Any = document
@@ -164,6 +164,9 @@ def write_text(values: Values, forms: Iterable[ShortForm] = ()) -> str:
             if name not in here:
                 here.add(name, tomlkit.table())
             here = here[name]
+        if key in TEXT_KEYS:
+            here.add(last, tomlkit.item(value))
+            continue
         value = _one_for_all(key, value)
         item = tomlkit.item(value.tolist())
         if value.ndim > 1:

@@ -183,6 +183,13 @@ KEYS: dict[str, Key] = {
     "limits.leg_distance": Key(
         "least distance between leg axes", "length", _ONE, "Leave it out for no limit.", least=0.0
     ),
+    "home.turned.position": Key(
+        "platform frame's origin at home before it is turned about the pivot, base frame", "length", _VECTOR
+    ),
+    "home.turned.angles": Key(
+        "angles of home in the order of rotation_order, the first turn first", "angle", _VECTOR, _ANGLE_REMEDY
+    ),
+    "home.turned.pivot": Key("point that the angles turn the platform about, platform frame", "length", _VECTOR),
     "home.position": Key("platform frame's origin at home, base frame", "length", _VECTOR),
     "home.orientation": Key(
         "roll, pitch, yaw at home about the fixed axes x, y, z",
@@ -209,5 +216,6 @@ KEYS: dict[str, Key] = {
     "cubic.center_in_platform": Key("cube's centre, platform frame, at home", "length", _VECTOR),
 }
 
-TEXT_KEYS = frozenset({"name", "joints.csv"})
+#: Keys whose values are text, with an example of each.
+TEXT_KEYS = {"name": "my hexapod", "joints.csv": "joints.csv", "home.turned.rotation_order": "XYZ"}
 TABLES = frozenset(key.rsplit(".", depth)[0] for key in {*KEYS, *TEXT_KEYS} for depth in range(1, key.count(".") + 1))

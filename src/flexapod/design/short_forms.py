@@ -20,18 +20,18 @@ class ShortForm:
     Parameters
     ----------
     table : str
-        The table: base.circle, platform.circle, cubic, legs.lower.rod or legs.upper.rod.
+        The table: base.circle, platform.circle, cubic, legs.lower.rod, legs.upper.rod or home.turned.
     given : mapping
-        Its numbers by key, SI.
+        Its numbers by key, SI, and text.
     made : mapping
         What they stand for: values by plain key.
     """
 
     table: str
-    given: Mapping[str, Array]
+    given: Mapping[str, Any]
     made: Mapping[str, Array] = field(repr=False)
 
-    def values(self) -> dict[str, Array]:
+    def values(self) -> dict[str, Any]:
         """Its numbers by dotted key."""
         return {f"{self.table}.{key}": value for key, value in self.given.items()}
 
@@ -49,7 +49,8 @@ def standing(forms: Iterable[ShortForm], values: Mapping[str, Any]) -> tuple[Sho
             own = tuple(beside for beside in _BESIDE if any(key.startswith(beside) for key in changed))
             if own:
                 form = replace(form, made={key: made for key, made in form.made.items() if not key.startswith(own)})
-            found.append(form)
+            if form.made:
+                found.append(form)
     return tuple(found)
 
 

@@ -12,12 +12,15 @@ from flexapod.design.schema import KEYS
 from flexapod.design.short_forms import ShortForm
 from flexapod.design.universal_axes import default_axes_of
 from flexapod.design.value_checks import check_value
-from flexapod.errors import DesignError
+from flexapod.errors import DesignError, PoseError
+from flexapod.pose import Pose
+from flexapod.rotations import FIXED
 
 Values = dict[str, Any]  # dotted key -> array in SI units, or text
 
 #: Tables of short keys, and the plain keys that they stand for.
 MAKES = {
+    "home.turned": ("home.position", "home.orientation"),  # first: tables of joints may need the home pose
     "base.circle": ("base.joints",),
     "platform.circle": ("platform.joints",),
     "cubic": ("base.joints", "platform.joints"),
@@ -36,6 +39,7 @@ NEEDS: dict[str, tuple[str | tuple[str, str], ...]] = {
     "circle": ("radius", ("angles", "half_angle")),
     "cubic": (("edge", "height"), "middle"),
     "rod": ("mass", "length"),
+    "turned": ("position", "angles"),
 }
 
 
@@ -46,10 +50,11 @@ def expand(values: Values, directory: Path | None = None) -> tuple[Values, tuple
     names are looked for; without it none is read, so that a text from elsewhere cannot make this computer read files.
     """
     values = dict(values)
-    _expand_table(values, directory)
     given: dict[str, Values] = {}
     made: dict[str, Values] = {}
     for table, keys in MAKES.items():
+        if table == "base.circle":
+            _expand_table(values, directory)
         short = _take(values, table)
         if short:
             _refuse_both(values, table, *keys)
@@ -70,6 +75,8 @@ def expand(values: Values, directory: Path | None = None) -> tuple[Values, tuple
 
 def make(table: str, given: Mapping[str, Any]) -> dict[str, Any]:
     """What the numbers of a short form stand for, by plain key; complex numbers keep their derivatives."""
+    if table == "home.turned":
+        return turned(given)
     if table == "cubic":
         lower, upper = cubic(_edge(given), given["middle"])
         in_base, in_platform = _cube_centers(given)
@@ -83,6 +90,20 @@ def make(table: str, given: Mapping[str, Any]) -> dict[str, Any]:
     plate = table.split(".")[0]
     angles = given["angles"] if "angles" in given else pair_angles(plate, given["half_angle"])
     return {f"{plate}.joints": circle(given["radius"], angles, given.get("height", 0.0)) + 0.0}
+
+
+def turned(given: Mapping[str, Any]) -> dict[str, Array]:
+    """Home from angles of any order about any point of the platform."""
+    try:
+        home = Pose.from_angles(
+            given["position"],
+            given["angles"],
+            given.get("rotation_order", FIXED),
+            pivot=given.get("pivot", (0.0, 0.0, 0.0)),
+        )
+    except PoseError as error:
+        raise DesignError(f"home.turned: {error}") from None
+    return {"home.position": home.position + 0.0, "home.orientation": home.rpy}
 
 
 def circle(radius: Any, angles: Any, height: Any) -> Array:

@@ -43,8 +43,7 @@ def _check(name: str, canonical: str, value: Any, unit: str) -> Any:
     if canonical not in TEXT_KEYS:
         return check_value(name, value, KEYS[canonical], unit)
     if not isinstance(value, str) or not value.strip():
-        example = "my hexapod" if canonical == "name" else "joints.csv"
-        raise DesignError(f'{name} is {shown(value)}; it must be text. Write {name} = "{example}".')
+        raise DesignError(f'{name} is {shown(value)}; it must be text. Write {name} = "{TEXT_KEYS[canonical]}".')
     if not is_text(value):
         raise DesignError(f"{name} is {shown(value)}; it must be text that UTF-8 can hold. Leave such characters out.")
     if len(value) > LONGEST_TEXT:

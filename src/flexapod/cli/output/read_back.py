@@ -26,7 +26,7 @@ def lines(hexapod: Hexapod) -> Iterator[str]:
         if form is not None and form.table not in told:
             told.add(form.table)
             for its, number in form.values().items():
-                yield from _key(its, number)
+                yield from [f"  {its:<{_MARGIN + 2}}{number}"] if its in TEXT_KEYS else _key(its, number)
         if key not in TEXT_KEYS:
             yield from _key(key, value)
         if key.endswith(".inertia"):
