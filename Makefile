@@ -9,7 +9,7 @@ SECONDS ?= 300
 CORE := CMakeLists.txt $(wildcard src/core/*/*)
 CPP  := $(wildcard src/core/*/*.?pp tests/core/*.?pp)
 
-.PHONY: report paper test coverage build lint types bench bench-readme docs validation core-test sanitize portable fuzz dist \
+.PHONY: report paper test coverage build lint types bench bench-readme docs validation core-test sanitize portable fuzz attack dist \
         clean web web-types web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
@@ -98,6 +98,9 @@ portable: build ## the core by other compilers and for Arm, as far as this machi
 fuzz: $(VENV)/.fuzz ## the design reader, for SECONDS; what it finds is kept in build/fuzz
 	mkdir -p build/fuzz
 	cd build/fuzz && PYTHONPATH=$(CURDIR)/src:$(PACKAGES) $(BARE) $(CURDIR)/tests/fuzz/designs.py corpus -max_total_time=$(SECONDS)
+
+attack: build ## bad arguments, command lines, stores and requests, drawn anew, for SECONDS each
+	FLEXAPOD_ATTACK_SECONDS=$(SECONDS) FLEXAPOD_ATTACK_SEED=$${FLEXAPOD_ATTACK_SEED:-$$(date +%s)} $(BIN)/python -m pytest tests/attack
 
 $(VENV)/.fuzz: $(VENV)/.built
 	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[fuzz]'

@@ -54,6 +54,8 @@ def main(arguments: list[str] | None = None) -> int:
     """
     given = sys.argv[1:] if arguments is None else arguments
     streams.speak_plainly()
+    if any("\0" in text for text in given):
+        return _fail("an argument holds a null character, which no name has. Leave it out.", given, "UsageError")
     try:
         with interrupt.terminable():
             code = group.main(given, prog_name="flexapod", standalone_mode=False)

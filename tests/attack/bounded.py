@@ -1,0 +1,47 @@
+"""What the attacks share: how long they last, how they are drawn, and a limit of time for each call."""
+
+import os
+import random
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+#: How long an attack lasts in all; `make attack SECONDS=600` sets it.
+SECONDS = float(os.environ.get("FLEXAPOD_ATTACK_SECONDS", "8"))
+#: What is drawn: the same in every run of the tests.
+SEED = int(os.environ.get("FLEXAPOD_ATTACK_SEED", "1"))
+LIMIT = 60  # s, of one call: far more than any needs, so that only what never ends reaches it
+
+
+class Hang(BaseException):
+    """A call that did not end. No Exception, so that nothing takes it for a failed attempt."""
+
+
+@contextmanager
+def limited(seconds: int = LIMIT) -> Iterator[None]:
+    """Raises Hang in a call that takes longer; only where signals can be used."""
+    if not hasattr(signal, "SIGALRM") or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def end(number, frame):
+        raise Hang
+
+    before = signal.signal(signal.SIGALRM, end)
+    signal.alarm(seconds)
+    try:
+        yield
+    finally:
+        signal.alarm(0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def rounds(share: float, name: str) -> Iterator[random.Random]:
+    """A source of draws for each attack, at least three, for a share of the time; the same for a name in every run."""
+    end = time.monotonic() + share * SECONDS
+    number = 0
+    while number < 3 or time.monotonic() < end:
+        yield random.Random(f"{SEED} {name} {number}")
+        number += 1
