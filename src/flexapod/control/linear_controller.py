@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import _core
-from flexapod.checks import positive, whole
+from flexapod.checks import one_of, positive, whole
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.linearisation import Linearisation
@@ -51,6 +51,11 @@ class Controller:
     dt : float or None
         Sampling time, s; None for a continuous controller.
 
+    Raises
+    ------
+    ArgumentError
+        For a measurement that there is not.
+
     Examples
     --------
     A spring of 100 N/m beside each leg:
@@ -68,6 +73,10 @@ class Controller:
     measures: tuple[Measurement, ...]
     name: str
     dt: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in self.measures:
+            one_of(name, "a measurement of the controller", MEASUREMENTS)
 
     def on(self, linear: Linearisation) -> Controller:
         """Return the controller itself, which is already made for its hexapod."""

@@ -20,9 +20,9 @@ from flexapod.conventions import AXES, LEGS, Array, JointModel, in_mixed_units, 
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, SimulationError, UnstableError, shown
 from flexapod.excitation.excitation import Excitation
-from flexapod.mechanics.inputs import ZERO, single_pose
+from flexapod.mechanics.inputs import ZERO, single_base, single_pose
 from flexapod.mechanics.linearisation import linearise
-from flexapod.pose import Pose, PoseLike, as_pose
+from flexapod.pose import Pose, PoseLike
 from flexapod.simulation.integrator import prepare
 from flexapod.simulation.run import SimulationRun
 
@@ -115,7 +115,7 @@ def simulate_control(
     0.19
     """
     where = single_pose(hexapod, pose)
-    base = None if base is None else as_pose(base, "base")
+    base = single_base(hexapod, base)
     plant = Plant(linearise(hexapod, where, base=base, force=force, moment=moment, joint=joint))
     clock = _clock(plant, controller, duration, after)
     if not isinstance(base_motion, Excitation):

@@ -19,7 +19,7 @@ from flexapod.control.plant import Plant, poles
 from flexapod.conventions import Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError, SingularPoseError
-from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, single_pose, wrench
+from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, single_base, wrench
 from flexapod.mechanics.linearisation import linearise
 from flexapod.pose import Pose, PoseLike
 from flexapod.rotations import rpy_matrix
@@ -156,7 +156,7 @@ def _checked(
     as_hexapod(hexapod)
     as_joint(joint)
     wrench(force, moment, ())
-    return None if base is None else single_pose(hexapod, base, "base")
+    return single_base(hexapod, base)
 
 
 def _damping(plant: Plant, law: Law, gain: float) -> float:

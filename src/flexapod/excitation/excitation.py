@@ -93,6 +93,11 @@ class Excitation:
         How roll, pitch and yaw of a base motion turn the base: about the fixed axes x, y, z in this order, or as the
         components of a rotation vector. Excitations that turn it in different ways cannot be added (ArgumentError).
 
+    Raises
+    ------
+    ArgumentError
+        For another word for the rotation.
+
     See Also
     --------
     simulate : The machine driven by excitations.
@@ -109,6 +114,9 @@ class Excitation:
 
     terms: tuple[Term, ...] = ()
     rotation: Literal["rpy", "vector"] = "rpy"
+
+    def __post_init__(self) -> None:
+        one_of(self.rotation, "rotation", ("rpy", "vector"))
 
     def __add__(self, other: Excitation) -> Excitation:
         if not isinstance(other, Excitation):

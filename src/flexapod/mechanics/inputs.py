@@ -59,6 +59,11 @@ def single_pose(hexapod: Hexapod, pose: PoseLike | None, name: str = "pose") -> 
     return found
 
 
+def single_base(hexapod: Hexapod, base: PoseLike | None) -> Pose | None:
+    """A base as one pose, None where it is left out; raises PoseError for a batch."""
+    return None if base is None else single_pose(hexapod, base, "base")
+
+
 def states(hexapod: Hexapod, platform: MotionLike | None, base: MotionLike | None = None) -> States:
     """Rows for the core. A single pose that no leg can take raises PoseError; in a batch its row is NaN."""
     as_hexapod(hexapod)

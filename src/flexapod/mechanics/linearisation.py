@@ -13,7 +13,7 @@ from flexapod._suggestions import suggests
 from flexapod.conventions import TWO_PI, Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
-from flexapod.mechanics.inputs import ZERO, as_joint, single_pose, states, wrench
+from flexapod.mechanics.inputs import ZERO, as_joint, single_base, single_pose, states, wrench
 from flexapod.mechanics.modes import MODE_WORDS
 from flexapod.mechanics.springs import spring_matrix
 from flexapod.mechanics.state_space import StateSpace, state_space_of
@@ -227,7 +227,7 @@ def linearise(
     >>> tangent.modes().frequency.round(2).tolist()  # Hz
     [4.5, 4.5, 4.71, 4.81, 4.81, 7.99]
     """
-    pose = single_pose(hexapod, pose)
+    pose, base = single_pose(hexapod, pose), single_base(hexapod, base)
     rest = hold(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
     s = states(hexapod, pose, base)
     M, C, K, M_b, C_b, K_b, H = _core.tangent(

@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import _core
 from flexapod.conventions import AXES, Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.mechanics.inputs import as_joint, single_pose, states
+from flexapod.mechanics.inputs import as_joint, single_base, single_pose, states
 from flexapod.mechanics.modes import natural_modes
 from flexapod.mechanics.springs import BY_LEG, spring_matrix
 from flexapod.pose import Pose, PoseLike
@@ -171,7 +171,7 @@ def describe_shapes(
 
     They are scaled so that shape^T J_p shape = 1, which puts as much of a complex shape as can be into its real part.
     """
-    pose = single_pose(hexapod, pose)
+    pose, base = single_pose(hexapod, pose), single_base(hexapod, base)
     s = states(hexapod, pose, base)
     J = _core.equations_of_motion(hexapod.packed, as_joint(joint), s.platform, s.base)[0][0]
     shift = twist_of_center(hexapod, pose)

@@ -10,7 +10,7 @@ from flexapod import _core
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.packing import PLACES
-from flexapod.mechanics.inputs import as_joint, single_pose, states
+from flexapod.mechanics.inputs import as_joint, single_base, single_pose, states
 from flexapod.mechanics.modes import natural_modes
 from flexapod.pose import PoseLike
 
@@ -95,7 +95,7 @@ def frequency_sensitivity(
     >>> round(float(by.platform_mass[0]), 5)  # rad/s per kg
     -0.00322
     """
-    pose = single_pose(hexapod, pose)
+    pose, base = single_pose(hexapod, pose), single_base(hexapod, base)
     s = states(hexapod, pose, base)
     omega = natural_modes(hexapod, pose, base=base, joint=joint).omega
     by_design, by_pose = _core.frequency_derivatives(hexapod.packed, as_joint(joint), s.platform, s.base)

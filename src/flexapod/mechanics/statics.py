@@ -13,7 +13,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import KinematicsError, SingularPoseError
 from flexapod.mechanics.assembly import forward_kinematics
 from flexapod.mechanics.dynamics import inverse_dynamics
-from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, pose_or_home, single_pose, states, wrench
+from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, pose_or_home, single_base, single_pose, states, wrench
 from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.pose import Pose, PoseLike, unpack
 from flexapod.rotations import orthonormal
@@ -164,7 +164,7 @@ def static_equilibrium(
     L_0 = numbers(unstretched_length, "unstretched_length", (6,))
     if (L_0 <= 0).any():
         raise KinematicsError(f"unstretched_length has {L_0.min():.6g} m; every leg length must be > 0 m")
-    base = None if base is None else single_pose(hexapod, base, "base")
+    base = single_base(hexapod, base)
     if start is not None:
         start = single_pose(hexapod, start, "start")
     else:

@@ -25,7 +25,7 @@ from flexapod.mechanics.modes import natural_modes
 from flexapod.optional import needed
 from flexapod.output_files import check_file, completed
 from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, VIEW, entitle
-from flexapod.pose import Pose, PoseLike, as_pose
+from flexapod.pose import Pose, PoseLike
 from flexapod.rotations import rotation_from_vector
 
 if TYPE_CHECKING:
@@ -179,7 +179,9 @@ def animate_simulation(
     """
     as_hexapod(hexapod)
     whole(frames, "frames", 2)
-    film, times = _simulated(dataset, hexapod, Pose(np.zeros(3)) if base is None else as_pose(base, "base"))
+    film, times = _simulated(
+        dataset, hexapod, Pose(np.zeros(3)) if base is None else single_pose(hexapod, base, "base")
+    )
     first, last = window or _last_periods(times, film.platform, frames)
     if not times[0] <= first < last <= times[-1]:
         raise ArgumentError(f"window is {window!r} s; it must ascend within {times[0]:.6g} to {times[-1]:.6g} s")

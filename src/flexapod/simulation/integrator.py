@@ -14,7 +14,7 @@ from flexapod.checks import number, numbers, one_of, thread_count
 from flexapod.conventions import ROTATIONS, TRANSLATIONS, Array, JointModel
 from flexapod.errors import ArgumentError, PoseError, shown
 from flexapod.excitation.excitation import Excitation, check_use
-from flexapod.mechanics.inputs import as_joint, single_pose
+from flexapod.mechanics.inputs import as_joint, single_base, single_pose
 from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.mechanics.statics import hold
 from flexapod.pose import Motion, Pose, as_pose
@@ -140,7 +140,7 @@ class Prepared(NamedTuple):
 def prepare(run: SimulationRun, until: float, joint: JointModel) -> Prepared:
     """One run to the time `until`, s, as the core takes it."""
     pose = single_pose(run.hexapod, run.pose)
-    base = None if run.base is None else single_pose(run.hexapod, run.base, "base")
+    base = single_base(run.hexapod, run.base)
     force, force_history = _split(run.force, "force")
     moment, moment_history = _split(run.moment, "moment")
     if run.unstretched_length is None:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, shown
 from flexapod.excitation.excitation import Excitation
-from flexapod.mechanics.inputs import as_hexapod, single_pose
+from flexapod.mechanics.inputs import as_hexapod, single_base, single_pose
 from flexapod.pose import Motion, Pose
 
 Load = Excitation | ArrayLike | None
@@ -81,8 +81,7 @@ class SimulationRun:
             raise ArgumentError(
                 "base is an Excitation; it must be the pose of the base at rest. Did you mean base_motion?"
             )
-        if self.base is not None:
-            object.__setattr__(self, "base", single_pose(self.hexapod, self.base, "base"))
+        object.__setattr__(self, "base", single_base(self.hexapod, self.base))
         for name in ("base_motion", "leg_command"):
             value = getattr(self, name)
             if not (value is None or isinstance(value, Excitation)):

@@ -128,7 +128,7 @@ class ResponsePanel {
   private show(): void {
     const { answer, whole, hertz } = this
     if (!answer) return
-    this.note.textContent = ''
+    this.note.textContent = answer.caution
     this.output.hidden = !whole
     this.grid.classList.toggle('one', whole)
     const phase = page.panels === 'phase'
