@@ -273,7 +273,7 @@ class Limits(Value):
             wrong = np.flatnonzero(pairs[:, 0] >= pairs[:, 1])
             if wrong.size:
                 place = f"[{wrong[0]}]" if len(pairs) > 1 else ""
-                low, high = told_apart(*pairs[wrong[0]].tolist(), (6, 6))
+                low, high = told_apart(float(pairs[wrong[0], 0]), float(pairs[wrong[0], 1]), (6, 6))
                 raise DesignError(
                     f"limits.leg_length{place} is [{low}, {high}] m; the first must be < the second. "
                     "Give the shortest length first."

@@ -63,7 +63,7 @@ def expand(values: Values, directory: Path | None = None) -> tuple[Values, tuple
             made[table] = {key: check_value(key, value, KEYS[key]) for key, value in make(table, short).items()}
             values |= made[table]
     if "cubic" in made and not {"home.position", "home.orientation"} & values.keys():
-        in_base, in_platform = _cube_centers(given["cubic"])
+        in_base, in_platform = cube_centers(given["cubic"])
         made["cubic"] |= {"home.position": in_base - in_platform + 0.0, "home.orientation": np.zeros(3)}
         values |= made["cubic"]
     if {"base.joints", "platform.joints"} <= values.keys() and "base.universal_axes" not in values:
@@ -79,7 +79,7 @@ def make(table: str, given: Mapping[str, Any]) -> dict[str, Any]:
         return turned(given)
     if table == "cubic":
         lower, upper = cubic(_edge(given), given["middle"])
-        in_base, in_platform = _cube_centers(given)
+        in_base, in_platform = cube_centers(given)
         return {"base.joints": lower + in_base, "platform.joints": upper + in_platform}
     if table.endswith(".rod"):
         center, inertia = rod(
@@ -158,7 +158,7 @@ def _edge(given: Mapping[str, Any]) -> Any:
     return given["edge"] if "edge" in given else given["height"] * np.sqrt(3)
 
 
-def _cube_centers(given: Mapping[str, Any]) -> tuple[Any, Any]:
+def cube_centers(given: Mapping[str, Any]) -> tuple[Any, Any]:
     """The cube's centre in the base frame, by default with the base joints at z = 0, and in the platform frame."""
     lower, _ = cubic(_edge(given), given["middle"])
     in_base = given.get("center_in_base", np.array([0.0, 0.0, 1.0]) * -lower[0, 2])

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from flexapod.conventions import Array
 from flexapod.design import layout
+from flexapod.design.form_numbers import Makers, with_numbers
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, DesignError, shown
 from flexapod.optimisation.design_results import VariableRange
@@ -34,13 +35,17 @@ class DesignMap:
         self.parameters = [p for part in self.parts for p in part.parameters]
         if not self.parameters:
             raise ArgumentError("variables holds nothing that varies; give at least one pair of bounds (least, most).")
-        self._check_apart()
-        self.changed = np.zeros(layout.SIZE, dtype=bool)
+        self._every = np.zeros(layout.FULL, dtype=bool)
         for part in self.parts:
-            self.changed[part.touched] = True
+            self._every[part.touched] = True
+        self._makers = Makers(hexapod, self._every.copy())
+        self._check_apart()
+        for form in self._makers.forms:
+            self._every[self._makers.touched(form)] = True
+        self.changed = self._every[: layout.SIZE]
         self._axes = layout.PLACES["base.universal_axes"]
         self._turned = self.changed[self._axes].any(axis=1)
-        self._numbers = layout.numbers(hexapod)
+        self._numbers = layout.with_short_forms(hexapod)
 
     def _check_apart(self) -> None:
         owner: dict[int, str] = {}
@@ -57,6 +62,12 @@ class DesignMap:
                 if p.name in names:
                     raise ArgumentError(f"two variables are named {p.name!r}. Give one of them another name.")
                 names.add(p.name)
+        for form in self._makers.forms:
+            both = [number for number in self._makers.touched(form).tolist() if number in owner]
+            if both:
+                raise ArgumentError(
+                    f"{owner[both[0]]} and [{form.table}] both set {layout.describe(both[0])}. Leave one of them out."
+                )
 
     @property
     def names(self) -> list[str]:
@@ -79,7 +90,10 @@ class DesignMap:
         return np.concatenate([part.start() for part in self.parts])
 
     def numbers(self, x: Any) -> Any:
-        """The design's numbers, real or complex as x is."""
+        """The design's numbers, real or complex as x is, without those of short forms."""
+        return self._all_numbers(x)[: layout.SIZE]
+
+    def _all_numbers(self, x: Any) -> Any:
         x = np.asarray(x)
         found = self._numbers.astype(np.result_type(x, np.float64))
         first = 0
@@ -87,6 +101,7 @@ class DesignMap:
             count = len(part.parameters)
             part.put(x[first : first + count], found)
             first += count
+        self._makers.make(found)
         for axis in self._axes[self._turned]:
             with np.errstate(invalid="ignore"):  # an axis of length zero is NaN, which makes no hexapod
                 found[axis] = found[axis] / np.sqrt((found[axis] ** 2).sum())
@@ -100,10 +115,10 @@ class DesignMap:
 
     def hexapod_at(self, x: Array) -> Hexapod:
         """Raises DesignError where the numbers are no hexapod."""
-        numbers = self.numbers(x)
-        if not np.isfinite(numbers[self.changed]).all():
+        numbers = self._all_numbers(x)
+        if not np.isfinite(numbers[self._every]).all():
             raise DesignError("the variables give numbers that are not finite")
-        return layout.with_numbers(self.hexapod, numbers, self.changed)
+        return with_numbers(self.hexapod, numbers, self._every)
 
     def values(self, x: Array) -> dict[str, float]:
         """The variables by name, in the unit of their keys."""

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod.conventions import TRANSLATIONS, Array
+from flexapod.design.form_numbers import Makers
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.layout import HOME, PLACES, numbers
+from flexapod.design.layout import FULL, HOME, PLACES, describe, with_short_forms
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.inputs import as_hexapod
 from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, UncertainRange, quantile
@@ -25,7 +27,7 @@ class Ensemble:
                 f"uncertain {f'holds {shown(wrong[0])}' if wrong else 'is empty'}; give Uncertain or Payload."
             )
         self.hexapod = as_hexapod(hexapod)
-        self.base = numbers(hexapod)[: HOME.start]
+        self.base = with_short_forms(hexapod)
         every = [p for u in uncertain for p in u.parameters(hexapod)]
         self.payload = [p for p in every if p.index is None]
         self.parameters = [p for p in every if not p.fixed]
@@ -36,6 +38,21 @@ class Ensemble:
         if not names:
             raise ArgumentError("nothing is uncertain: every range is one number.")
         self.names = names
+        changed = np.zeros(FULL, dtype=bool)
+        for p in self.parameters:
+            if p.index is not None:
+                changed[p.index] = True
+        self._makers = Makers(hexapod, changed)
+        self._check_apart(changed)
+
+    def _check_apart(self, changed: NDArray[np.bool_]) -> None:
+        """Raises ArgumentError for a number that is uncertain itself and made by a short form of which one is."""
+        for form in self._makers.forms:
+            both = [number for number in self._makers.touched(form).tolist() if changed[number]]
+            if both:
+                raise ArgumentError(
+                    f"{describe(both[0])} and [{form.table}], which makes it, are both uncertain. Take one."
+                )
 
     def designs(self, u: Array) -> Array:
         """Designs (s, n) at points u (s, p) of the unit cube."""
@@ -50,6 +67,10 @@ class Ensemble:
                     found[:, p.index] = self.base[p.index] * away[:, None]
                 else:
                     found[:, p.index] += away[:, None] * p.width
+        if self._makers.forms:
+            for row in found:
+                self._makers.make(row)
+        found = found[:, : HOME.start]
         if load:
             _add_payload(
                 found, load["payload.mass"], np.stack([load[f"payload.{axis}"] for axis in TRANSLATIONS], axis=1)

@@ -12,7 +12,7 @@ from flexapod.checks import one_of, positive
 from flexapod.conventions import TRANSLATIONS, Array
 from flexapod.design import layout
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.layout import entries, numbers
+from flexapod.design.layout import entries
 from flexapod.errors import ArgumentError
 
 Distribution = Literal["uniform", "normal", "triangular", "lognormal"]
@@ -77,7 +77,7 @@ class Uncertain:
         index, rule, unit = entries(self.target)
         if self.target.startswith("home"):
             raise ArgumentError("the home pose is where the platform is told to stand, not an uncertain number.")
-        value = numbers(hexapod)[index]
+        value = layout.own(hexapod, index, self.target)
         if self.relative and not value.any():
             raise ArgumentError(
                 f"{self.target} is zero, so a share of it is nothing. Give relative=False and an amount."

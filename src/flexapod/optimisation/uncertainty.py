@@ -12,6 +12,7 @@ from flexapod import _core
 from flexapod.checks import thread_count, whole
 from flexapod.conventions import Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.layout import HOME
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.optimisation.ensemble import Ensemble
@@ -186,7 +187,7 @@ class _Index:
         self.poses = Pose.from_rpy(*rows.T).packed
 
     def nominal(self, name: str) -> float:
-        found = float(self.of(self.ensemble.base[None])[0])
+        found = float(self.of(self.ensemble.base[None, : HOME.start])[0])
         if found <= 0:
             raise ArgumentError(f"the index of {name!r} itself is zero at these poses; choose some that it can hold.")
         return found

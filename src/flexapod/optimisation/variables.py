@@ -87,9 +87,7 @@ class Variable:
         if self.kind != "scale":
             for (_, rule, _), scale in found:
                 self._check_range(parameter, rule, scale)
-        base = layout.numbers(hexapod)[index]
-        if np.isnan(base).any():
-            raise ArgumentError(f"{self._name} changes the home pose, but {hexapod.name!r} names none. Add [home].")
+        base = layout.own(hexapod, index, self._name)
         return [AffineMap(parameter, index, factor, base, self.kind)]
 
     @property
@@ -190,6 +188,8 @@ class JointCircle:
         """
         one_of(self.plate, "plate of a joint circle", ("base", "platform"))
         one_of(self.axes, "axes of a joint circle", ("tangent", "keep"))
+        if self._of_the_design(hexapod):
+            return self._variables(hexapod)
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints
         third, side, own = _pairs(joints)
         for part in self.units:
@@ -201,6 +201,22 @@ class JointCircle:
         tangent = keeps_tangents(hexapod.base_joints, hexapod.platform_joints, hexapod.home)
         follow = tangent & (self.plate == "base" and self.axes == "tangent")
         return [CircleMap(self.plate, four, third, side, follow)]
+
+    def _of_the_design(self, hexapod: Hexapod) -> bool:
+        """Whether the design has this circle and its joints stay where they are on it."""
+        given = [getattr(self, name) is not None for name in ("half_angle", "turn")]
+        pairs = all(np.shape(part) == (2,) for part in (self.radius, self.height) if part is not None)
+        return not any(given) and pairs and any(form.table == f"{self.plate}.circle" for form in hexapod.short_forms)
+
+    def _variables(self, hexapod: Hexapod) -> list[Part]:
+        """Radius and height as numbers of the design's own circle, on which the joints may be anywhere."""
+        found: list[Part] = []
+        for name in ("radius", "height"):
+            given, unit = getattr(self, name), self.units.get(name)
+            if given is not None:
+                key = f"{self.plate}.circle.{name}" + (f"_{unit}" if unit else "")
+                found += Variable(key, *given).parts(hexapod)
+        return found
 
     def _part(self, name: str, own: float) -> Parameter | float:
         """A variable between its bounds, or the number that holds this part."""

@@ -54,8 +54,8 @@ optimise_options = common.stack(
         required=True,
         metavar="KEY=LEAST:LARGEST",
         help="A variable: a key of the design file, as platform.mass=20:40 or platform.joints_mm[:][2]=-5:5. +KEY adds "
-        "to what is there, *KEY scales it, A,-B ties B to minus A. base.circle.radius, .half_angle, .turn, .height and "
-        "the same of the platform keep three symmetric pairs of joints. Repeatable.",
+        "to what is there, *KEY scales it, A,-B ties B to minus A. base.circle.half_angle and "
+        ".turn, and the same of the platform, make three symmetric pairs of joints. Repeatable.",
     ),
     click.option(
         "--keep",

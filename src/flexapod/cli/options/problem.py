@@ -32,7 +32,7 @@ def variables(texts: Iterable[str]) -> list[Variable | JointCircle]:
         kind = {"+": "add", "*": "scale"}.get(keys[:1], "set")
         keys = keys.lstrip("+*")
         plate, _, part = keys.partition(".circle.")
-        if part:
+        if part and kind == "set" and not part.startswith("angles"):
             name, unit = _named("--vary", part, CIRCLE)
             parts = circles.setdefault(plate, {"units": {}})
             parts[name] = low, high
