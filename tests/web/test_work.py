@@ -286,3 +286,10 @@ def test_only_pages_are_answered() -> None:
 def test_numbers_that_json_has_not_are_null() -> None:
     found = as_json({"a": np.array([1.0, np.nan]), "b": np.float64(np.inf), "c": (1, "x"), "d": np.arange(2)})
     assert found == b'{"a":[1.0,null],"b":null,"c":[1,"x"],"d":[0,1]}'
+
+
+def test_what_is_told_of_a_recording_reaches_the_page(job: Work) -> None:
+    """That it begins off zero, for instance."""
+    csv = "time,z_mm\n" + "\n".join(f"{t},{1 + t}" for t in np.linspace(0, 0.02, 50))
+    run = next(m for m, _ in job("time", kind="csv", csv=csv, duration=0.02) if m["type"] == "run")
+    assert "The recording of base_motion z begins at 0.001 m in its first row, off zero" in run["words"]

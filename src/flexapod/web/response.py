@@ -15,6 +15,7 @@ from flexapod.web import requests
 from flexapod.web.answers import FrequencyResponse, ShakenBase
 from flexapod.web.geometry import farthest
 
+WRENCH = ("Fx", "Fy", "Fz", "Mx", "My", "Mz")  #: names of its components
 QUANTITIES = ("absolute", "relative", "compliance", "command", "leg_force")
 POINTS = 400  #: frequencies over the range, beside those at the resonances
 ABOVE = 3.0  #: highest frequency, over the highest natural frequency
@@ -33,7 +34,7 @@ def response(asked: dict[str, Any]) -> FrequencyResponse:
     _, outputs, inputs = values.dims
     z = np.moveaxis(values.to_numpy(), 0, -1)
     legs = [f"leg {n}" for n in LEGS]
-    names = {"leg": legs, **{axis: list(AXES) for axis in ("output", "base", "wrench")}}
+    names = {"leg": legs, "wrench": list(WRENCH), **{axis: list(AXES) for axis in ("output", "base")}}
     units = {"leg": ["N" if quantity == "leg_force" else "m"] * 6, **_units(data)}
     return {
         "omega": omega,

@@ -64,7 +64,8 @@ def simulation(spec: dict[str, Any]) -> Iterator[Message]:
     rows = _rows(data)
     steps = f"{rows[-1, 0]:.4g} s in {data.attrs['steps']} steps." if "steps" in data.attrs else ""
     rise = RISING.format(RAMP * duration) if spec.get("kind", KINDS[0]) in ("harmonic", "sweep") else ""
-    yield _run(question, rows, " ".join(filter(None, [*words, steps, rise]))), float32(rows)
+    told = [word[0].upper() + word[1:] for word in (*words, steps, rise) if word]
+    yield _run(question, rows, " ".join(told)), float32(rows)
 
 
 def _with_progress(compute: Callable[[Callable[[float], object]], Any]) -> Generator[Message, None, Any]:

@@ -115,7 +115,7 @@ export class LinePlot {
     c.strokeStyle = c.fillStyle = colour
     c.setLineDash([2 * devicePixelRatio, 3 * devicePixelRatio])
     c.font = `${10 * devicePixelRatio}px system-ui, sans-serif`
-    let last = -Infinity
+    const taken: number[] = [] // where the names of each row end
     for (const mark of this.shown?.marks ?? lines.marks) {
       const x = u.valToPos(mark.at, 'x', true)
       if (x < u.bbox.left || x > u.bbox.left + u.bbox.width) continue
@@ -123,9 +123,10 @@ export class LinePlot {
       c.moveTo(x, u.bbox.top)
       c.lineTo(x, u.bbox.top + u.bbox.height)
       c.stroke()
-      if (x - last > 14 * devicePixelRatio)
-        c.fillText(mark.name, x + 2 * devicePixelRatio, u.bbox.top + 10 * devicePixelRatio)
-      last = x
+      const free = taken.findIndex((end) => end < x)
+      const row = free < 0 ? taken.length : free
+      taken[row] = x + 4 * devicePixelRatio + c.measureText(mark.name).width
+      c.fillText(mark.name, x + 2 * devicePixelRatio, u.bbox.top + (10 + 10 * row) * devicePixelRatio)
     }
     c.restore()
   }

@@ -7,6 +7,7 @@ export interface Scale {
   min: number
   max: number
   log?: boolean
+  every?: number // step of the ticks, where a round number is not it
 }
 
 /** Where a value lies along an axis, 0 to 1. */
@@ -21,20 +22,26 @@ export function valueAt(scale: Scale, t: number): number {
 
 /** Round values within a range, about `wanted` of them. */
 export function ticks(scale: Scale, wanted: number): number[] {
-  const { min, max } = scale
+  const { min, max, every } = scale
   if (!(max > min)) return [min]
+  if (every && (max - min) / every <= 2 * wanted) return steps(min, max, every)
   if (scale.log && max / min >= 8) {
     const decades = Math.log10(max / min)
-    const every = Math.max(1, Math.ceil(decades / wanted))
-    const steps = decades <= 1.5 ? [1, 2, 5] : decades <= 2.5 ? [1, 3] : [1]
+    const jump = Math.max(1, Math.ceil(decades / wanted))
+    const within = decades <= 1.5 ? [1, 2, 5] : decades <= 2.5 ? [1, 3] : [1]
     const found: number[] = []
-    for (let e = Math.floor(Math.log10(min)); e <= Math.ceil(Math.log10(max)); e += every)
-      for (const s of steps) found.push(s * 10 ** e)
+    for (let e = Math.floor(Math.log10(min)); e <= Math.ceil(Math.log10(max)); e += jump)
+      for (const s of within) found.push(s * 10 ** e)
     return found.filter((v) => v >= min * 0.999999 && v <= max * 1.000001)
   }
   const rough = (max - min) / wanted
   const power = 10 ** Math.floor(Math.log10(rough))
   const step = power * ([1, 2, 5, 10].find((s) => s * power >= rough) ?? 10)
+  return steps(min, max, step)
+}
+
+/** Multiples of a step within a range. */
+function steps(min: number, max: number, step: number): number[] {
   const found: number[] = []
   for (let i = Math.ceil(min / step - 1e-9); i * step <= max + 1e-9 * step; i++) found.push(i * step)
   return found

@@ -23,6 +23,14 @@ function quantity(s: Snapshot): [OptionalNumber[] | null, string] {
   return [null, '']
 }
 
+/** What to do where legs have no colours. */
+function missing(): string {
+  if (page.colour === 'plain') return ''
+  return page.colour === 'strain' && page.mode < 0
+    ? 'choose a mode to see its strain energy by leg'
+    : 'not available at this pose'
+}
+
 export function legColours(s: Snapshot): LegColours | null {
   const [values, label] = quantity(s)
   if (!values || values.some((v) => v === null)) return null
@@ -43,7 +51,8 @@ export function colourBar(): { element: HTMLElement; show(shown: LegColours | nu
   return {
     element,
     show(shown) {
-      element.hidden = !shown
+      element.querySelector<HTMLElement>('.strip')!.hidden = !shown
+      if (!shown) label.textContent = missing()
       if (!shown) return
       const context = strip.getContext('2d')!
       for (let i = 0; i < 128; i++) {

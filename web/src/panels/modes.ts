@@ -12,6 +12,7 @@ import { percent, sig } from '../widgets/format'
 import { dataTable, row, titleBar } from '../widgets/layout'
 
 const SWINGS = 0.7 // of the animation per second
+const COUPLED = 'below zero where directions are coupled, and another has more than its part'
 const STILL = 'Drawn still, at its greatest displacement: this computer asks for reduced motion.'
 const LEGS = [1, 2, 3, 4, 5, 6]
 const COLUMNS = [
@@ -73,7 +74,7 @@ function modeRow(s: Snapshot, i: number): HTMLElement {
   return element
 }
 
-function bars(label: string, names: readonly string[], shares: OptionalNumber[]): HTMLElement {
+function bars(label: string, names: readonly string[], shares: OptionalNumber[], negative = ''): HTMLElement {
   const rows = names.map((name, i) => {
     const bar = h('span', { class: 'fill' })
     bar.style.width = `${100 * Math.min(1, Math.max(0, shares[i] ?? 0))}%`
@@ -81,7 +82,8 @@ function bars(label: string, names: readonly string[], shares: OptionalNumber[])
     const value = h('td', { class: 'value' }, percent(shares[i]))
     return h('tr', {}, h('th', { scope: 'row' }, name), h('td', { class: 'track' }, bar), value)
   })
-  return h('table', { class: 'bars' }, h('caption', {}, label), h('tbody', {}, ...rows))
+  const why = shares.some((share) => (share ?? 0) < -0.005) ? `; ${negative}` : ''
+  return h('table', { class: 'bars' }, h('caption', {}, label + why), h('tbody', {}, ...rows))
 }
 
 /** What a mode is made of, and how it is drawn. */
@@ -99,7 +101,7 @@ function details(s: Snapshot, mode: number, drawn: number, still: boolean): HTML
     h(
       'div',
       { class: 'pair' },
-      bars('Kinetic energy by direction', COORDINATES, s.modes[mode].share),
+      bars('Kinetic energy by direction', COORDINATES, s.modes[mode].share, COUPLED),
       bars(
         'Strain energy by leg',
         LEGS.map((n) => `leg ${n}`),

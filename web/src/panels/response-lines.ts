@@ -3,7 +3,7 @@
 import type { Lines } from '../charts/line-figure'
 import { span } from '../charts/scale'
 import { categories, DASHES } from '../charts/theme'
-import type { FrequencyResponse } from '../state/answers'
+import type { FrequencyResponse, OptionalNumber } from '../state/answers'
 
 export const TURN = 2 * Math.PI
 
@@ -15,22 +15,30 @@ export interface Display {
 
 /** The unit of an output over that of the inputs; "1" if they are the same. */
 function unitOf(response: FrequencyResponse, output: number): string {
-  const units = [...new Set(response.input_units)].map((u) => `${response.output_units[output]}/${u}`)
-  return units.map((unit) => unit.replace(/^(\S+)\/\1$/, '1')).join(' or ')
+  const over = response.output_units[output]
+  const units = [...new Set(response.input_units)].map((u) =>
+    u === over ? '1' : `${over}/${u.includes(' ') ? `(${u})` : u}`,
+  )
+  return units.join(' or ')
+}
+
+/** A phase, broken where it goes from one end of its range to the other. */
+function unwrapped(phase: OptionalNumber[]): OptionalNumber[] {
+  return phase.map((v, i) => (i > 0 && Math.abs((v ?? 0) - (phase[i - 1] ?? 0)) > 180 ? null : v))
 }
 
 /** The lines of one output, one for each input. */
 export function responseLines(response: FrequencyResponse, output: number, { phase, hertz }: Display): Lines {
   const { omega, outputs, inputs } = response
   const name = outputs[output]
-  const values = (phase ? response.phase : response.magnitude)[output]
+  const values = phase ? response.phase[output].map(unwrapped) : response.magnitude[output]
   const [min, max] = phase ? [-190, 190] : span(values, true)
   const at = omega.map((w) => (hertz ? w / TURN : w))
   const label = phase ? `${name}: phase, °` : `${name}, ${unitOf(response, output)}`
   return {
     title: `${name} (${response.output_units[output]}) ${phase ? 'phase' : 'amplitude'}`,
     x: { label: `frequency, ${hertz ? 'Hz' : 'rad/s'}`, min: at[0], max: at[at.length - 1], log: true },
-    y: { label, min, max, log: !phase },
+    y: { label, min, max, log: !phase, every: phase ? 90 : undefined },
     at,
     series: inputs.map((input, i) => ({ name: input, colour: categories()[i], dash: DASHES[i], values: values[i] })),
     marks: response.modes.map((m) => ({ at: hertz ? m.omega / TURN : m.omega, name: m.name })),

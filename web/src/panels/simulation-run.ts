@@ -8,6 +8,7 @@ import { COORDINATES, type SimulationRun } from '../state/answers'
 
 const COLUMNS = 25 // time, displacements of platform and base, leg lengths, leg forces: 1 + 6 + 6 + 6 + 6
 const [PLATFORM, BASE] = [1, 7] // first column of each displacement
+const ROUNDING = 1e-6 // mm, mrad or N: what is below is an error of rounding
 const LEGS = [1, 2, 3, 4, 5, 6]
 
 export interface Run extends SimulationRun {
@@ -63,11 +64,13 @@ export function runLines({ rows, count }: Run): Lines[] {
   const x = { label: 'time, s', min: 0, max: at[count - 1] }
   return PLOTS.map(({ title, label, names, columns, factor, colours }) => {
     const values = columns.map((c) => column(c, factor))
-    const [min, max] = span(values, false, 0, 1e-6) // a nanometre: rounding errors are drawn as a straight line
+    const none = values.every((series) => series.every((v) => Math.abs(v) < ROUNDING))
+    const [min, max] = none ? [-1, 1] : span(values, false, 0, ROUNDING) // rounding is drawn as a straight line
+    const axis = none ? `${label}: none` : label
     const series = names.map((name, k) => {
       return { name, colour: categories()[colours[k]], dash: DASHES[k], values: values[k] }
     })
-    return { title, x, y: { label, min, max }, at, series, marks: [] }
+    return { title, x, y: { label: axis, min, max }, at, series, marks: [] }
   })
 }
 

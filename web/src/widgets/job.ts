@@ -14,7 +14,7 @@ export class Runner {
   private running: AbortController | null = null
 
   constructor() {
-    this.cancel.disabled = true
+    this.cancel.hidden = true
     this.bar.hidden = true
   }
 
@@ -23,7 +23,7 @@ export class Runner {
     this.running?.abort()
     const mine = new AbortController()
     this.running = mine
-    this.cancel.disabled = false
+    this.cancel.hidden = false
     this.bar.removeAttribute('value')
     this.bar.hidden = false
     this.words.classList.remove('wrong')
@@ -41,7 +41,7 @@ export class Runner {
     } finally {
       if (this.running === mine) {
         this.running = null
-        this.cancel.disabled = true
+        this.cancel.hidden = true
         this.bar.hidden = true
       }
     }
