@@ -152,7 +152,7 @@ def test_the_cloud_is_of_the_poses_within_the_limits():
     assert np.array_equal(y, found.omega_1.values[inside])
     assert len(plots_sweep.index_scatter(found, all_poses=True).lines[0].get_data()[0]) == 3000
     ax = plots_sweep.index_scatter(found)
-    assert f"{inside.sum()} poses within the limits of 3000" in ax.get_title()
+    assert f"{inside.sum()} poses within the limits, of 3 000" in ax.get_title()
     assert ax.get_title().startswith("motion-base")
     low, high = ax.get_ylim()  # the data fill the axis
     assert np.ptp(y) > 0.85 * (high - low)

@@ -87,8 +87,9 @@ def index_scatter(
     data_range(ax, np.array([low[0], high[0]]))
     ax.set_xlabel(LABELS["cond_H"])
     ax.set_ylabel(LABELS["omega_1"])
-    poses = f"{cloud.count:,} poses".replace(",", " ")
-    entitle(ax, sweep, f"{poses} within the limits of {sweep['omega_1'].size}" if cloud.counted.within else poses)
+    drawn, all_of_them = (f"{count:,}".replace(",", " ") for count in (cloud.count, sweep["omega_1"].size))
+    within = f" within the limits, of {all_of_them}" if cloud.counted.within else ""
+    entitle(ax, sweep, f"{drawn} poses{within}")
     return ax
 
 
