@@ -53,6 +53,7 @@ WORDS = {
     **dict.fromkeys(("leg_forces", "leg_force"), "hold (at rest) or inverse_dynamics"),
     **dict.fromkeys(("leg_lengths", "leg_length", "ik"), "inverse_kinematics"),
     "fk": "forward_kinematics",
+    **dict.fromkeys(("assemblies", "assembly_modes", "all_poses"), "forward_kinematics_all"),
     "kinematics": _KINEMATICS,
     "dynamics": _DYNAMICS,
     "reactions": "joint_reactions",

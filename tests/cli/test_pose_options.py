@@ -124,3 +124,12 @@ def test_waypoints_in_m_and_mm(result, name):
     found = result("path", "motion-base", case("recordings", f"{name}.csv"))
     assert found["least_index_rad_s"] > 20
     assert found["duration_s"] in (1.0, 2.0)
+
+
+def test_planned_waypoints_say_how_they_turn(result, tmp_path):
+    pytest.importorskip("ompl")
+    ends = ("--from", 0, 0, 2.39, 0, 0, 0, "--to", 0.05, 0, 2.42, 3, 5, 10)
+    found = result("path", "motion-base", *ends, "--bound", 20, "--rotation-order", "ZXZ", "--out", tmp_path)
+    again = result("path", "motion-base", tmp_path / "waypoints.csv")
+    assert (tmp_path / "waypoints.csv").read_text().startswith("t_s,x_m,y_m,z_m,angle_1_deg,")
+    assert again["least_index_rad_s"] == pytest.approx(found["least_index_rad_s"], rel=1e-9)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from flexapod.cli.options import pose_columns
 from flexapod.conventions import AXES
 from flexapod.design.units import QUANTITIES
@@ -33,7 +31,7 @@ def read(file: Path, ends: Ends, origin: Pose | None = None) -> Trajectory:
 
 
 def written(path: Trajectory) -> str:
-    """A path as the text of a file."""
-    table = np.column_stack([path.times, path.waypoints.position, np.degrees(path.waypoints.rpy)])
-    lines = (",".join(f"{value:.12g}" for value in row) for row in table)
-    return "\n".join([",".join(COLUMNS), *lines]) + "\n"
+    """A path as the text of a file, which says how its angles turn."""
+    columns = {"t_s": path.times, **pose_columns.written(path.waypoints)}
+    rows = zip(*(pose_columns.cells(values) for values in columns.values()), strict=True)
+    return "\n".join([",".join(columns), *(",".join(row) for row in rows)]) + "\n"

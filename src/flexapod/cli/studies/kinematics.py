@@ -134,12 +134,6 @@ def _lines(lines: np.ndarray) -> str:
 
 
 def to_csv(found: Conversion) -> str:
-    """The rows as the text of a file; numbers with all their digits, nothing where there is none."""
-    rows = zip(*(_cells(values) for values in found.columns.values()), strict=True)
+    """The rows as the text of a file."""
+    rows = zip(*(pose_columns.cells(values) for values in found.columns.values()), strict=True)
     return "\n".join([",".join(found.columns), *(",".join(row) for row in rows)]) + "\n"
-
-
-def _cells(values: np.ndarray) -> list[str]:
-    if values.dtype.kind == "f":
-        return ["" if np.isnan(value) else repr(float(value) + 0.0) for value in values]
-    return [str(value) for value in values]
