@@ -145,3 +145,10 @@ def test_all_joints_of_a_plate_in_one_place_are_refused(plate):
     with pytest.raises(fx.DesignError, match=rf"{plate}.joints\[0\] to {plate}.joints\[5\] coincide") as caught:
         fx.load(GENHEX).replace({f"{plate}.joints": [[0.1, 0.2, 0.3]] * 6, "base.universal_axes": [[1, 0, 0]] * 6})
     assert "three places" in str(caught.value)
+
+
+def test_numbers_of_legs_that_meet_stand_together():
+    texts = [text.get_text() for text in fx.plots.machine(fx.load(OCTAHEDRON)).texts]
+    assert [text for text in texts if text[0].isdigit()] == ["1, 6", "2, 3", "4, 5"]
+    texts = [text.get_text() for text in fx.plots.machine(fx.load("motion-base")).texts]
+    assert [text for text in texts if text[0].isdigit()] == list("123456")

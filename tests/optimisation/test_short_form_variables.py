@@ -132,3 +132,11 @@ def test_commands_take_the_keys_of_the_file(run, result, tmp_path):
     assert {form.table for form in better.short_forms} == {form.table for form in OWN.short_forms}
     assert "[platform.circle]" in design.read_text()
     assert fx.stability_index(better) > fx.stability_index(OWN)
+
+
+def test_bounds_are_told_with_enough_digits():
+    search = DesignMap(OWN, [fx.Variable("platform.mass", 50, 70)])
+    with pytest.raises(ArgumentError, match=r"platform.mass = 70.00000001, outside its bounds 50 to 70"):
+        search.from_values({"platform.mass": 70 + 1e-8})
+    with pytest.raises(ArgumentError, match=r"may go up to 1.0000001, but .* must be <= 1 "):
+        DesignMap(CUBE, [fx.Variable("cubic.middle", 0.4, 1 + 1e-7)])

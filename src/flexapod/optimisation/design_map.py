@@ -12,7 +12,7 @@ from flexapod.conventions import Array
 from flexapod.design import layout
 from flexapod.design.form_numbers import Makers, with_numbers
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import ArgumentError, DesignError, shown
+from flexapod.errors import ArgumentError, DesignError, shown, told_apart
 from flexapod.optimisation.design_results import VariableRange
 from flexapod.optimisation.parameters import Parameter
 from flexapod.optimisation.variables import JointCircle, Variable
@@ -140,9 +140,11 @@ class DesignMap:
             k = self.names.index(name)
             p = self.parameters[k]
             if not p.low <= value * p.unit <= p.high:
+                low, high = p.low / p.unit, p.high / p.unit
+                told = told_apart(value, low if value * p.unit < p.low else high, (6, 6))[0]
                 raise ArgumentError(
-                    f"the start has {name} = {value:.6g}, outside its bounds {p.low / p.unit:.6g} to "
-                    f"{p.high / p.unit:.6g}. Move the start, or widen the bounds."
+                    f"the start has {name} = {told}, outside its bounds {low:.6g} to {high:.6g}. Move the start, or "
+                    "widen the bounds."
                 )
             x[k] = value * p.unit
         return x

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
+from flexapod.errors import told_apart
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -41,7 +42,7 @@ class Check:
     @property
     def words(self) -> str:
         """Value and bound as a sentence's part: "longest leg is 0.5 m, must be at most 0.45 m"."""
-        value, bound = (f"{number:.6g} {self.unit}".rstrip() for number in (self.value, self.bound))
+        value, bound = (f"{told} {self.unit}".rstrip() for told in told_apart(self.value, self.bound, (6, 6)))
         return f"{self.name} is {value}, must be at {self.side} {bound}"
 
 

@@ -15,7 +15,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.design.schema import Key
 from flexapod.design.units import UNITS, si_unit, to_si
 from flexapod.design.universal_axes import keeps_tangents
-from flexapod.errors import ArgumentError
+from flexapod.errors import ArgumentError, told_apart
 from flexapod.optimisation.parameters import AffineMap, CircleMap, Kind, Parameter, Part
 
 Range = tuple[float, float]
@@ -115,14 +115,15 @@ class Variable:
         low, high = sorted((parameter.low * factor, parameter.high * factor))
         if rule.least is not None and (low < rule.least or (rule.open_ and low <= rule.least)):
             sign = ">" if rule.open_ else ">="
+            told, bound = told_apart(low, rule.least, (6, 6))
             raise ArgumentError(
-                f"{self._name} may go down to {low:.6g}, but {rule.meaning} must be {sign} {rule.least:.6g} (SI). "
+                f"{self._name} may go down to {told}, but {rule.meaning} must be {sign} {bound} (SI). "
                 "Raise its lower bound."
             )
         if rule.most is not None and high > rule.most:
+            told, bound = told_apart(high, rule.most, (6, 6))
             raise ArgumentError(
-                f"{self._name} may go up to {high:.6g}, but {rule.meaning} must be <= {rule.most:.6g} (SI). "
-                "Lower its upper bound."
+                f"{self._name} may go up to {told}, but {rule.meaning} must be <= {bound} (SI). Lower its upper bound."
             )
 
 

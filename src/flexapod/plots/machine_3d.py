@@ -209,11 +209,14 @@ def _line(ax: Axes3D, start: Array, end: Array, **style: Any) -> None:
 
 
 def _numbers(ax: Axes3D, b: Array, size: float) -> None:
-    """The numbers of the legs, outside their base joints."""
+    """The numbers of the legs, outside their base joints; those of legs that meet there stand together."""
     outward = b - b.mean(axis=0)
     length = np.maximum(np.linalg.norm(outward, axis=1, keepdims=True), 1e-12)
-    for number, place in zip(LEGS, b + 0.08 * size * outward / length - [0, 0, 0.03 * size], strict=True):
-        ax.text(*place, number, color=INK, ha="center", va="center", fontsize=10, fontweight="bold")
+    places = b + 0.08 * size * outward / length - [0, 0, 0.03 * size]
+    same = np.linalg.norm(b[:, None] - b, axis=2) < 1e-6 * size
+    for first in np.unique(same.argmax(axis=1)):
+        number = ", ".join(leg for leg, here in zip(LEGS, same[first], strict=True) if here)
+        ax.text(*places[first], number, color=INK, ha="center", va="center", fontsize=10, fontweight="bold")
 
 
 def _points(ax: Axes3D, points: Array, color: str) -> None:
