@@ -111,3 +111,15 @@ def test_a_delay_is_bounded():
 def test_gains_beyond_all_bounds_are_refused(gain):
     with pytest.raises(fx.ArgumentError, match="beyond all bounds"):
         fx.control.closed_loop(ISOLATOR.replace({"platform.mass": 1e-3}), controller=fx.control.PID(kd=1e308, ki=gain))
+
+
+def test_figures_say_it_in_their_titles():
+    topples = fx.transmissibility(TOPPLES, omega=[1.0, 5.0, 20.0])
+    figure = fx.plots.response.frequency_response(topples, "absolute", "z")
+    assert "(falls over: no motion approaches this)" in figure.get_suptitle()
+    slow = fx.control.VelocityFeedback(1e3).on(fx.linearise(ISOLATOR)).sampled(0.05)
+    for law, words in ((slow, "(unstable: no motion approaches this)"), (LAW, "")):
+        found = fx.control.controlled_transmissibility(ISOLATOR, controller=law, omega=[1.0, 5.0, 20.0])
+        title = fx.plots.control.isolation(found).get_suptitle()
+        assert title.endswith(words)
+        assert bool(words) == ("unstable" in title)

@@ -145,3 +145,13 @@ def test_a_singular_pose_is_one_thing_everywhere(name, result):
     shown = snapshot(requests.question({"design": hexapod.to_toml(), "pose": six}))
     assert (shown["stability"], shown["index"], shown["condition"]) == ("singular", 0, np.inf)
     assert np.isnan(shown["strain"][0]).all()
+
+
+def test_a_sweep_tells_a_singular_pose_as_the_others_do():
+    hexapod = fx.load("precision-positioner")
+    six = np.array([*fx.home_pose(hexapod).position, 0, 0, 0.0])
+    poses = np.stack([six, six])
+    poses[1, 5] = np.pi / 2
+    found = fx.workspace.summarise(fx.sweep(hexapod, poses, quantities=["omega_1", "cond_H"]))
+    assert (found.worst.omega_1, found.worst.cond_H) == (0.0, np.inf)
+    assert found.best.omega_1 == pytest.approx(fx.stability_index(hexapod), rel=1e-12)

@@ -25,6 +25,7 @@ from flexapod.plots.style import (
     dress,
     entitle,
     new_figure,
+    state_words,
 )
 
 if TYPE_CHECKING:
@@ -214,7 +215,7 @@ def isolation(dataset: xr.Dataset, axes: tuple[str, ...] = ("x", "z")) -> Figure
         ax.legend(**LEGEND)
         dress(ax)
     figure.axes[0].set_ylabel("transmissibility")
-    entitle(figure, f"{dataset.attrs['design']}: {dataset.attrs['controller']}")
+    entitle(figure, f"{dataset.attrs['design']}: {dataset.attrs['controller']}{state_words(dataset.attrs)}")
     return figure
 
 

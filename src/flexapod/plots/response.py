@@ -15,7 +15,19 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, TWO_PI, Array, unit_of
-from flexapod.plots.style import FAINT, INK, OUTPUT_NAMES, SIX, dress, moves, name_panel, new_figure, note_still, panels
+from flexapod.plots.style import (
+    FAINT,
+    INK,
+    OUTPUT_NAMES,
+    SIX,
+    dress,
+    moves,
+    name_panel,
+    new_figure,
+    note_still,
+    panels,
+    state_words,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -83,7 +95,8 @@ def frequency_response(
         above.legend(loc="best", frameon=True, framealpha=0.85, edgecolor="none", fontsize=9)
     note_still(figure, [OUTPUT_NAMES[axis] for axis in AXES if not drawn[axis]])
     source = f"leg {given}" if dimension == "leg" else f"{dimension} {given}"
-    figure.suptitle(f"{dataset.attrs['design']}: {words}, {source}", color=INK, fontsize=12)
+    state = state_words(dataset.attrs)
+    figure.suptitle(f"{dataset.attrs['design']}: {words}, {source}{state}", color=INK, fontsize=12)
     return figure
 
 

@@ -9,7 +9,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -58,6 +58,12 @@ def new_figure(width: float, height: float) -> Figure:
 def entitle(figure: Figure, title: str) -> None:
     """The title above all axes."""
     figure.suptitle(title, color=INK, fontsize=11)
+
+
+def state_words(attributes: Mapping[str, Any]) -> str:
+    """What the title of a response adds where the machine, or its loop, does not stay at rest."""
+    state = attributes.get("stability", "stable")
+    return "" if state == "stable" else f" ({state}: no motion approaches this)"
 
 
 def dress(ax: Axes) -> None:

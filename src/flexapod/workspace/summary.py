@@ -250,6 +250,8 @@ def _at(sweep: xr.Dataset, number: int) -> At:
         points = described(json.loads(sweep.attrs["poses"]))
         pose = np.full(6, np.nan) if points is None else points.rows(number, number + 1)[0]
     cond = float(one["cond_H"]) if "cond_H" in one else np.nan
+    if "status" in one and statuses()[int(one["status"])] == "singular":  # what is left of them is rounding
+        return At(number, pose, 0.0, np.inf if "cond_H" in one else np.nan)
     return At(number, pose, float(one["omega_1"]), cond)
 
 
