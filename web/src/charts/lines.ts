@@ -78,7 +78,7 @@ export class LinePlot {
       padding: [8, 24, 0, 0],
       cursor: { drag: { x: true, y: false }, points: { size: 6 }, ...(this.sync ? { sync: { key: this.sync } } : {}) },
       legend: { show: false },
-      scales: scales(lines),
+      scales: scales(() => this.shown ?? lines),
       axes: [
         { ...axis(lines.x, Math.max(2, width / 90), t), size: 26 },
         { ...axis(lines.y, Math.max(2, this.height() / 45), t), size: 58 },
@@ -183,16 +183,18 @@ function axis(scale: Scale, wanted: number, t: Theme): uPlot.Axis {
   }
 }
 
-function scales({ x, y }: Lines): uPlot.Scales {
+/** Scales with the ranges of the lines shown; a drag across zooms x alone. */
+function scales(shown: () => Lines): uPlot.Scales {
+  const { x, y } = shown()
   return {
     x: {
       time: false,
       distr: x.log ? 3 : 1,
       min: x.min,
       max: x.max,
-      range: (_u, min, max) => [min ?? x.min, max ?? x.max],
+      range: (_u, min, max) => [min ?? shown().x.min, max ?? shown().x.max],
     },
-    y: { distr: y.log ? 3 : 1, min: y.min, max: y.max, range: (_u, min, max) => [min, max] },
+    y: { distr: y.log ? 3 : 1, min: y.min, max: y.max, range: () => [shown().y.min, shown().y.max] },
   }
 }
 
