@@ -89,6 +89,11 @@ def _fits(found: tuple[int, ...], shape: tuple[int | None, ...]) -> bool:
     return len(found) == len(shape) and all(want in (None, size) for want, size in zip(shape, found, strict=True))
 
 
+def several(value: Any) -> bool:
+    """Whether a value is a sequence, where one number may stand as well."""
+    return isinstance(value, tuple | list) or (isinstance(value, np.ndarray) and value.ndim > 0)
+
+
 def thread_count(threads: int | None) -> int:
     """Threads to use: those asked for, or all that this process may have."""
     if threads is None:

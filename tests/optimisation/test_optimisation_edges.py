@@ -335,3 +335,43 @@ def test_the_verification_uses_poses_of_its_own():
     for seed in range(100):
         used = {seed + k for k in range(8)} | {seed + design_search._DENSE + k for k in range(8)}
         assert not used & {verification.SEED + k for k in range(4)}
+
+
+HUGE = 10**400
+
+
+@pytest.mark.parametrize("wrong", [HUGE, float("nan"), "a", 1j, [1, 2, 3]], ids=lambda x: str(x)[:9])
+@pytest.mark.parametrize(
+    "use",
+    [
+        lambda h, x: fx.optimise(h, fx.Variable("platform.mass", 1, x), trials=0),
+        lambda h, x: fx.optimise(h, fx.Variable({"platform.mass": x}, 1, 2), trials=0),
+        lambda h, x: fx.optimise(h, [heavier(), fx.optimisation.JointCircle("base", half_angle=x)], trials=0),
+        lambda h, x: fx.optimise(h, fx.optimisation.JointCircle("base", half_angle=(0, x)), trials=0),
+        lambda h, x: fx.optimise(h, fx.optimisation.JointCircle("base", radius=(1, 2), units={"radius": x}), trials=0),
+        lambda h, x: fx.optimise(h, heavier(), start={"platform.mass": x}, trials=0),
+        lambda h, x: fx.optimise(h, heavier(), constraints=[fx.optimisation.LegLength(0.1, x)], trials=0),
+        lambda h, x: fx.optimise(h, heavier(), constraints=[fx.optimisation.ConditionNumber(x)], trials=0),
+        lambda h, x: fx.optimise(h, heavier(), constraints=[fx.optimisation.JointAngle(x)], trials=0),
+        lambda h, x: fx.optimise(h, heavier(), seed=-1 if x is HUGE else x, trials=0),
+        lambda h, x: fx.pareto_front(h, heavier(), fx.optimisation.TotalMass(), trials=float("inf") if x is HUGE else x),
+        lambda h, x: fx.optimisation.MeanIndex([[0, 0, 0.25, 0, 0, 0]], weights=[x]),
+        lambda h, x: fx.robustness(h, fx.optimisation.Payload((0, x))),
+        lambda h, x: fx.robustness(h, fx.optimisation.Payload((0, 1), (("a", 1), 0, x))),
+        lambda h, x: fx.robustness(h, fx.Uncertain("legs.stiffness", x)),
+    ],
+)  # fmt: skip
+def test_numbers_that_are_none_are_refused(positioner, use, wrong):
+    with pytest.raises(fx.ArgumentError):
+        use(positioner, wrong)
+
+
+def test_a_search_takes_no_harm_from_strict_floating_point_errors(positioner):
+    kept = [fx.optimisation.ConditionNumber(region=BOX), fx.optimisation.Deflection(force=1.0)]
+    with np.errstate(all="raise"):
+        found = fx.optimise(
+            positioner, heavier(), fx.optimisation.Dexterity(BOX), kept, trials=0, samples=16, verify=32
+        )
+        better = fx.optimise(positioner, heavier(), fx.LeastIndex(BOX), kept, trials=0, samples=16, verify=32)
+    assert not found.failures
+    assert better.index > better.start_index

@@ -6,14 +6,16 @@ import signal
 import sqlite3
 import subprocess
 import sys
+import threading
 import time
+from contextlib import closing
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.optimisation.global_search import Study
+from flexapod.optimisation.global_search import Study, _storage
 from flexapod.optimisation.problem import Problem
 
 WORKER = """
@@ -178,3 +180,35 @@ def test_a_search_is_stopped_between_trials():
     assert np.isnan(seen[0][2])
     assert all(b2 >= b1 for (_, _, b1), (_, _, b2) in pairwise(seen[1:]))
     assert len(study.finished()) == 5
+
+
+def test_a_file_that_another_process_is_making_is_waited_for(tmp_path):
+    """Not even its journal mode is set meanwhile: that is what "database is locked" came of."""
+    import optuna
+
+    file = tmp_path / "new.db"
+    lock = optuna.storages.journal.JournalFileOpenLock(str(file))
+    lock.acquire()
+    made = []
+    second = threading.Thread(target=lambda: made.append(_storage(file)))
+    second.start()
+    second.join(0.5)
+    touched = file.exists()
+    lock.release()
+    second.join(60)
+    assert not touched
+    assert len(made) == 1
+
+
+@pytest.mark.parametrize("name", ["run?1.db", "a%20b.db", "a b#c.db", "x&y=1.db"])
+def test_a_study_is_kept_under_the_name_that_was_given(tmp_path, name):
+    search = Study(problem(), tmp_path / name)
+    search.run(2, lambda x: (search.problem.assess_at(x, 8), (1.0,)))
+    assert (tmp_path / name).read_bytes().startswith(b"SQLite format 3")
+    assert len(finished_in(tmp_path / name)) == 2
+    assert {file.name.removesuffix("-wal").removesuffix("-shm") for file in tmp_path.iterdir()} == {name}
+
+
+def finished_in(file):
+    with closing(sqlite3.connect(file)) as db:
+        return db.execute("select trial_id from trials where state = 'COMPLETE'").fetchall()

@@ -105,6 +105,9 @@ class LegLength(Constraint):
 
     def requirements(self, hexapod: Hexapod, region: Region, measure: Measure) -> list[Requirement]:
         """List what a design has to keep; see `Constraint.requirements`."""
+        for side, bound in (("lower", self.least), ("upper", self.most)):
+            if bound is not None:
+                positive(bound, f"leg length: the {side} bound", "m")
         if self.least is not None and self.most is not None and not self.least < self.most:
             raise ArgumentError(
                 f"leg length: the bounds are {self.least:.6g} and {self.most:.6g} m, which contradict each other; the "
@@ -182,7 +185,7 @@ class ConditionNumber(OneBound):
 
     def quantity(self, hexapod: Hexapod) -> tuple[str, ConstraintQuantity]:
         """Return the name and the quantity that is bounded."""
-        if self.most is not None and self.most <= 1:
+        if self.most is not None and positive(self.most, "condition number: the bound") <= 1:
             raise ArgumentError(f"condition number: the bound is {self.most}; no H has less than 1.")
         return "condition number", quantities.Conditioning()
 

@@ -113,11 +113,12 @@ def soft_least(values: Array, slopes: Array, sharpness: float) -> tuple[Array, A
     """
     safe = np.maximum(values, 1e-300)
     least = safe.min(axis=-1, keepdims=True)
-    weight = (least / safe) ** sharpness
-    total = weight.sum(axis=-1)
-    logarithm = np.log(least[..., 0]) - np.log(total) / sharpness
-    share = weight / total[..., None] / safe
-    return logarithm, np.einsum("...m,...mn->...n", share, slopes)
+    with np.errstate(under="ignore"):  # what is far above the least has no part in it
+        weight = (least / safe) ** sharpness
+        total = weight.sum(axis=-1)
+        logarithm = np.log(least[..., 0]) - np.log(total) / sharpness
+        share = weight / total[..., None] / safe
+        return logarithm, np.einsum("...m,...mn->...n", share, slopes)
 
 
 def soft_most(values: Array, slopes: Array, sharpness: float) -> tuple[Array, Array]:

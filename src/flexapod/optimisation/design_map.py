@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from flexapod.checks import number
 from flexapod.conventions import Array
 from flexapod.design import layout
 from flexapod.design.form_numbers import Makers, with_numbers
@@ -52,12 +53,12 @@ class DesignMap:
         names: set[str] = set()
         for part in self.parts:
             title = ", ".join(p.name for p in part.parameters) or "a joint circle"
-            for number in part.touched.tolist():
-                if number in owner:
+            for place in part.touched.tolist():
+                if place in owner:
                     raise ArgumentError(
-                        f"{owner[number]} and {title} both set {layout.describe(number)}. Leave one of them out."
+                        f"{owner[place]} and {title} both set {layout.describe(place)}. Leave one of them out."
                     )
-                owner[number] = title
+                owner[place] = title
             for p in part.parameters:
                 if p.name in names:
                     raise ArgumentError(f"two variables are named {p.name!r}. Give one of them another name.")
@@ -134,11 +135,14 @@ class DesignMap:
     def from_values(self, values: Mapping[str, float]) -> Array:
         """The variables from values by name (as `values` gives them); those left out as the design has them."""
         x = np.clip(self.own(), self.low, self.high)
-        for name, value in values.items():
+        if not isinstance(values, Mapping):
+            raise ArgumentError(f"start is {shown(values)}; give a mapping of variables to values.")
+        for name, given in values.items():
             if name not in self.names:
                 raise ArgumentError(f"start names {name!r}, which is no variable. There are: {', '.join(self.names)}.")
             k = self.names.index(name)
             p = self.parameters[k]
+            value = number(given, f"the start of {name}", p.unit_name)
             if not p.low <= value * p.unit <= p.high:
                 low, high = p.low / p.unit, p.high / p.unit
                 told = told_apart(value, low if value * p.unit < p.low else high, (6, 6))[0]

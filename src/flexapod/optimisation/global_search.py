@@ -11,6 +11,7 @@ import os
 import socket
 import sqlite3
 from collections.abc import Callable, Mapping
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -192,18 +193,23 @@ def _storage(file: Path | None) -> Any:
     if file.is_dir() or (file.exists() and file.stat().st_size and not file.read_bytes()[:15] == b"SQLite format 3"):
         raise OutputError(f"{file} is no study file (SQLite). Choose another name.")
     try:
-        with sqlite3.connect(file, timeout=60) as connection:
-            connection.execute("PRAGMA journal_mode=WAL")  # a reader does not hold a writer up
         lock = optuna.storages.journal.JournalFileOpenLock(str(file))
         lock.acquire()  # the first process to open a file makes its tables; the others wait for it
         try:
-            return optuna.storages.RDBStorage(
-                f"sqlite:///{file.resolve()}", engine_kwargs={"connect_args": {"timeout": 60}}
-            )
+            with closing(sqlite3.connect(file, timeout=60)) as connection:
+                connection.execute("PRAGMA journal_mode=WAL")  # a reader does not hold a writer up
+            return optuna.storages.RDBStorage(_address(file), engine_kwargs={"connect_args": {"timeout": 60}})
         finally:
             lock.release()
     except sqlite3.Error as error:
         raise OutputError(f"{file} cannot be used as a study file: {error}. Choose another place.") from error
+
+
+def _address(file: Path) -> str:
+    """A study file as an address, whatever characters its name has."""
+    from sqlalchemy import URL
+
+    return URL.create("sqlite", database=str(file.resolve())).render_as_string(hide_password=False)
 
 
 def _at_work(worker: str) -> bool:

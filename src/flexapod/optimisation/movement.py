@@ -77,7 +77,7 @@ class _Design:
         at = DesignDerivatives(self.numbers, self.jacobian, rows, from_home, self.problem.core_joint)
         try:
             return derivatives(at)
-        except np.linalg.LinAlgError:
+        except (ArithmeticError, np.linalg.LinAlgError):
             return np.full(1, np.nan), np.zeros((1, self.jacobian.shape[1]))
 
 

@@ -7,6 +7,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from flexapod.checks import numbers
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError
 from flexapod.optimisation.constraint_quantities import Conditioning
@@ -145,8 +146,8 @@ class MeanIndex:
             raise ArgumentError("a mean is taken over poses one by one, not over a box. Give a batch of poses.")
         self.region = poses
         count = len(poses.rows(np.zeros(6), 0))
-        given = np.ones(count) if weights is None else np.asarray(weights, dtype=np.float64)
-        if given.shape != (count,) or not np.isfinite(given).all() or (given < 0).any() or not given.any():
+        given = np.ones(count) if weights is None else numbers(weights, "weights")
+        if given.shape != (count,) or (given < 0).any() or not given.any():
             raise ArgumentError(
                 f"weights has shape {given.shape} for {count} poses; one number >= 0 is needed for each, not all 0."
             )

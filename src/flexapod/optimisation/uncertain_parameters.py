@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import one_of, positive
+from flexapod.checks import not_negative, number, numbers, one_of, positive, several
 from flexapod.conventions import TRANSLATIONS, Array
 from flexapod.design import layout
 from flexapod.design.hexapod import Hexapod
@@ -141,13 +141,16 @@ class Payload:
         ArgumentError
             If the mass is negative, or a range does not ascend.
         """
-        low, high = self.mass
-        if not 0 <= low <= high < np.inf:
+        if not (several(self.mass) and several(self.position)) or len(self.mass) != 2 or len(self.position) != 3:
+            raise ArgumentError("a payload has a mass (least, largest) in kg and a position of three coordinates in m.")
+        low, high = (not_negative(mass, "the payload's mass", "kg") for mass in self.mass)
+        if not low <= high:
             raise ArgumentError(f"the payload's mass is from {low} to {high} kg; it must be >= 0, the least first.")
         found = [_of_payload("mass", np.array([low, high], dtype=np.float64), "kg")]
         for axis, given in zip(TRANSLATIONS, self.position, strict=True):
-            pair = np.broadcast_to(np.asarray(given, dtype=np.float64), 2)
-            if not (np.isfinite(pair).all() and pair[0] <= pair[1]):
+            name = f"the payload's {axis}"
+            pair = numbers(given, name, (2,)) if several(given) else np.full(2, number(given, name, "m"))
+            if not pair[0] <= pair[1]:
                 raise ArgumentError(f"the payload's {axis} is {given!r} m; it must be a number, or (least, most).")
             found.append(_of_payload(axis, np.array(pair), "m"))
         return found

@@ -8,14 +8,14 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from flexapod.checks import number, one_of
+from flexapod.checks import number, one_of, several
 from flexapod.conventions import TWO_PI, Array
 from flexapod.design import layout
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.schema import Key
 from flexapod.design.units import UNITS, si_unit, to_si
 from flexapod.design.universal_axes import keeps_tangents
-from flexapod.errors import ArgumentError, told_apart
+from flexapod.errors import ArgumentError, shown, told_apart
 from flexapod.optimisation.parameters import AffineMap, CircleMap, Kind, Parameter, Part
 
 Range = tuple[float, float]
@@ -79,7 +79,11 @@ class Variable:
         factors = self._factors()
         unit = layout.entries(next(iter(factors)))[2] if self.kind != "scale" else 1.0
         named = layout.unit_name(next(iter(factors))) if self.kind != "scale" else ""
-        parameter = Parameter(self._name, self.low * unit, self.high * unit, unit, self.log, unit_name=named)
+        low, high = (
+            number(bound, f"{self._name}: the {side} bound", named) * unit
+            for side, bound in (("lower", self.low), ("upper", self.high))
+        )
+        parameter = Parameter(self._name, low, high, unit, self.log, unit_name=named)
         parameter.check()
         found = [(layout.entries(key), factor) for key, factor in factors.items()]
         index = np.concatenate([place for (place, _, _), _ in found])
@@ -101,10 +105,11 @@ class Variable:
         if isinstance(self.targets, str):
             return {self.targets: 1.0}
         if isinstance(self.targets, Mapping):
-            found = {str(key): float(factor) for key, factor in self.targets.items()}
+            found = {str(key): number(factor, f"the factor of {key}") for key, factor in self.targets.items()}
         else:
-            found = dict.fromkeys(self.targets, 1.0)
-        if not found or not all(np.isfinite(factor) and factor for factor in found.values()):
+            keys = self.targets if isinstance(self.targets, Sequence) else []
+            found = dict.fromkeys((str(key) for key in keys), 1.0)
+        if not found or not all(found.values()):
             raise ArgumentError(f"{self.targets!r} ties nothing; give one key or more, with factors that are not 0.")
         return found
 
@@ -193,6 +198,8 @@ class JointCircle:
             return self._variables(hexapod)
         joints = hexapod.base_joints if self.plate == "base" else hexapod.platform_joints
         third, side, own = _pairs(joints)
+        if not isinstance(self.units, Mapping):
+            raise ArgumentError(f"units is {shown(self.units)}; give a mapping, such as {{'radius': 'mm'}}.")
         for part in self.units:
             one_of(part, "units of a joint circle: the part", CIRCLE)
         four = [self._part(name, own[name]) for name in CIRCLE]
@@ -229,11 +236,11 @@ class JointCircle:
             unit = one_of(self.units[name], f"the unit of {title}", UNITS[dimension])
             title += f"_{unit}"
         scale = float(to_si(1.0, dimension, unit))
-        if np.ndim(given) == 0:
+        if not several(given):
             return scale * number(given, title, unit)
-        if np.shape(given) != (2,):
-            raise ArgumentError(f"{title} is {given!r}; give a number, or a pair (least, most).")
-        low, high = (scale * float(bound) for bound in given)
+        if len(given) != 2:
+            raise ArgumentError(f"{title} is {shown(given)}; give a number, or a pair (least, most).")
+        low, high = (scale * number(bound, f"a bound of {title}", unit) for bound in given)
         parameter = Parameter(title, low, high, scale, start=own, unit_name=unit)
         parameter.check()
         return parameter
