@@ -10,6 +10,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import flexapod as fx
@@ -141,6 +142,41 @@ def test_a_signal_stops_between_trials_and_tells_how_to_go_on(tmp_path):
     assert worker.returncode == 130, err
     assert "Go on with the same command" in err
     assert "verified at 128 poses" in out
+
+
+@pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
+@pytest.mark.parametrize("against", [[], ["--against", "mass"]], ids=["design", "front"])
+def test_a_search_that_is_terminated_gives_its_best_and_says_so(capsys, monkeypatch, against):
+    """SIGTERM comes before the fourth trial; nothing is kept in a file."""
+    seen = []
+
+    def trial(self, done, wanted, best):
+        seen.append(done)
+        if done == 3:
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    monkeypatch.setattr("flexapod.cli.output.progress.TrialProgress.__call__", trial)
+    code, out, err = run(capsys, "optimise", "mukherjee-ii", "--vary", "platform.mass=1:5", "--trials", 1000, "--points",
+                         16, "--verify", 32, "--json", *against)  # fmt: skip
+    told = json.loads(out)
+    assert (code, told["cut_short"], told["trials"]) == (143, True, seen[-1] + 1)
+    assert "the best so far follows. The trials themselves are not kept without --study." in err
+    assert np.max(told["index_rad_s"]) > 0
+
+
+@pytest.mark.skipif(os.name == "nt", reason="sends a POSIX signal")
+@pytest.mark.parametrize("json_too", [[], ["--json"]], ids=["words", "json"])
+def test_a_search_that_is_stopped_before_it_has_a_result_exits_with_its_signal(capsys, monkeypatch, json_too):
+    monkeypatch.setattr(
+        "flexapod.cli.output.progress.TrialProgress.__call__", lambda *told: os.kill(os.getpid(), signal.SIGINT)
+    )
+    with pytest.raises(SystemExit) as end:
+        run(capsys, "optimise", "mukherjee-ii", "--vary", "platform.mass=4:5", "--keep", "mass_kg=2", "--trials", 9,
+            "--points", 16, "--verify", 32, *json_too)  # fmt: skip
+    err = capsys.readouterr().err
+    assert end.value.code == 130
+    assert "stopped: no design that keeps every constraint was found" in err
+    assert not json_too or json.loads(err)["cut_short"]
 
 
 def _trials(file):

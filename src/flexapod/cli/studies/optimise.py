@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
+import sys
+
 import click
 
 from flexapod.cli.options import common, problem
 from flexapod.cli.options.optimise import Options
 from flexapod.cli.output.interrupt import Stopping
 from flexapod.cli.output.progress import TrialProgress
+from flexapod.errors import InfeasibleError
 from flexapod.optimisation.design_results import OptimalDesign
 from flexapod.optimisation.design_search import optimise
 from flexapod.optimisation.pareto import ParetoFront, pareto_front
@@ -23,14 +27,33 @@ def compute(options: Options) -> Study:
     found: OptimalDesign | ParetoFront
     with Stopping() as stop, TrialProgress() as bar:
         settings = {**options.settings(), "on_trial": bar, "stop": stop}
-        if options.against is None:
-            found = optimise(hexapod, varied, aim, kept, sampler=options.sampler, verify=options.verify, **settings)
-        else:
-            other = problem.keep(options.against)
-            found = pareto_front(hexapod, varied, other, aim, kept, refine=options.refine, **settings)
+        try:
+            if options.against is None:
+                found = optimise(hexapod, varied, aim, kept, sampler=options.sampler, verify=options.verify, **settings)
+            else:
+                other = problem.keep(options.against)
+                found = pareto_front(hexapod, varied, other, aim, kept, refine=options.refine, **settings)
+        except InfeasibleError as error:
+            if stop.signal is None:
+                raise
+            _nothing_yet(error, options)
+            sys.exit(128 + stop.signal)
     if stop.signal is not None:
-        where = f"Go on with the same command: {options.study}" if options.study else "Nothing is kept without --study."
-        click.echo(f"stopped after {found.history.sizes['trial']} trials. {where}", err=True)
+        after = f"stopped after {found.history.sizes['trial']} trials; the best so far follows. {_kept(options)}"
+        click.echo(after, err=True)
     if isinstance(found, ParetoFront):
         return studies.front(found, repr(aim))
     return studies.optimal(found, repr(aim))
+
+
+def _kept(options: Options) -> str:
+    if options.study:
+        return f"Go on with the same command: {options.study}"
+    return "The trials themselves are not kept without --study."
+
+
+def _nothing_yet(error: InfeasibleError, options: Options) -> None:
+    """Say that a search was cut short before it had a result."""
+    words = f"stopped: {error} {_kept(options)}"
+    told = json.dumps({"error": words, "kind": type(error).__name__, "cut_short": True})
+    click.echo(told if options.as_json else words, err=True)
