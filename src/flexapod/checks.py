@@ -43,6 +43,12 @@ def number(value: Any, name: str, unit: str = "", *, need: str = "finite") -> fl
     return found
 
 
+def instance(value: Any, kind: Any, name: str, how: str) -> None:
+    """Raises ArgumentError for what is not of a kind; how: where one comes from, the end of a sentence."""
+    if not isinstance(value, kind):
+        raise ArgumentError(f"{name} is {shown(value)}; it must be a {kind.__name__}, {how}.")
+
+
 def positive(value: Any, name: str, unit: str = "") -> float:
     """A finite number > 0."""
     return number(value, name, unit, need="> 0")
@@ -54,9 +60,11 @@ def not_negative(value: Any, name: str, unit: str = "") -> float:
 
 
 def whole(value: Any, name: str, least: int = 1) -> int:
-    """A whole number, at least `least`."""
+    """A whole number, at least `least` and at most what a size may be."""
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < least:
         raise ArgumentError(f"{name} is {shown(value)}; it must be a whole number, at least {least}.")
+    if value >= 2**63:
+        raise ArgumentError(f"{name} is {shown(value)}; it must be less than 2^63.")
     return int(value)
 
 
@@ -75,7 +83,7 @@ def numbers(value: ArrayLike, name: str, shape: tuple[int | None, ...] | None = 
     """Finite float64 numbers of a shape, in which None stands for any size, or of any shape; a copy."""
     try:
         array = floats(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"{name} is {shown(value)}; it must hold numbers.") from None
     if shape is not None and not _fits(array.shape, shape):
         wanted = ", ".join("n" if size is None else str(size) for size in shape)

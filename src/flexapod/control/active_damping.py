@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.linalg import eigh, null_space
 from scipy.optimize import linear_sum_assignment
 
-from flexapod.checks import one_of
+from flexapod.checks import instance, numbers, one_of
 from flexapod.control.closed_loop_poles import least_damping
 from flexapod.control.controllers import ALL_LEGS, GAIN_UNIT, Feedback, check_legs, damping_law
 from flexapod.control.gain_search import ascending_gains, best_gain, default_gains
@@ -64,6 +64,7 @@ def open_zeros(linear: Linearisation, feedback: Feedback, legs: Sequence[int] = 
     """
     one_of(feedback, "feedback", get_args(Feedback))
     check_legs(legs)
+    instance(linear, Linearisation, "linear", "as fx.linearise gives it")
     chosen = np.array(sorted(legs)) - 1
     K, H = 0.5 * (linear.K + linear.K.T), linear.H[:, chosen]
     if feedback == "force":
@@ -148,7 +149,7 @@ def root_locus(
     """
     damping_law(feedback, 0.0, leak, legs)  # checks them
     plant = Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint))
-    row = default_gains(plant, feedback) if gains is None else ascending_gains(np.sort(gains), 2)
+    row = default_gains(plant, feedback) if gains is None else ascending_gains(np.sort(numbers(gains, "gains")), 2)
     row = np.sort(row)
     pole = _followed(np.stack([poles(plant, damping_law(feedback, g, leak, legs).on(plant.linear)) for g in row]))
     least = np.array([least_damping(p) for p in pole])

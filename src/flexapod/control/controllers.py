@@ -211,7 +211,8 @@ def damping_law(
 
 def check_legs(legs: Sequence[int]) -> None:
     """Raises ArgumentError unless these are different numbers of legs."""
-    if not legs or any(leg not in ALL_LEGS for leg in legs) or len(set(legs)) < len(legs):
+    chosen = tuple(legs)
+    if not chosen or any(np.ndim(leg) or leg not in ALL_LEGS for leg in chosen) or len(set(chosen)) < len(chosen):
         raise ArgumentError(f"legs is {shown(legs)}; give different numbers from 1 to 6, at least one")
 
 
@@ -224,7 +225,7 @@ def _gain_matrix(value: ArrayLike, name: str) -> Array:
     """A gain as a 6 x 6 matrix: one number, six, or a matrix."""
     try:
         gain = floats(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ArgumentError(f"{name} is {shown(value)}; give a number, six numbers, or a 6 x 6 matrix") from None
     if gain.shape not in ((), (6,), (6, 6)) or not np.isfinite(gain).all():
         raise ArgumentError(

@@ -11,7 +11,7 @@ from scipy.optimize import minimize_scalar
 from flexapod.checks import numbers
 from flexapod.control.closed_loop_poles import least_damping
 from flexapod.control.controllers import Feedback
-from flexapod.control.linear_controller import ControlLaw
+from flexapod.control.linear_controller import ControlLaw, controller_for
 from flexapod.control.plant import Plant, poles
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError
@@ -36,7 +36,7 @@ def best_gain(plant: Plant, law: Callable[[float], ControlLaw], gains: Array) ->
     """
 
     def damping(log_gain: float) -> float:
-        pole = poles(plant, law(float(np.exp(log_gain))).on(plant.linear))
+        pole = poles(plant, controller_for(plant.linear, law(float(np.exp(log_gain)))))
         creeps = (pole.real > -_CREEP * plant.omega[0]) & (np.abs(pole) > 1e-9 * np.abs(pole).max())
         return least_damping(pole) if not creeps.any() else -1.0
 

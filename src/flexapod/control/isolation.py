@@ -19,11 +19,13 @@ from flexapod.control.plant import Plant, is_stable, poles
 from flexapod.control.scaled_plant import ScaledPlant, measurements
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import UnstableError
+from flexapod.errors import ArgumentError, UnstableError
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import linearise
 from flexapod.optional import needed
 from flexapod.pose import PoseLike
+
+_HEAVIEST = 1e30  # of a weight
 
 
 def lqg(
@@ -100,7 +102,7 @@ def lqg(
     True
     """
     for name, value in (("effort", effort), ("stroke", stroke), ("noise", noise)):
-        positive(value, name)
+        weight(value, name)
     measures = measurements(measure)
     task = ScaledPlant(Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint)), measures)
     control = needed("control", "control", "LQG design needs python-control")
@@ -201,7 +203,7 @@ def h_infinity(
         if value is not None:
             positive(value, name, "rad/s")
     for name, value in (("depth", depth), ("effort", effort), ("noise", noise)):
-        positive(value, name)
+        weight(value, name)
     task = ScaledPlant(Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint)), measures)
     omega = task.plant.omega
     low = 0.5 * float(omega[0]) if corner is None else corner
@@ -215,6 +217,12 @@ def h_infinity(
     if not is_stable(poles(task.plant, found), task.plant):
         raise UnstableError(f"{name}: the design is too badly conditioned to be used. Raise effort and noise.")
     return found
+
+
+def weight(value: float, name: str) -> None:
+    """Raises ArgumentError for what is no weight, or one whose square no number holds."""
+    if positive(value, name) > _HEAVIEST:
+        raise ArgumentError(f"{name} is {value:g}; it must be at most {_HEAVIEST:g}.")
 
 
 def _riccati(control: Any, A: Array, B: Array, Q: Array, R: Array, S: Array) -> Array:

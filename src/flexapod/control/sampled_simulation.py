@@ -10,7 +10,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from flexapod import _core
-from flexapod.checks import not_negative, number
+from flexapod.checks import instance, not_negative, number
 from flexapod.control.actuators_and_sensors import Hardware
 from flexapod.control.closed_loop_poles import assess, instability_message
 from flexapod.control.linear_controller import MEASUREMENTS, Controller, signals, static
@@ -120,6 +120,7 @@ def simulate_control(
     clock = _clock(plant, controller, duration, after)
     if not isinstance(base_motion, Excitation):
         raise ArgumentError(f"base_motion is {shown(base_motion)}; it must be an Excitation, such as fx.harmonic(...)")
+    instance(hardware, Hardware, "hardware", "such as fx.control.Hardware(force_limit=100.0)")
     noise, limits = hardware.drawn(clock.samples), hardware.limits()
     run = SimulationRun(hexapod, where, base_motion=base_motion, force=force, moment=moment, base=base, start="carried")
     idle = static(np.zeros((6, 6)), ("leg_rate",), "no control")

@@ -15,7 +15,7 @@ from flexapod.errors import ArgumentError, shown
 def measurements(measure: Measurement | Sequence[Measurement]) -> tuple[Measurement, ...]:
     """One or several kinds of measurement; raises ArgumentError for anything else."""
     names = (measure,) if isinstance(measure, str) else tuple(measure)
-    wrong = [name for name in names if name not in MEASUREMENTS]
+    wrong = [name for name in names if not isinstance(name, str) or name not in MEASUREMENTS]
     if wrong or not names or len(set(names)) < len(names):
         raise ArgumentError(f"measure is {shown(measure)}; give one or several of {', '.join(MEASUREMENTS)}")
     return names

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from flexapod.control.closed_loop_poles import least_damping
 from flexapod.control.controllers import GAIN_UNIT, Feedback, damping_law
 from flexapod.control.gain_search import ascending_gains, best_gain, default_gains
-from flexapod.control.linear_controller import ControlLaw
+from flexapod.control.linear_controller import ControlLaw, controller_for
 from flexapod.control.plant import Plant, poles
 from flexapod.conventions import Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
@@ -160,7 +160,7 @@ def _checked(
 
 
 def _damping(plant: Plant, law: Law, gain: float) -> float:
-    return least_damping(poles(plant, law(gain).on(plant.linear)))
+    return least_damping(poles(plant, controller_for(plant.linear, law(gain))))
 
 
 def _choose(plant: Plant, law: Law, gains: Array, damping: float | None) -> tuple[float, float]:

@@ -46,7 +46,7 @@ class Home(Pose):
         if not isinstance(value, Pose):
             try:
                 six = floats(value)
-            except (TypeError, ValueError):
+            except (TypeError, ValueError, OverflowError):
                 six = np.empty(0)
             if six.shape != (6,):
                 raise DesignError(

@@ -279,6 +279,6 @@ def check_use(excitation: Excitation, argument: str) -> None:
 
 def one_term(axis: str, kind: TermKind, numbers: Array, **given: Any) -> Excitation:
     """An excitation of one function of time; given: fields of `Term`. Raises ArgumentError for an unknown axis."""
-    if axis not in AXES + LEGS:
+    if not isinstance(axis, str) or axis not in AXES + LEGS:
         raise ArgumentError(f"axis is {shown(axis)}; it must be one of {', '.join(AXES)}, or a leg '1' to '6'.")
     return Excitation((Term(axis, kind, numbers, **given),))

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import one_of, whole
+from flexapod.checks import instance, one_of, whole
 from flexapod.conventions import TWO_PI, Array
 from flexapod.errors import ArgumentError, shown
 from flexapod.excitation.excitation import Excitation, Use
@@ -105,6 +105,7 @@ def sea_motion(
     omega, amplitude, phase = _lines(spectrum, seed, samples)
     if spectrum.quantity in LOADS:
         raise ArgumentError(f"spectrum is one of {spectrum.quantity}; it must be that of the sea's elevation.")
+    instance(response, Mapping, "response", "from names of axes to functions of omega")
     total = Excitation()
     for axis, operator in response.items():
         factor = np.broadcast_to(np.asarray(operator(omega), dtype=complex), omega.shape)
@@ -119,6 +120,7 @@ def _lines(spectrum: Spectrum, seed: int, samples: int) -> tuple[Array, Array, A
     """Frequencies, phases, and amplitudes of the displacement or the load."""
     if not isinstance(spectrum, Spectrum):
         raise ArgumentError(f"spectrum is {shown(spectrum)}; it must be a flexapod Spectrum, as vc_curve makes one.")
+    instance(spectrum, Spectrum, "spectrum", "such as fx.vc_curve('VC-C')")
     samples = whole(samples, "samples")
     rng = np.random.default_rng(whole(seed, "seed", 0))
     edges = np.linspace(spectrum.omega_min, spectrum.omega_max, samples + 1)

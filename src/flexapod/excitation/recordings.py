@@ -105,6 +105,7 @@ def time_series(
     names = [axis] if isinstance(axis, str) else list(axis) if isinstance(axis, Sequence) else []
     if not names or len(set(names)) < len(names):
         raise ArgumentError(f"axis is {shown(axis)}; it must be one axis for each column of values, each once.")
+    one_of(recorded, "recorded", INTEGRATIONS)
     uses: list[Use] = ["" if recorded == "value" else "motion"] * len(names)
     samples = checked(times, values, names, (), "")
     return _excitation(samples, names, uses, recorded, detrend, highpass)
@@ -223,6 +224,8 @@ def parse_time_series(
     file: str = "",
 ) -> Excitation:
     """A recording from the text of a CSV file; see `read_time_series`. file: its name, for what is told of it."""
+    if recorded is not None:
+        one_of(recorded, "recorded", INTEGRATIONS)
     table = parse_table(text, NAMES, FORM)
     header = ", ".join(column.title for column in table.columns)
     time = table.column("time")

@@ -66,7 +66,7 @@ class Spectrum(NamedTuple):
 
 def check_axis(spectrum: Spectrum, axis: str) -> None:
     """Raises ArgumentError where a spectrum of metres is given to a rotation, or one of radians to a translation."""
-    turns = axis in ROTATIONS
+    turns = isinstance(axis, str) and axis in ROTATIONS
     if spectrum.quantity in LOADS and turns:
         raise ArgumentError(
             f"axis is {axis!r}, but the spectrum is one of {spectrum.quantity}, which has the axes x, y, z. Choose one."

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from flexapod.checks import instance
 from flexapod.conventions import Array
 from flexapod.mechanics.linearisation import DampedModes
 from flexapod.mechanics.modes import NaturalModes, mode_clusters
@@ -76,6 +77,8 @@ def pair_modes(modes: NaturalModes, damped: DampedModes) -> ModePairs:
     >>> pairs.damped.tolist()
     [2, 0, 1, 4, 3, 5]
     """
+    instance(modes, NaturalModes, "modes", "as natural_modes gives them")
+    instance(damped, DampedModes, "damped", "as linearise(...).modes() gives them")
     share = np.abs(np.linalg.solve(modes.shape, damped.shape)) ** 2
     share = share / share.sum(axis=0)
     together = share.copy()

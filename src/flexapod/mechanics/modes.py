@@ -8,6 +8,7 @@ import numpy as np
 
 from flexapod import _core
 from flexapod._suggestions import suggests
+from flexapod.checks import not_negative, numbers
 from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import as_joint, states
@@ -176,6 +177,8 @@ def near_repeated(omega: Array, gap: float = 0.01) -> list[tuple[int, int]]:
     >>> fx.mechanics.near_repeated([10.0, 10.05, 20.0, 30.0, 40.0, 50.0])
     [(0, 1)]
     """
+    omega = numbers(omega, "omega", (6,))
+    gap = not_negative(gap, "gap")
     return [(i, i + 1) for i in range(5) if omega[i + 1] - omega[i] < gap * omega[i + 1]]
 
 

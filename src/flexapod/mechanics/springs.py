@@ -19,4 +19,4 @@ BY_LEG = (np.arange(6)[:, None] == SPRING_LEG).astype(np.float64)
 def spring_matrix(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None) -> Array:
     """F (..., 6, m): a column for each spring, the root of its stiffness times the wrench of its unit force."""
     s = states(hexapod, pose, base)
-    return _core.spring_matrix(hexapod.packed, s.platform, s.base).reshape(*s.shape, 6, -1)
+    return _core.spring_matrix(hexapod.packed, s.platform, s.base).reshape(*s.shape, 6, len(SPRING_LEG))

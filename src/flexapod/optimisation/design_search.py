@@ -209,7 +209,7 @@ def _told(
 
 def _start(problem: Problem, start: Mapping[str, float] | None, settings: Settings) -> Array:
     """The variables to begin with. A start that was given must keep the constraints."""
-    x = problem.map.from_values(start or {})
+    x = problem.map.from_values({} if start is None else start)
     if start is not None:
         found = problem.assess_at(x, settings.samples, settings.seed)
         if not found.feasible:

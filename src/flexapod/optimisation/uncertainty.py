@@ -150,7 +150,7 @@ def robustness(
     ensemble = Ensemble(hexapod, uncertain)
     whole(samples, "samples", 2)
     whole(seed, "seed", 0)
-    if sensitivity and (whole(sensitivity, "sensitivity") < 16 or sensitivity & (sensitivity - 1)):
+    if whole(sensitivity, "sensitivity", 0) and (sensitivity < 16 or sensitivity & (sensitivity - 1)):
         raise ArgumentError(f"sensitivity is {sensitivity}; it must be a power of two, at least 16, such as 1024.")
     where = as_region(region)
     rows = where.rows(home_of(hexapod, where), whole(pose_samples, "pose_samples"))

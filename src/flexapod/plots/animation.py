@@ -15,7 +15,7 @@ import xarray as xr
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from flexapod.checks import positive, whole
+from flexapod.checks import instance, numbers, positive, whole
 from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
@@ -99,7 +99,7 @@ def animate_mode(
     35000.0
     """
     pose = single_pose(hexapod, pose)
-    if number not in range(1, 7):
+    if whole(number, "number") > 6:
         raise ArgumentError(f"number is {number!r}; it must be a mode from 1 to 6.")
     positive(amplitude, "amplitude", "m")
     modes = natural_modes(hexapod, pose, joint=joint)
@@ -182,7 +182,8 @@ def animate_simulation(
     film, times = _simulated(
         dataset, hexapod, Pose(np.zeros(3)) if base is None else single_pose(hexapod, base, "base")
     )
-    first, last = window or _last_periods(times, film.platform, frames)
+    own = _last_periods(times, film.platform, frames)
+    first, last = own if window is None else numbers(window, "window", (2,)).tolist()
     if not times[0] <= first < last <= times[-1]:
         raise ArgumentError(f"window is {window!r} s; it must ascend within {times[0]:.6g} to {times[-1]:.6g} s")
     at = np.linspace(first, last, frames)
@@ -215,9 +216,9 @@ class _Film(NamedTuple):
         if travel == 0:
             raise ArgumentError("nothing moves in what is to be shown; choose a window or a simulation with motion")
         size = float(np.ptp(np.vstack([self.top, self.feet]), axis=0).max())
-        factor = float(f"{_TRAVEL * size / travel:.2g}") if exaggeration is None else float(exaggeration)
-        if not (np.isfinite(factor) and factor > 0):
-            raise ArgumentError(f"exaggeration is {exaggeration!r}; it must be finite and > 0. Use 1 for true motion.")
+        factor = (
+            float(f"{_TRAVEL * size / travel:.2g}") if exaggeration is None else positive(exaggeration, "exaggeration")
+        )
         if factor * travel > _WIDEST * size:
             raise ArgumentError(
                 f"exaggeration is {factor:.6g}, which shows motions {factor * travel / size:.3g} times as large as the "
@@ -316,6 +317,7 @@ def _writer(path: Path) -> tuple[AbstractMovieWriter, Any]:
 
 def _simulated(dataset: xr.Dataset, hexapod: Hexapod, base: Pose) -> tuple[_Film, Array]:
     """The displacements of a simulation and its times, s."""
+    instance(dataset, xr.Dataset, "dataset", "as fx.simulate gives it")
     if "run" in dataset.dims or "displacement" not in dataset:
         raise ArgumentError("the dataset is not that of one simulation; choose one of several with .isel(run=...)")
     if dataset.time.size < 2:

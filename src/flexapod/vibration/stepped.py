@@ -134,6 +134,7 @@ def stepped_sine(
         raise ArgumentError("omega holds zero; a stepped sine needs frequencies > 0. Use transmissibility at zero.")
     shaker = _Shaker(hexapod, pose, tangent, float(amplitude), axis, joint)
     linear = shaker.linear_response(w)
+    positive(tolerance, "tolerance")
     found = _shoot(shaker, w, linear, tolerance, progress)
     return _dataset(shaker, w, linear, found).assign_attrs(response_attributes(tangent))
 

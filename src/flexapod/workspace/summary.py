@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from flexapod import checks
 from flexapod.conventions import AXES, Array
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.workspace.distribution import QUANTILES, binned, exactly
@@ -158,7 +159,7 @@ def summarise(sweep: xr.Dataset, at_least: float | None = None, *, all_poses: bo
         best_conditioned=_at(sweep, first.place["cond_H", "least"]) if both else None,
         worst_conditioned=_at(sweep, first.place["cond_H", "most"]) if both else None,
         quantiles=dict(zip(QUANTILES, spread_out.quantiles.tolist(), strict=True)),
-        above=None if at_least is None else _above(counted, first, at_least),
+        above=None if at_least is None else _above(counted, first, checks.number(at_least, "at_least", "rad/s")),
         correlation=spread_out.correlation,
         spread=spread_out.spread,
     )
