@@ -129,7 +129,7 @@ AROUND = ("--around", "0.05", "10")
         (("--box", "w=0:1"), "--box w=0:1"),
         (("--box", "x=0:1,x=0:2"), "gives x twice"),
         (("--box", "x=0:1:2"), "is no range"),
-        (("--box", "x=a:b"), "'a' is no number"),
+        (("--box", "x=a:b"), "--box x: 'a' is not a number with a unit of length"),
         (("--grid", "x=0:1"), "is no axis"),
         (("--grid", "x=0:1:0"), "at least 1"),
         (("--grid", "x=0:1:3", "--points", "5"), "go with --box or --around"),

@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.shell_completion import CompletionItem
 
+from flexapod.cli.options.quantities import LENGTH, POSITIVE_LENGTH, SIX
 from flexapod.conventions import JOINT_MODELS
 from flexapod.output_files import check_directory, check_file
 
@@ -95,7 +96,6 @@ _MOST = 1e30  # of any number, in its unit: its square and cube are finite
 NUMBER = Finite(min=-_MOST, max=_MOST)
 POSITIVE = Finite(min=0, min_open=True, max=_MOST)
 NOT_NEGATIVE = Finite(min=0, max=_MOST)
-SECONDS = Finite(min=0, min_open=True, max=1e9)
 SEED = click.IntRange(0, 2**32 - 1)
 THREADS = click.IntRange(1, 4096)
 
@@ -147,7 +147,7 @@ def _as_rpy(context: click.Context, _: click.Parameter, six: tuple[float, ...] |
 def pose_named(*names: str, help: str) -> Callable[[Any], Any]:
     """An option whose six numbers are a pose, as `rotation_options` beside it say; None where it is not given."""
     metavar = "X Y Z ROLL PITCH YAW"
-    return click.option(*names, type=NUMBER, nargs=6, default=None, metavar=metavar, callback=_as_rpy, help=help)
+    return click.option(*names, type=SIX, default=None, metavar=metavar, callback=_as_rpy, help=help)
 
 
 def rotation_options(function: Any) -> Any:
@@ -162,8 +162,7 @@ def rotation_options(function: Any) -> Any:
     )
     pivot = click.option(
         "--pivot",
-        type=NUMBER,
-        nargs=3,
+        type=(LENGTH,) * 3,
         default=None,
         metavar="X Y Z",
         help="Point of the platform, in its frame, m, that the angles of poses turn it about. Default: its origin.",
@@ -190,7 +189,7 @@ joint_option = click.option(
 )
 characteristic_length_option = click.option(
     "--characteristic-length",
-    type=POSITIVE,
+    type=POSITIVE_LENGTH,
     default=None,
     metavar="M",
     help="Divide the moment rows of H by this length before its condition number is taken.",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.cli.options.quantities import FREQUENCY, HERTZ, TIME, Quantity
 
 if TYPE_CHECKING:
     from flexapod.conventions import JointModel
@@ -64,13 +65,15 @@ law_options = common.stack(
         show_default=True,
         help="What pid commands: leg forces, or changes of leg length.",
     ),
-    click.option("--bandwidth", type=common.POSITIVE, metavar="RAD_S", help="Of the filter of pid's derivative."),
+    click.option("--bandwidth", type=FREQUENCY, metavar="RAD_S", help="Of the filter of pid's derivative."),
     click.option(
         "--gain",
         type=common.POSITIVE,
         help="Of force (rad/s) or velocity (N s/m). Default: the most damping at the sampling time.",
     ),
-    click.option("--leak", type=common.NOT_NEGATIVE, metavar="RAD_S", help="Of force. Default: omega_1 / 10."),
+    click.option(
+        "--leak", type=Quantity("frequency", need=">= 0"), metavar="RAD_S", help="Of force. Default: omega_1 / 10."
+    ),
     click.option(
         "--measure",
         default="acceleration",
@@ -82,24 +85,26 @@ law_options = common.stack(
     click.option("--noise", type=common.POSITIVE, help="Sensor noise that lqg and h-infinity expect. Default: 0.1."),
 )
 run_options = common.stack(
-    click.option("--dt", type=common.POSITIVE, metavar="S", help="Sampling time. Default: 2 pi/(20 omega_max)."),
+    click.option("--dt", type=TIME, metavar="S", help="Sampling time. Default: 2 pi/(20 omega_max)."),
     click.option("--delay", type=common.count(0, 100), default=0, help="Samples by which forces come late."),
     click.option(
-        "--shake", type=common.POSITIVE, metavar="M_S2", help="Run on a base with this RMS acceleration on each axis."
+        "--shake",
+        type=Quantity("acceleration", need="> 0"),
+        metavar="M_S2",
+        help="Run on a base with this RMS acceleration on each axis.",
     ),
     click.option("--axes", default="x,y,z", show_default=True, metavar="AXIS,...", help="Axes of the base that shake."),
     click.option(
         "--band",
-        type=common.POSITIVE,
-        nargs=2,
+        type=(HERTZ, HERTZ),
         default=None,
         metavar="HZ HZ",
         help="Of the shaking. Default: about the modes.",
     ),
+    click.option("--duration", type=TIME, metavar="S", help="Of the run. Default: 60 periods of the lowest mode."),
     click.option(
-        "--duration", type=common.SECONDS, metavar="S", help="Of the run. Default: 60 periods of the lowest mode."
+        "--force-limit", type=Quantity("force", need="> 0"), metavar="N", help="Largest force of an actuator."
     ),
-    click.option("--force-limit", type=common.POSITIVE, metavar="N", help="Largest force of an actuator."),
     click.option("--sensor-noise", type=common.POSITIVE, help="RMS noise of the first measurement, in its unit."),
     click.option("--seed", type=common.SEED, default=0, show_default=True, help="Of shaking and noise."),
     common.out_option("Where to write the report and figures. Default: nothing is written."),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from flexapod.cli.options import common
-from flexapod.cli.options.quantities import Quantity, dimension_of, read
+from flexapod.cli.options.quantities import HERTZ, TIME, dimension_of, read
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, TWO_PI
 
 if TYPE_CHECKING:
@@ -26,7 +26,6 @@ NUMBERS = {
 }
 RATES = {"length": "velocity", "angle": "angular velocity"}
 SECOND_RATES = {"length": "acceleration", "angle": "angular acceleration"}
-POSITIVE_TIME = Quantity("time", need="> 0")
 
 
 def _drive(name: str, metavar: str, words: str) -> Callable[[Any], Any]:
@@ -64,13 +63,13 @@ drive_options = common.stack(
     ),
     click.option(
         "--highpass",
-        type=Quantity("frequency", "Hz", "> 0"),
+        type=HERTZ,
         default=None,
         metavar="HZ",
         help="Take what is slower than this out of every recording.",
     ),
     click.option("--seed", type=common.SEED, default=1, show_default=True, help="Of --random."),
-    click.option("--ramp", type=POSITIVE_TIME, default=None, metavar="SECONDS", help="Let all drives rise smoothly."),
+    click.option("--ramp", type=TIME, default=None, metavar="SECONDS", help="Let all drives rise smoothly."),
 )
 
 

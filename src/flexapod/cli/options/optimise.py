@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import click
 
 from flexapod.cli.options import common
+from flexapod.cli.options.quantities import DEGREES, LENGTH
 
 if TYPE_CHECKING:
     from flexapod.conventions import JointModel
@@ -33,8 +34,7 @@ where_options = common.stack(
     common.pose_option,
     click.option(
         "--around",
-        type=common.NUMBER,
-        nargs=2,
+        type=(LENGTH, DEGREES),
         default=None,
         metavar="M DEG",
         help="The workspace of every coordinate of the home pose plus and minus these; it moves with home.",

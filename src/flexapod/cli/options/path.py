@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.cli.options.quantities import FREQUENCY, POSITIVE_LENGTH, TIME, Quantity
 
 if TYPE_CHECKING:
     from flexapod.conventions import JointModel
@@ -45,9 +46,7 @@ path_options = common.stack(
     common.pose_named("--to", "goal", help="Plan to this pose (m, degrees)."),
     common.rotation_options,
     click.option("--from-home", is_flag=True, help="Measure the poses of FILE, --from and --to from the home pose."),
-    click.option(
-        "--bound", type=common.POSITIVE, metavar="RAD_S", help="Least natural frequency that the path should keep."
-    ),
+    click.option("--bound", type=FREQUENCY, metavar="RAD_S", help="Least natural frequency that the path should keep."),
     click.option(
         "--ends",
         type=click.Choice(["rest", "free", "periodic"]),
@@ -63,14 +62,22 @@ path_options = common.stack(
         show_default=True,
         help="What a planned path has least of; time needs --leg-rate or --leg-acceleration.",
     ),
-    click.option("--duration", type=common.SECONDS, metavar="S", help="Duration of a planned path. Default: 1 s."),
+    click.option("--duration", type=TIME, metavar="S", help="Duration of a planned path. Default: 1 s."),
     click.option(
-        "--leg-rate", type=common.POSITIVE, metavar="M_S", help="Fastest rate of a leg; times a planned path."
+        "--leg-rate",
+        type=Quantity("velocity", need="> 0"),
+        metavar="M_S",
+        help="Fastest rate of a leg; times a planned path.",
     ),
-    click.option("--leg-acceleration", type=common.POSITIVE, metavar="M_S2", help="Largest acceleration of a leg."),
+    click.option(
+        "--leg-acceleration",
+        type=Quantity("acceleration", need="> 0"),
+        metavar="M_S2",
+        help="Largest acceleration of a leg.",
+    ),
     click.option("--condition", type=common.POSITIVE, metavar="C", help="Most that cond(H) may be on a planned path."),
     click.option(
-        "--clearance", type=common.POSITIVE, metavar="M", help="Least distance of leg axes on a planned path."
+        "--clearance", type=POSITIVE_LENGTH, metavar="M", help="Least distance of leg axes on a planned path."
     ),
     click.option("--limits/--no-limits", default=True, help="Whether a planned path keeps the design's limits."),
     click.option("--seed", type=common.SEED, default=0, show_default=True, help="Of the planner's samples."),

@@ -11,6 +11,7 @@ import click
 import numpy as np
 
 from flexapod.cli.options import pose_columns
+from flexapod.cli.options.quantities import read
 from flexapod.conventions import AXES, ROTATIONS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.kinematics import home_pose
@@ -119,11 +120,9 @@ def _parts(option: str, texts: Iterable[str]) -> dict[str, str]:
 
 
 def _number(option: str, name: str, text: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        raise click.UsageError(f"{option} {name}: {text!r} is no number.") from None
-    return math.radians(number) if name in ROTATIONS else number
+    if name in ROTATIONS:
+        return math.radians(read(text, "angle", f"{option} {name}", "deg"))
+    return read(text, "length", f"{option} {name}")
 
 
 def _with_home(hexapod: Hexapod, option: str, given: dict[str, Any]) -> dict[str, Any]:

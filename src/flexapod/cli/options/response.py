@@ -7,6 +7,7 @@ from pathlib import Path
 import click
 
 from flexapod.cli.options import common
+from flexapod.cli.options.quantities import FREQUENCY, LENGTH
 from flexapod.conventions import AXES, LEGS
 
 response_options = common.stack(
@@ -23,10 +24,10 @@ response_options = common.stack(
     ),
     click.option("--relative", is_flag=True, help="Motion relative to the base instead of absolute motion."),
     click.option(
-        "--omega-min", type=common.POSITIVE, default=None, metavar="RAD/S", help="Default: a fifth of the lowest mode."
+        "--omega-min", type=FREQUENCY, default=None, metavar="RAD/S", help="Default: a fifth of the lowest mode."
     ),
     click.option(
-        "--omega-max", type=common.POSITIVE, default=None, metavar="RAD/S", help="Default: 1.5 times the highest mode."
+        "--omega-max", type=FREQUENCY, default=None, metavar="RAD/S", help="Default: 1.5 times the highest mode."
     ),
     click.option(
         "--points",
@@ -37,8 +38,7 @@ response_options = common.stack(
     ),
     click.option(
         "--point",
-        type=common.NUMBER,
-        nargs=3,
+        type=(LENGTH,) * 3,
         default=(0.0, 0.0, 0.0),
         metavar="X Y Z",
         help="Output point, m, platform frame.",
@@ -48,7 +48,7 @@ response_options = common.stack(
     ),
     click.option(
         "--amplitude",
-        type=common.POSITIVE,
+        type=str,
         default=None,
         metavar="M",
         help="Shake the base of the non-linear machine too, by this amplitude (m or rad), at --steps frequencies.",

@@ -5,14 +5,14 @@ from __future__ import annotations
 import click
 
 from flexapod.cli.options import common
-from flexapod.cli.options.drives import POSITIVE_TIME, drive_options
-from flexapod.cli.options.quantities import Quantity
+from flexapod.cli.options.drives import drive_options
+from flexapod.cli.options.quantities import TIME, Quantity
 
 simulate_options = common.stack(
     drive_options,
     click.option(
         "--duration",
-        type=POSITIVE_TIME,
+        type=TIME,
         default=None,
         metavar="SECONDS",
         help="As 0.5, 500ms or 2min. Default: the length of the recording.",

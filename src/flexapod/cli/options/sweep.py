@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.cli.options.quantities import DEGREES, LENGTH, Quantity
 from flexapod.output_files import check_figure, check_file
 
 if TYPE_CHECKING:
@@ -71,8 +72,7 @@ poses_options = common.stack(
     ),
     click.option(
         "--around",
-        type=common.NUMBER,
-        nargs=2,
+        type=(LENGTH, DEGREES),
         default=None,
         metavar="M DEG",
         help="The box of the home pose plus and minus so many metres and degrees.",
@@ -144,7 +144,7 @@ machine_options = common.stack(
 reading_options = common.stack(
     click.option(
         "--at-least",
-        type=common.NUMBER,
+        type=Quantity("frequency"),
         default=None,
         metavar="RAD_S",
         help="A wanted stability index: what part of the workspace reaches it?",
@@ -164,7 +164,7 @@ reading_options = common.stack(
     ),
     click.option(
         "--level",
-        type=common.NUMBER,
+        type=Quantity("frequency"),
         default=None,
         metavar="RAD_S",
         help="Index of the surface that --figure draws.  [default: the median]",

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import Progress
 
+from flexapod.cli.options.quantities import read
 from flexapod.cli.options.spectra import read_spectra
-from flexapod.conventions import AXES, LEGS, Array
+from flexapod.conventions import AXES, LEGS, ROTATIONS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import linearise
@@ -100,13 +101,14 @@ def _variable(given: dict[str, Any]) -> str:
 
 def _stepped(hexapod: Hexapod, pose: Pose, given: dict[str, Any], ends: tuple[float, float], quiet: bool) -> xr.Dataset:
     omega = np.geomspace(*ends, given["steps"])
+    dimension = "angle" if _axis(given) in ROTATIONS else "length"
     with Progress(console=Console(stderr=True), disable=quiet, transient=True) as bar:
         task = bar.add_task(f"stepped sine, {omega.size} frequencies", total=1.0)
         return stepped_sine(
             hexapod,
             pose,
             omega=omega,
-            amplitude=given["amplitude"],
+            amplitude=read(given["amplitude"], dimension, "--amplitude", need="> 0"),
             axis=_axis(given),
             joint=given["joint"],
             progress=lambda done: bar.update(task, completed=done),
