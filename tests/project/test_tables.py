@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.helpers.cases import case
 
 import flexapod as fx
 from flexapod.cli.options import poses, waypoints
@@ -92,3 +93,20 @@ def test_a_wrong_cell_is_told_with_its_line():
     table = parse_table("# remark\nforce_MM\n\n1\n1e5x\n", {"force": "force"}, "Give a force.")
     with pytest.raises(fx.ArgumentError, match="line 5, column force_MM: '1e5x' is no number"):
         table.numbers(table.columns[0], {"mm": (1, 1e3)}, finite=False)
+
+
+@pytest.mark.parametrize("name", ["wp", "wp2", "wpmm", "wrapwp", "wrapwp2"])
+def test_waypoints_as_people_write_them(name):
+    path = waypoints.read(case("recordings", f"{name}.csv"), "rest")
+    assert path.waypoints.position[0].tolist() == [0, 0, 2.39]
+
+
+def test_poses_as_people_write_them():
+    rows = poses.read_poses(case("recordings", "poses.csv"))
+    assert rows == pytest.approx(np.array([[0, 0, 2.39, 0, 0, 0], [0.1, 0, 2.39, 0, np.radians(5), 0]]))
+
+
+def test_a_field_without_end_is_told(tmp_path):
+    (tmp_path / "a.csv").write_text('time,z\n"' + "1" * 140_000 + "\n")
+    with pytest.raises(fx.ArgumentError, match=r"a\.csv: it is no CSV file: field larger than field limit"):
+        fx.read_time_series(tmp_path / "a.csv")
