@@ -129,6 +129,7 @@ def test_numbers_of_the_readout_do_not_overlap(values: tuple[float, ...], opened
             assert text_right <= edge["x"] + edge["width"]
         for one, other in pairwise(boxes):
             assert one[2] != other[2] or one[1] <= other[0] + 2
+    page.unroute_all(behavior="wait")
 
 
 def test_limits_are_not_read_aloud_at_each_pose(opened: Any) -> None:
