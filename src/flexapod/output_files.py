@@ -77,7 +77,7 @@ def write_netcdf(dataset: xr.Dataset, path: str | PathLike[str], engine: str | N
 
     It is made in memory first: the HDF5 library ends the process where a disk is full.
     """
-    write_file(path, bytes(dataset.to_netcdf(engine=engine)))  # type: ignore[call-overload, arg-type]
+    write_file(path, bytes(dataset.to_netcdf(engine=engine)))  # type: ignore[arg-type]
 
 
 def check_figure(path: Path) -> None:

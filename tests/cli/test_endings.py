@@ -35,12 +35,12 @@ class SlycotResultWarning(UserWarning):
     ids=lambda value: type(value).__name__ if isinstance(value, BaseException) else "",
 )
 def test_an_error_of_the_machine_is_a_sentence(error, words, run, monkeypatch):
-    from flexapod.mechanics import modes
+    from flexapod.cli.options import common
 
     def fail(*args, **kwargs):
         raise error
 
-    monkeypatch.setattr(modes, "natural_modes", fail)
+    monkeypatch.setattr(common, "machine", fail)
     code, out, err = run(*MODES)
     assert (code, out) == (2, "")
     assert words in err
@@ -52,12 +52,12 @@ def test_an_error_of_the_machine_is_a_sentence(error, words, run, monkeypatch):
 
 
 def test_a_fault_of_flexapod_is_not_hidden(run, monkeypatch):
-    from flexapod.mechanics import modes
+    from flexapod.cli.options import common
 
     def fail(*args, **kwargs):
         raise KeyError("own")
 
-    monkeypatch.setattr(modes, "natural_modes", fail)
+    monkeypatch.setattr(common, "machine", fail)
     with pytest.raises(KeyError):
         run(*MODES)
 
