@@ -149,8 +149,10 @@ def _number(ax: Axes, base: Array, platform: Array) -> None:
     for leg, at in enumerate(middle):
         places.setdefault(tuple(np.round(at / near).astype(int)), []).append(leg)
     for legs in places.values():
-        ax.text(*middle[legs[0]], ", ".join(LEGS[leg] for leg in legs), ha="center", va="center", fontsize=8, color=INK,
-                bbox={"boxstyle": "round,pad=0.2", "fc": "white", "ec": "none"}, zorder=5)  # fmt: skip
+        words = ", ".join(LEGS[leg] for leg in legs)
+        frame = {"boxstyle": "round,pad=0.2", "fc": "white", "ec": "none"}
+        x, y = middle[legs[0]]
+        ax.text(x, y, words, ha="center", va="center", fontsize=8, color=INK, bbox=frame, zorder=5)
 
 
 def front(found: ParetoFront) -> Figure:

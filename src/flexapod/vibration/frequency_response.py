@@ -114,7 +114,7 @@ def transmissibility(
     steady = steady_response(linear, w, eta)
     relative = to_point @ steady.relative
     arrays = {
-        "absolute": relative + to_point @ linear.carry,
+        "absolute": to_point @ steady.absolute,
         "relative": relative,
         "compliance": to_point @ steady.wrench @ to_point.T,
         "command": to_point @ steady.command,

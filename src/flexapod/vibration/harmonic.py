@@ -21,10 +21,11 @@ _BLOCK = 4096  # frequencies solved at a time: bounds the memory
 class SteadyResponse(NamedTuple):
     """Complex amplitudes (n, 6, 6) of x(t) = Re(X e^{i omega t}): the platform's small displacement, inertial axes.
 
-    relative: less the rigid motion with the base, per base displacement (absolute = carry + relative). wrench: per
-    wrench on the platform's reference point. command: per commanded change of each leg's unstretched length.
+    absolute: per base displacement; relative: the same less the rigid motion with the base. wrench: per wrench on the
+    platform's reference point. command: per commanded change of each leg's unstretched length.
     """
 
+    absolute: Complex
     relative: Complex
     wrench: Complex
     command: Complex
@@ -51,13 +52,16 @@ def steady_response(linear: Linearisation, omega: Array, loss_factor: ArrayLike 
     modes, where K - omega^2 M is (omega_m - omega)(omega_m + omega): its cancellation near resonance costs no digits.
     """
     eta = loss_factors(loss_factor)
-    out = SteadyResponse(*(np.empty((omega.size, 6, 6), dtype=np.complex128) for _ in range(3)))
+    out = SteadyResponse(*(np.empty((omega.size, 6, 6), dtype=np.complex128) for _ in range(4)))
     basis = _Modes(linear, eta)
     for start in range(0, omega.size, _BLOCK):
         part = slice(start, start + _BLOCK)
-        X = basis.solve(omega[part])
-        for target, columns in zip(out, (X[..., :6], X[..., 6:12], X[..., 12:]), strict=True):
+        for target, columns in zip(out, np.split(basis.solve(omega[part]), 4, axis=2), strict=True):
             target[part] = columns
+    # Below the highest resonance the motion is near the base's, above it nearly none is left: each is the sum of two
+    # numbers or their small difference.
+    slow = omega**2 <= basis.square[-1]
+    out.absolute[slow] = out.relative[slow] + linear.carry
     return out
 
 
@@ -80,18 +84,28 @@ class _Modes:
         rounding = 1e-14 * np.abs(linear.C).max() * np.abs(linear.carry).max()
         self.rubbed = left @ np.where(np.abs(rubbed) > rounding, rubbed, 0.0)
         self.inertia = left @ (linear.M @ linear.carry + linear.M_b)
+        self.base = (
+            left @ linear.M_b,
+            left @ linear.C_b,
+            left @ linear.K_b - 1j * self.loss @ left @ linear.M @ linear.carry,
+        )
         command = linear.H * (linear.leg_stiffness * (1 + 1j * eta))  # wrench of unit commands
         self.given = np.hstack([left, left @ command])
 
     def solve(self, omega: Array) -> Complex:
-        """Displacements (n, 6, 18) per base displacement, wrench and command."""
+        """Displacements (n, 6, 24) per base displacement, also less the rigid motion, per wrench and command."""
         w = omega[:, None, None]
         root = np.sqrt(self.square.astype(np.complex128))  # imaginary for a mode that gravity topples
         detuning = (root - omega[:, None]) * (root + omega[:, None])
         Z: Complex = self.skew + 1j * self.loss + 1j * w * self.friction
         Z[:, range(6), range(6)] += detuning
         given = np.broadcast_to(self.given, (omega.size, 6, 12))
-        right = np.concatenate([w**2 * self.inertia - 1j * w * self.rubbed - self.tilt, given], axis=2)
+        M_b, C_b, K_b = self.base
+        absolute, relative = (
+            w**2 * mass - 1j * w * damping - stiffness
+            for mass, damping, stiffness in ((M_b, C_b, K_b), (self.inertia, self.rubbed, self.tilt))
+        )
+        right = np.concatenate([absolute, relative, given], axis=2)
         return self.shape @ _solve(Z, right)
 
 

@@ -186,7 +186,7 @@ class _Filters(NamedTuple):
         """Spectral densities (n, 6) of every quantity; base: (n, 6) or (n, 6, 6)."""
         steady = steady_response(self.linear, omega, self.eta)
         relative = self.to_point @ steady.relative
-        absolute = relative + self.to_point @ self.linear.carry
+        absolute = self.to_point @ steady.absolute
         order = {"displacement": 0, "velocity": 2, "acceleration": 4}[self.of]
         with np.errstate(divide="ignore"):
             displacement = omega[:, None] ** -float(order)

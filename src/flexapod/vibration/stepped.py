@@ -158,7 +158,7 @@ class _Shaker:
     def linear_response(self, omega: Array) -> Complex:
         """(n, 6): absolute motion per base motion."""
         j = AXES.index(self.axis)
-        return steady_response(self.tangent, omega).relative[:, :, j] + self.tangent.carry[:, j]
+        return steady_response(self.tangent, omega).absolute[:, :, j]
 
     def travel(self, response: Complex) -> Array:
         """(n,): largest motion of a platform joint by a linear response, over the leg's length."""

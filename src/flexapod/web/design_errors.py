@@ -79,7 +79,8 @@ def _key_in(message: str) -> str:
 
 def _lines(text: str) -> dict[tuple[str, str], int]:
     """The line where each key is first set in a design file, by its table and its name as it is written."""
-    here, found = "", {}
+    here = ""
+    found: dict[tuple[str, str], int] = {}
     for number, line in enumerate(text.splitlines(), 1):
         header = re.match(r"\s*\[([\w.]+)\]\s*(#.*)?$", line)
         key = re.match(r"\s*([\w-]+)\s*=", line)
