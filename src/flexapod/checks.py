@@ -13,17 +13,21 @@ from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, shown
 
 
+def is_masked(value: Any) -> bool:
+    """Whether some entries of a value are masked; plain arrays do not load `numpy.ma`, which is slow, for it."""
+    return isinstance(value, np.ndarray) and type(value) is not np.ndarray and bool(np.ma.is_masked(value))
+
+
 def floats(value: Any) -> Array:
     """A copy as float64 of any shape. Raises TypeError or ValueError for what is no number, or none that can be used.
 
     NumPy would leave out the mask of masked entries and the imaginary parts of complex ones, and cannot hold integers
     of hundreds of digits.
     """
-    if isinstance(value, np.ndarray):
-        if np.ma.is_masked(value):
-            raise ValueError("some entries are masked")
-        if value.dtype.kind in "cmM":
-            raise TypeError(f"numbers of the type {value.dtype}")
+    if is_masked(value):
+        raise ValueError("some entries are masked")
+    if isinstance(value, np.ndarray) and value.dtype.kind in "cmM":
+        raise TypeError(f"numbers of the type {value.dtype}")
     try:
         return np.array(value, dtype=np.float64)
     except OverflowError as error:
@@ -83,7 +87,7 @@ def numbers(value: ArrayLike, name: str, shape: tuple[int | None, ...] | None = 
     """Finite float64 numbers of a shape, in which None stands for any size, or of any shape; a copy."""
     try:
         array = floats(value)
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, ValueError):
         raise ArgumentError(f"{name} is {shown(value)}; it must hold numbers.") from None
     if shape is not None and not _fits(array.shape, shape):
         wanted = ", ".join("n" if size is None else str(size) for size in shape)

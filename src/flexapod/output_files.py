@@ -7,7 +7,7 @@ interrupt leaves what was there before.
 from __future__ import annotations
 
 import os
-import shutil
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from os import PathLike
@@ -46,7 +46,7 @@ def completed(path: str | PathLike[str]) -> Iterator[Path]:
         yield making
         if making != place:
             if place.exists():
-                shutil.copymode(place, making)
+                making.chmod(stat.S_IMODE(place.stat().st_mode))
             os.replace(making, place)
     except OutputError:
         raise

@@ -27,7 +27,7 @@ def vectors(value: ArrayLike, name: str, width: int = 3, error_type: type[Flexap
     """A copy of `value` as finite float64 of shape (..., width); raises `error_type` otherwise."""
     try:
         array = floats(value)
-    except (TypeError, ValueError, OverflowError) as error:
+    except (TypeError, ValueError) as error:
         raise error_type(f"{name} is {shown(value)}; it must hold {width} numbers.") from error
     if array.ndim == 0 or array.shape[-1] != width:
         raise error_type(f"{name} has shape {array.shape}; its last axis must hold {width} numbers.")
@@ -146,7 +146,7 @@ class Pose(metaclass=Suggesting):
         """
         try:
             numbers = np.broadcast_arrays(*(floats(v) for v in (x, y, z, roll, pitch, yaw)))
-        except (TypeError, ValueError, OverflowError) as error:
+        except (TypeError, ValueError) as error:
             raise PoseError(f"x, y, z, roll, pitch and yaw must be numbers, or arrays that fit: {error}") from error
         six = vectors(np.stack(numbers, axis=-1), "pose", 6)
         return Pose(six[..., :3], rpy_matrix(np.radians(six[..., 3:]) if degrees else six[..., 3:]))

@@ -26,7 +26,7 @@ def checked_matrices(rotation: Any) -> Array:
     matrix = rotation.as_matrix() if hasattr(rotation, "as_matrix") else rotation
     try:
         matrix = floats(matrix)  # a copy: a pose does not change with its maker's arrays
-    except (TypeError, ValueError, OverflowError) as error:
+    except (TypeError, ValueError) as error:
         raise PoseError(f"rotation is {shown(rotation)}; {_ROTATION}") from error
     if matrix.ndim < 2 or matrix.shape[-2:] != (3, 3):
         raise PoseError(f"rotation has shape {matrix.shape}; {_ROTATION}")

@@ -55,7 +55,7 @@ class Hardware:
         """
         try:
             limit = np.broadcast_to(floats(self.force_limit), (6,)).copy()
-        except (TypeError, ValueError, OverflowError):
+        except (TypeError, ValueError):
             raise ArgumentError(
                 f"force_limit is {shown(self.force_limit)}; give a number, or six for the legs"
             ) from None

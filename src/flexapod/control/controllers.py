@@ -225,7 +225,7 @@ def _gain_matrix(value: ArrayLike, name: str) -> Array:
     """A gain as a 6 x 6 matrix: one number, six, or a matrix."""
     try:
         gain = floats(value)
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, ValueError):
         raise ArgumentError(f"{name} is {shown(value)}; give a number, six numbers, or a 6 x 6 matrix") from None
     if gain.shape not in ((), (6,), (6, 6)) or not np.isfinite(gain).all():
         raise ArgumentError(

@@ -46,7 +46,7 @@ class Home(Pose):
         if not isinstance(value, Pose):
             try:
                 six = floats(value)
-            except (TypeError, ValueError, OverflowError):
+            except (TypeError, ValueError):
                 six = np.empty(0)
             if six.shape != (6,):
                 raise DesignError(

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.checks import is_masked
 from flexapod.conventions import Array
 from flexapod.design.schema import SHAPES, Key
 from flexapod.design.units import printed, si_unit, to_si
@@ -32,7 +33,7 @@ def check_value(name: str, value: Any, rule: Key, unit: str | None = None) -> Ar
 def _numbers(name: str, value: Any, rule: Key) -> Array:
     """The value as float64 of any shape; text, truth values and ragged lists are refused."""
     if hasattr(value, "__array__"):
-        if np.ma.is_masked(value):
+        if is_masked(value):
             raise DesignError(f"{name} has masked entries; it must be {rule.shape_text}. Fill them in.")
         value = np.asarray(value)
     found = _not_a_number(value, "")

@@ -47,7 +47,7 @@ def checked(times: ArrayLike, values: ArrayLike, titles: Sequence[str], lines: S
     """Samples without a hole in them. Raises ArgumentError that names the first bad one."""
     try:
         t, x = floats(times), floats(values)
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, ValueError):
         raise ArgumentError("times and values must hold numbers; one of them is something else.") from None
     if x.ndim == 1:
         x = x[:, None]

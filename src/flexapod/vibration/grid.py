@@ -118,7 +118,7 @@ def asked(omega: ArrayLike | None, frequency: ArrayLike | None) -> Array | None:
 def _row(value: ArrayLike, name: str, unit: str) -> Array:
     try:
         array = np.atleast_1d(floats(value))
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, ValueError):
         raise ArgumentError(f"{name} is {shown(value)}; it must hold frequencies in {unit}.") from None
     if array.ndim != 1 or array.size == 0:
         raise ArgumentError(f"{name} has shape {array.shape}; it must be a non-empty row of frequencies in {unit}.")

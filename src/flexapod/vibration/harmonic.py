@@ -35,7 +35,7 @@ def loss_factors(value: ArrayLike) -> Array:
     """One loss factor for all legs or one for each, as (6,); raises ArgumentError unless finite and not negative."""
     try:
         eta = np.broadcast_to(floats(value), (6,))
-    except (TypeError, ValueError, OverflowError) as error:
+    except (TypeError, ValueError) as error:
         raise ArgumentError(f"loss_factor is {value!r}; give one number, or six for the legs") from error
     if not ((eta >= 0) & (eta <= MOST_LOSS)).all():
         raise ArgumentError(

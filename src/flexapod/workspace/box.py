@@ -134,7 +134,7 @@ def _range(name: str, value: ArrayLike) -> tuple[float, float]:
     unit = unit_of(name)
     try:
         pair = np.broadcast_to(floats(value), 2)
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, ValueError):
         raise ArgumentError(
             f"{name} is {shown(value)}; it must be a number, or a pair of least and largest, in {unit}"
         ) from None

@@ -99,7 +99,7 @@ def as_region(value: RegionLike, name: str = "region") -> Region:
         return PoseList(np.concatenate([value.position, value.rpy], axis=-1).reshape(-1, 6))
     try:
         rows = floats(value)
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, ValueError):
         rows = np.zeros(())
     if rows.ndim not in (1, 2) or rows.shape[-1] != 6 or not rows.size or not np.isfinite(rows).all():
         raise PoseError(

@@ -128,7 +128,7 @@ def pose_grid(
     for name, value in zip(AXES, (x, y, z, roll, pitch, yaw), strict=True):
         try:
             axis = np.atleast_1d(floats(value))
-        except (TypeError, ValueError, OverflowError):
+        except (TypeError, ValueError):
             raise ArgumentError(
                 f"{name} is {shown(value)}; it must be a number or a list of numbers, in {unit_of(name)}"
             ) from None
