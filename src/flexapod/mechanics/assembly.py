@@ -152,23 +152,24 @@ def forward_kinematics(hexapod: Hexapod, lengths: ArrayLike, *, start: PoseLike 
     packed = np.full((len(rows), _POSE), np.nan)
     misfit, status = np.full(len(rows), np.nan), np.full(len(rows), "wrong_lengths", dtype="<U13")
     packed[good], misfit[good] = _core.forward_kinematics(hexapod.packed, rows[good], _at_rest(starts[good]))
-    fits = misfit <= _TOLERANCE * rows.max(axis=1)
-    side, wanted = sides(hexapod, _poses(packed)), sides(hexapod, starts)
-    status[good] = np.where(fits[good], "found", "not_found")
-    again = good & ~(fits & (side * wanted >= 0))
+    pose = _poses(packed)
+    side, wanted = _sides_of_both(hexapod, pose, starts)
+    status[good] = "found"
+    again = good & ~((misfit <= _TOLERANCE * rows.max(axis=1)) & (side * wanted >= 0))
     if again.any():
         which = np.flatnonzero(again)
         found, numbers, errors = _nearest(hexapod, rows[which], starts[which], wanted[which])
         status[which] = "not_found"
         packed[which[found]], misfit[which[found]], status[which[found]] = numbers, errors, "nearest"
+        packed[status == "not_found"] = np.nan
+        pose = _poses(packed)
     if not shape and status[0] == "not_found":
         raise KinematicsError(
             f"leg lengths {np.array2string(rows[0], precision=6)} m admit no pose that could be found: the closest "
             f"one misses a length by {misfit[0]:.3g} m; check the lengths."
         )
-    packed[status == "not_found"] = np.nan
-    pose = _poses(packed.reshape(*shape, _POSE))
-    return FoundPose(pose.position, pose.matrix, status.reshape(shape), misfit.reshape(shape)[()])
+    position, matrix = pose.position.reshape(*shape, 3), pose.matrix.reshape(*shape, 3, 3)
+    return FoundPose(position, matrix, status.reshape(shape), misfit.reshape(shape)[()])
 
 
 def forward_kinematics_all(
@@ -255,7 +256,7 @@ def _checked(lengths: ArrayLike) -> tuple[Array, tuple[int, ...], np.ndarray]:
     """Rows of lengths, their batch axes, and which of them may be lengths; a single set must be."""
     try:
         wanted = floats(lengths)
-    except (TypeError, ValueError, OverflowError):
+    except (TypeError, ValueError):
         raise ArgumentError(f"lengths is {shown(lengths)}; it must hold 6 numbers.") from None
     if wanted.ndim < 2:
         wanted = vectors(wanted, "lengths", 6, ArgumentError)
@@ -271,7 +272,9 @@ def _checked(lengths: ArrayLike) -> tuple[Array, tuple[int, ...], np.ndarray]:
 def _starts(hexapod: Hexapod, rows: Array, shape: tuple[int, ...], good: np.ndarray, start: PoseLike | None) -> Pose:
     """A start for each row: the one given, home, or over the base at a height that the lengths suggest."""
     given = home_pose(hexapod) if start is None else as_pose(start, "start")
-    if given is None:
+    if given is not None:
+        vectors(given.position, "start")  # poses that were found may be NaN
+    else:
         b, p = hexapod.base_joints, hexapod.platform_joints
         centre = b.mean(axis=0) - p.mean(axis=0)
         offset = np.linalg.norm((p + centre - b)[:, :2], axis=1)
@@ -282,7 +285,13 @@ def _starts(hexapod: Hexapod, rows: Array, shape: tuple[int, ...], good: np.ndar
         position, matrix = np.broadcast_to(given.position, (*shape, 3)), np.broadcast_to(given.matrix, (*shape, 3, 3))
     except ValueError:
         raise PoseError(f"start has batch axes {given.shape}, which do not fit those of the lengths, {shape}") from None
-    return Pose(position.reshape(-1, 3), matrix.reshape(-1, 3, 3))
+    return Pose.trusted(position.reshape(-1, 3), matrix.reshape(-1, 3, 3))
+
+
+def _sides_of_both(hexapod: Hexapod, one: Pose, other: Pose) -> np.ndarray:
+    """`sides` of two lists of poses of the same length, (2, n): computed at once, for what a call costs."""
+    position, matrix = np.concatenate([one.position, other.position]), np.concatenate([one.matrix, other.matrix])
+    return sides(hexapod, Pose.trusted(position, matrix)).reshape(2, -1)
 
 
 def _all(search: _core.AssemblySearch, rows: Array, threads: int) -> tuple[np.ndarray, Array, Array, np.ndarray]:

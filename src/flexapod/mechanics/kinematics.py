@@ -208,14 +208,19 @@ def condition_number(
 
 def det_sign(hexapod: Hexapod, pose: Pose) -> Array:
     """Sign of det H at poses (n,): those of different signs have a singular pose between them on every way."""
-    return np.linalg.slogdet(np.nan_to_num(force_transformation(hexapod, pose)))[0]
+    return np.linalg.slogdet(_without_nan(force_transformation(hexapod, pose)))[0]
 
 
 def sides(hexapod: Hexapod, pose: Pose) -> np.ndarray:
     """The same as whole numbers, 0 where H is singular to rounding, and where no leg can take the pose."""
-    H = np.nan_to_num(force_transformation(hexapod, pose)) / np.repeat([1.0, platform_size(hexapod)], 3)[:, None]
+    H = _without_nan(force_transformation(hexapod, pose)) / np.repeat([1.0, platform_size(hexapod)], 3)[:, None]
     sigma = np.linalg.svd(H, compute_uv=False)
     return np.where(sigma[..., -1] > _NO_SIDE * sigma[..., 0], np.linalg.slogdet(H)[0], 0.0).astype(int)
+
+
+def _without_nan(H: Array) -> Array:
+    """H with zeros at poses that no leg can take."""
+    return np.where(np.isnan(H), 0.0, H)
 
 
 def platform_size(hexapod: Hexapod) -> float:
