@@ -1,33 +1,47 @@
-"""Draws the picture of the README: `python docs/images/draw.py`."""
+"""Draws the pictures of the manual anew: python docs/images/draw.py [NAME ...], without names all of them.
 
+A picture is drawn with the others of its script. Those of the page and of the tutorial need chromium.
+"""
+
+import subprocess
+import sys
 from pathlib import Path
 
-import matplotlib.pyplot as plt
-import numpy as np
+HERE = Path(__file__).parent
 
-import flexapod as fx
-from flexapod import plots
-from flexapod.plots import style
+#: Picture -> the script beside this one that draws it.
+PICTURES = {
+    "better.png": "draw_guides.py",
+    "frames.svg": "draw_conventions.py",
+    "house.svg": "draw_architecture.py",
+    "importance.png": "draw_guides.py",
+    "isolation.png": "draw_decisions.py",
+    "leg.svg": "draw_conventions.py",
+    "locus.png": "draw_decisions.py",
+    "map.png": "draw_guides.py",
+    "modes.png": "draw_guides.py",
+    "paper-corrections.png": "draw_paper.py",
+    "paper-frequencies.png": "draw_paper.py",
+    "plan-index.png": "draw_decisions.py",
+    "plan.png": "draw_decisions.py",
+    "response.png": "draw_guides.py",
+    "robust.png": "draw_guides.py",
+    "shock.png": "draw_guides.py",
+    "signs.svg": "draw_conventions.py",
+    "tutorial-better.png": "draw_tutorial.py",
+    "tutorial-map.png": "draw_tutorial.py",
+    "tutorial-report.png": "draw_tutorial.py",
+    "web-dark.png": "draw_page.py",
+    "web-light.png": "draw_page.py",
+}
 
 
-def main() -> None:
-    """A motion base, and its six modes."""
-    hexapod = fx.load("motion-base")
-    pose = fx.home_pose(hexapod)
-    modes = fx.natural_modes(hexapod, pose)
-    words = [mode.dominant for mode in fx.describe_modes(hexapod, pose)]
-    figure = plt.figure(figsize=(12, 5.4), facecolor="white")
-    left, right = figure.subfigures(1, 2, width_ratios=(5, 7))
-    for part in (left, right):
-        part.set_facecolor("white")
-    plots.machine(hexapod, pose, ax=left.add_subplot(projection="3d", position=(0.02, 0.02, 0.77, 0.96)))
-    for i, hz in enumerate(modes.omega / (2 * np.pi)):
-        place = (i % 3 / 3, 0.49 - 0.49 * (i // 3), 1 / 3, 0.44)
-        ax = right.add_subplot(projection="3d", position=place)
-        plots.mode(hexapod, pose, modes, i + 1, ax=ax)
-        ax.set_title(f"{hz:.2f} Hz, {words[i]}", y=1.04, fontsize=11, color=style.INK)
-    figure.savefig(Path(__file__).with_name("modes.png"), dpi=110)
+def draw(names: list[str]) -> None:
+    if unknown := sorted(set(names) - set(PICTURES)):
+        sys.exit(f"There is no picture {', '.join(unknown)}; give some of {', '.join(PICTURES)}.")
+    for script in dict.fromkeys(PICTURES[name] for name in names):
+        subprocess.run([sys.executable, HERE / script], check=True)
 
 
 if __name__ == "__main__":
-    main()
+    draw(sys.argv[1:] or list(PICTURES))

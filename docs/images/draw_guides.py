@@ -1,4 +1,4 @@
-"""Draws the figures of the how-to pages: python docs/images/draw_guides.py"""
+"""Draws the figures of the how-to pages, and that of modes.md in README.md: python docs/images/draw_guides.py"""
 
 from pathlib import Path
 
@@ -7,7 +7,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import flexapod as fx
-from flexapod.plots import optimisation, response, sweep
+from flexapod import plots
+from flexapod.plots import optimisation, response, style, sweep
 from flexapod.plots import simulation as plots_simulation
 
 HERE = Path(__file__).parent
@@ -16,6 +17,25 @@ HERE = Path(__file__).parent
 def save(figure: Figure, name: str) -> None:
     figure.savefig(HERE / name, dpi=110)
     plt.close(figure)
+
+
+def modes() -> None:
+    """docs/modes.md: a motion base, and its six modes."""
+    hexapod = fx.load("motion-base")
+    pose = fx.home_pose(hexapod)
+    found = fx.natural_modes(hexapod, pose)
+    words = [mode.dominant for mode in fx.describe_modes(hexapod, pose)]
+    figure = plt.figure(figsize=(12, 5.4), facecolor="white")
+    left, right = figure.subfigures(1, 2, width_ratios=(5, 7))
+    for part in (left, right):
+        part.set_facecolor("white")
+    plots.machine(hexapod, pose, ax=left.add_subplot(projection="3d", position=(0.02, 0.02, 0.77, 0.96)))
+    for i, hz in enumerate(found.omega / (2 * np.pi)):
+        place = (i % 3 / 3, 0.49 - 0.49 * (i // 3), 1 / 3, 0.44)
+        ax = right.add_subplot(projection="3d", position=place)
+        plots.mode(hexapod, pose, found, i + 1, ax=ax)
+        ax.set_title(f"{hz:.2f} Hz, {words[i]}", y=1.04, fontsize=11, color=style.INK)
+    save(figure, "modes.png")
 
 
 def workspace() -> None:
@@ -62,7 +82,7 @@ def optimal_design() -> None:
     better = fx.optimise(
         machine,
         [
-            fx.optimisation.JointCircle("base", radius=(0.02, 0.03), half_angle=(0.1, 0.95)),
+            fx.optimisation.JointCircle("base", radius=(0.02, 0.032), half_angle=(0.1, 0.95)),
             fx.optimisation.JointCircle("platform", radius=(0.03, 0.06), half_angle=(0.1, 0.95)),
             fx.Variable("home.position_mm[2]", 70, 100),
         ],
@@ -74,5 +94,5 @@ def optimal_design() -> None:
 
 
 if __name__ == "__main__":
-    for draw in (workspace, simulation, vibration, robustness, optimal_design):
+    for draw in (modes, workspace, simulation, vibration, robustness, optimal_design):
         draw()

@@ -37,7 +37,7 @@ NUMBERS = {
     "shock_test": (1.098, 0.01),  # a mass on a spring, which its docstring names; the machine has some friction
     "stiffness_for_a_frequency": (16867.1279, 1e-6),
     "to_python_control": (18008.228 + 6 * 4e4 / 3, 1e-6),  # six legs of a cube: their slopes squared are 1/3
-    "weakest_pose": (28.6855302, 1e-6),
+    "weakest_pose": (28.6891322, 1e-6),  # within the limits; 28.6855302 of all poses
     "what_matters_most": (0.16189077, 1e-6),
 }
 STUDIES = {"better_manipulators", "better_positioner"}

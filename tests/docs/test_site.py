@@ -29,6 +29,7 @@ core_sources = module("_hooks/core_sources.py")
 keys = module("_hooks/keys.py")
 outside = module("_hooks/outside.py")
 check_site = module("check_site.py")
+pictures = module("images/draw.py").PICTURES
 
 
 def test_every_public_name_is_on_one_page_of_the_reference():
@@ -117,3 +118,11 @@ def test_the_check_finds_what_is_wrong_in_a_site(tmp_path, link, more, css, prob
     (tmp_path / "a.css").write_text(css)
     found = check_site.problems(tmp_path)
     assert found == [] if problem is None else len(found) == 1 and problem in found[0]
+
+
+def test_every_picture_is_shown_and_has_the_script_that_draws_it():
+    folder = DOCS / "images"
+    assert sorted(pictures) == sorted(path.name for path in folder.iterdir() if path.suffix in {".png", ".svg"})
+    assert set(pictures.values()) == {path.name for path in folder.glob("draw_*.py")}
+    pages = "\n".join(path.read_text(encoding="utf-8") for path in DOCS.rglob("*.md"))
+    assert [name for name in pictures if f"(images/{name}" not in pages] == []

@@ -18,6 +18,7 @@ from flexapod.optimisation.global_search import Study, _at_work, _conflict
 from flexapod.optimisation.local_search import finish
 from flexapod.optimisation.problem import Problem
 from flexapod.plots import optimisation
+from flexapod.plots.style import new_figure
 from flexapod.report import page
 from flexapod.report.studies import optimisation as studies
 
@@ -229,6 +230,18 @@ def test_a_front_far_from_its_trials_has_a_logarithmic_axis(front):
     history["against"][0] = 1e4
     history["feasible"][0], history["index"][0] = True, 100.0
     assert optimisation.front(replace(front, history=history)).axes[0].get_xscale() == "log"
+
+
+def test_numbers_of_legs_stand_apart_where_they_can():
+    points = np.arange(6.0)[:, None] * [3.0, 0.0]
+    base, platform = points.copy(), points + np.array([0.0, 10.0])
+    base[0, 0], platform[0, 0] = 5.0, 0.0  # crosses leg 2 at 0.4 of its length
+    base[5], platform[5] = base[3], platform[3]  # lies behind leg 4
+    ax = new_figure(4, 3).subplots()
+    optimisation._number(ax, base, platform)
+    assert sorted(text.get_text() for text in ax.texts) == ["1", "2", "3", "4, 6", "5"]
+    at = np.array([text.get_position() for text in ax.texts])
+    assert (np.linalg.norm(at[:, None] - at, axis=2) + 9 * np.eye(5)).min() > 0.5
 
 
 def test_a_front_with_nothing_on_it_is_infeasible(positioner, monkeypatch):

@@ -45,7 +45,7 @@ def test_many_oscillations_are_an_envelope():
 
 
 @pytest.mark.parametrize(
-    ("limit", "label", "tick"), [(2e-6, "µm", "1"), (0.0, "m", "0"), (5.0, "m", "1e-06"), (3e4, "km", "1e-09"),
+    ("limit", "label", "tick"), [(2e-6, "µm", "1"), (0.0, "m", "0"), (5.0, "m", "1e−06"), (3e4, "km", "1e−09"),
                                  (1e-20, "fm", "1e+09")]
 )  # fmt: skip
 def test_numbers_along_an_axis_are_plain(limit, label, tick):

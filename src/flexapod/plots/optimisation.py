@@ -142,17 +142,24 @@ def _one_scale(views: Sequence[tuple[Axes, tuple[int, int]]], points: Array) -> 
 
 
 def _number(ax: Axes, base: Array, platform: Array) -> None:
-    """Numbers on the legs; those that lie behind one another share a place."""
-    middle = base + 0.4 * (platform - base)
+    """Numbers on the legs, where most of them stand apart; those that lie behind one another share a place."""
     near = 0.05 * np.ptp(np.concatenate([base, platform]), axis=0).max()
-    places: dict[tuple[int, ...], list[int]] = {}
-    for leg, at in enumerate(middle):
-        places.setdefault(tuple(np.round(at / near).astype(int)), []).append(leg)
-    for legs in places.values():
-        words = ", ".join(LEGS[leg] for leg in legs)
-        frame = {"boxstyle": "round,pad=0.2", "fc": "white", "ec": "none"}
-        x, y = middle[legs[0]]
-        ax.text(x, y, words, ha="center", va="center", fontsize=8, color=INK, bbox=frame, zorder=5)
+    rows = (_apart(base + along * (platform - base), near) for along in (0.4, 0.3, 0.5, 0.2, 0.6))
+    for at, names in max(rows, key=len):
+        ax.text(*at, ", ".join(names), ha="center", va="center", fontsize=8, color=INK,
+                bbox={"boxstyle": "round,pad=0.2", "fc": "white", "ec": "none"}, zorder=5)  # fmt: skip
+
+
+def _apart(points: Array, near: float) -> list[tuple[Array, list[str]]]:
+    """Places that are farther apart than `near`, with the legs that have their points there."""
+    places: list[tuple[Array, list[str]]] = []
+    for leg, point in zip(LEGS, points, strict=True):
+        here = next((names for at, names in places if np.linalg.norm(at - point) < near), None)
+        if here is None:
+            places.append((point, [leg]))
+        else:
+            here.append(leg)
+    return places
 
 
 def front(found: ParetoFront) -> Figure:

@@ -116,5 +116,7 @@ def prefixed(ax: Axes, unit: str) -> None:
     largest = max(map(abs, ax.get_ylim()))
     power = 3 * math.floor(math.log10(largest) / 3 + 1e-9) if largest > 0 else 0
     power = min(max(power, min(_PREFIXES)), max(_PREFIXES))
-    ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / 10.0**power + 0.0:.6g}"))
+    ax.yaxis.set_major_formatter(
+        FuncFormatter(lambda value, _: f"{value / 10.0**power + 0.0:.6g}".replace("-", "\N{MINUS SIGN}"))
+    )
     ax.set_ylabel(f"{_PREFIXES[power]}{unit}")
