@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from flexapod.conventions import Array
-from flexapod.workspace.box_minimum import pattern_minima
+from flexapod.workspace.box_minimum import apart, pattern_minima
 
 Index = Callable[[Array], Array]  # points (k, p) of the unit cube to values (k,)
 _EVERY_CORNER = 10  # parameters up to which all corners are computed
@@ -16,8 +16,6 @@ _CORNERS = (16, 64)  # fewest and most random corners from which ends of ranges 
 _EFFORT = 2  # evaluations that they may take, in numbers of samples
 _ROUNDS = 12  # of exchanges that one corner takes on the way, about
 _STARTS = 16  # of pattern searches
-_APART = 0.15  # least distance of two of them, in diagonals of the cube; less where there are too few
-_CANDIDATES = 2048
 _AGREE = 1e-6  # relative difference of indices that count as the same
 
 
@@ -38,7 +36,7 @@ def worst_case(index: Index, u: Array, values: Array, seed: int) -> WorstCase:
     near one. Corners are searched first, then the whole cube from the lowest corners and samples that are apart.
     """
     p = u.shape[1]
-    lowest = np.argsort(values, kind="stable")[:_CANDIDATES]
+    lowest = np.argsort(values, kind="stable")
     if p <= _EVERY_CORNER:
         corners = np.array(np.meshgrid(*[[0.0, 1.0]] * p)).reshape(p, -1).T
         at_corners = index(corners)
@@ -49,8 +47,8 @@ def worst_case(index: Index, u: Array, values: Array, seed: int) -> WorstCase:
         near = np.round(u[lowest[: count // 2]])
         corners, at_corners = _exchanged(index, np.concatenate([chance, near]))
         searched = at_corners
-    first = np.argsort(at_corners, kind="stable")[:_CANDIDATES]
-    starts = [corners[first][_apart(corners[first], _STARTS // 4)], u[lowest][_apart(u[lowest], _STARTS)]]
+    corners, u = corners[np.argsort(at_corners, kind="stable")], u[lowest]
+    starts = [corners[apart(corners, _STARTS // 4)], u[apart(u, _STARTS)]]
     ends, places = pattern_minima(index, np.concatenate(starts))
     best = int(np.argmin(ends))
     every = np.concatenate([ends, searched])
@@ -73,18 +71,3 @@ def _exchanged(index: Index, corners: Array) -> tuple[Array, Array]:
         corner[live[better]], value[live[better]] = trial[better, chosen[better]], least[better]
         live = live[better]
     return corner, value
-
-
-def _apart(points: Array, count: int) -> list[int]:
-    """The first of some points (n, p) that are apart from those before them; nearer ones where there are too few."""
-    reach = _APART * np.sqrt(points.shape[1])
-    chosen: list[int] = []
-    away = np.full(len(points), np.inf)
-    while len(chosen) < min(count, len(points)) and reach > 1e-3:
-        left = np.flatnonzero(away > reach)
-        if left.size:
-            chosen.append(int(left[0]))
-            away = np.minimum(away, np.linalg.norm(points - points[left[0]], axis=1))
-        else:
-            reach /= 2
-    return chosen

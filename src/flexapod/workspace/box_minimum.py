@@ -1,4 +1,4 @@
-"""The least value of a function over a box from given starts: exactly, within constraints, or quickly from many starts.
+"""The least value of a function over a box: which starts, and from these exactly, within constraints, or quickly.
 
 Coordinates whose range is one number are held.
 """
@@ -11,12 +11,32 @@ import numpy as np
 
 from flexapod.conventions import Array
 
+_CANDIDATES = 2048  # lowest points among which starts are chosen
+_APART, _CLOSEST = 0.15, 1e-6  # distance of two starts, in diagonals of the cube, and what is left of it at the least
 _RESTARTS = 3
 _CONSTRAINED_RESTARTS = 8
 _INSIDE = 1e-9  # by which a search keeps within its constraints, so that rounding does not break them
 
-
 Smooth = Callable[[Array], tuple[float, Array]]  # value and gradient
+
+
+def apart(points: Array, count: int) -> list[int]:
+    """Starts: the first of some points (n, p) of the unit cube that lie apart from those before them.
+
+    points: the lowest first. Where there are too few, they may be nearer to one another.
+    """
+    points = points[:_CANDIDATES]
+    reach = _APART * np.sqrt(points.shape[1])
+    chosen: list[int] = []
+    away = np.full(len(points), np.inf)
+    while len(chosen) < min(count, len(points)) and reach > _CLOSEST:
+        left = np.flatnonzero(away > reach)
+        if left.size:
+            chosen.append(int(left[0]))
+            away = np.minimum(away, np.linalg.norm(points - points[left[0]], axis=1))
+        else:
+            reach /= 2
+    return chosen
 
 
 class _FreeShares:

@@ -14,14 +14,12 @@ from flexapod.errors import PoseError
 from flexapod.mechanics.inputs import as_joint, states
 from flexapod.pose import Pose
 from flexapod.workspace.box import Box, Workspace
-from flexapod.workspace.box_minimum import constrained_minimum, smooth_minimum
+from flexapod.workspace.box_minimum import apart, constrained_minimum, smooth_minimum
 from flexapod.workspace.coordinates import twist_of_coordinates
 from flexapod.workspace.limit_margins import LimitMargins
 from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.sampling import low_discrepancy
 
-_CANDIDATES = 2048
-_APART = 0.15  # least distance of two starts, in units of the box's diagonal
 _ENOUGH = 1024  # poses within the limits from which searches begin
 _MOST = 2**19  # poses that are looked at for so many
 _SOUGHT, _SOUGHT_FROM = 512, 12  # poses from whose nearest one within the limits is sought, where no sample is
@@ -169,24 +167,9 @@ def starts_of(poses: Sample, box: Box, count: int) -> Array:
 
 
 def _apart(poses: Sample, box: Box, count: int) -> list[int]:
-    """The lowest poses that are apart from those before them; nearer ones where there are too few."""
+    """The lowest poses that lie apart."""
     usable = np.flatnonzero(np.isfinite(poses.omega))
-    lowest = usable[np.argsort(poses.omega[usable], kind="stable")][:_CANDIDATES]
+    lowest = usable[np.argsort(poses.omega[usable], kind="stable")]
     free = box.high > box.low
-    unit = (poses.rows[lowest] - box.low)[:, free] / (box.high - box.low)[free]
-    apart = _APART * np.sqrt(free.sum())
-    chosen: list[int] = []
-    left = np.ones(len(lowest), dtype=bool)
-    while len(chosen) < min(count, len(lowest)):
-        if not left.any():
-            apart /= 2
-            left[:] = True
-            left[chosen] = False
-            for k in chosen:
-                left &= np.linalg.norm(unit - unit[k], axis=1) > apart
-            continue
-        k = int(np.argmax(left))
-        chosen.append(k)
-        left &= np.linalg.norm(unit - unit[k], axis=1) > apart
-        left[k] = False
-    return [int(lowest[k]) for k in chosen]
+    chosen = apart((poses.rows[lowest] - box.low)[:, free] / (box.high - box.low)[free], count)
+    return lowest[chosen].tolist()
