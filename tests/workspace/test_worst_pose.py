@@ -119,6 +119,7 @@ def test_of_poses_the_worst_within_the_limits_is_taken():
     assert worst.share_within_limits == found.within_limits.values.mean()
     everywhere = fx.worst_pose(BASE, poses, all_poses=True)
     assert np.array_equal(everywhere.pose, poses.rows(0, 2000)[found.omega_1.values.argmin()])
+    assert np.isnan(everywhere.share_within_limits)
 
 
 def test_without_limits_all_poses_are_the_same():

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+from numpy.typing import ArrayLike
 
 from flexapod.checks import positive, thread_count, whole
 from flexapod.conventions import Array, JointModel
@@ -13,10 +13,11 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError, shown
 from flexapod.mechanics.inputs import as_hexapod
 from flexapod.mechanics.modes import advised_sampling_time, natural_modes
+from flexapod.paths.analysis import dips
 from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
 from flexapod.workspace.descents import BoxSearch, SquaredFrequency, starts_of
-from flexapod.workspace.limit_margins import LimitMargins, is_limited
+from flexapod.workspace.limit_margins import margins_to_keep
 from flexapod.workspace.region import RegionLike, as_region, home_of
 
 _STARTS = 4
@@ -90,7 +91,7 @@ def sampling_time(
             search = BoxSearch(
                 SquaredFrequency(hexapod, joint, mode=6, highest=True),
                 box,
-                None if all_poses or not is_limited(hexapod) else LimitMargins(hexapod),
+                margins_to_keep(hexapod, all_poses),
                 whole(samples, "samples"),
                 seed=0,
                 threads=thread_count(threads),
@@ -106,11 +107,12 @@ def sampling_time(
 
 
 def _on_path(highest: Callable[[Pose], Array], path: Trajectory) -> float:
+    """The highest frequency on a path, its maxima refined; infinite below zero where no leg can take a pose of it."""
+
+    def lowered(times: ArrayLike) -> Array:
+        found = highest(path(times).pose)
+        return np.where(np.isnan(found), np.inf, -found)
+
     times = path.grid(400)
-    values = highest(path(times).pose)
-    if not np.isfinite(values).any():
-        return np.nan
-    peak = int(np.nanargmax(values))
-    span = (times[max(peak - 1, 0)], times[min(peak + 1, len(times) - 1)])
-    refined = minimize_scalar(lambda t: -highest(path([t]).pose)[0], bounds=span, method="bounded")
-    return float(max(values[peak], -refined.fun))
+    values = lowered(times)
+    return -min([float(values.min()), *(value for _, value in dips(lowered, times, values))])

@@ -283,3 +283,8 @@ class Limits(Value):
             if value is not None:
                 key = f"limits.{name}"
                 object.__setattr__(self, name, float(check_value(key, value, KEYS[key])))
+
+    @property
+    def given(self) -> bool:
+        """Whether anything is limited."""
+        return any(getattr(self, item.name) is not None for item in fields(self))

@@ -67,8 +67,7 @@ def of_results(run: SimulationRun, result: xr.Dataset) -> list[str]:
 
 
 def _of_limits(run: SimulationRun, result: xr.Dataset) -> list[str]:
-    limits = run.hexapod.limits
-    if all(getattr(limits, name) is None for name in limits.__dataclass_fields__) or not result.sizes["time"]:
+    if not run.hexapod.limits.given or not result.sizes["time"]:
         return []
     platform = Pose(result.position.values, result.rotation.values)
     base = Pose(result.base_position.values, result.base_rotation.values)

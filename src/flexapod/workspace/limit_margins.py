@@ -18,15 +18,6 @@ from flexapod.workspace.coordinates import twist_of_coordinates
 _TINY = np.finfo(float).eps
 
 
-def is_limited(hexapod: Hexapod) -> bool:
-    """Whether the design limits anything."""
-    limits = hexapod.limits
-    return any(
-        bound is not None
-        for bound in (limits.leg_length, limits.universal_angle, limits.spherical_angle, limits.leg_distance)
-    )
-
-
 def none_within(count: int) -> PoseError:
     """What is told where poses can be computed and the design's limits allow none of them."""
     return PoseError(
@@ -69,6 +60,11 @@ class LimitMargins:
         value = np.concatenate([value[0] for value, _ in parts])[self._columns]
         slope = np.concatenate([slope[0] for _, slope in parts])[self._columns]
         return self._factor * (value - self._bounds), self._factor[:, None] * slope
+
+
+def margins_to_keep(hexapod: Hexapod, all_poses: bool) -> LimitMargins | None:
+    """The margins that a pose must keep to count; None where all poses do."""
+    return None if all_poses or not hexapod.limits.given else LimitMargins(hexapod)
 
 
 class _Bound(NamedTuple):

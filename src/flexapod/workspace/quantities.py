@@ -17,7 +17,6 @@ from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.mechanics.joint_limits import neutral_directions
 from flexapod.tables import normal_unit
-from flexapod.workspace.limit_margins import is_limited
 
 
 class Quantity(NamedTuple):
@@ -81,7 +80,7 @@ def chosen(quantities: str | Iterable[str] | None, hexapod: Hexapod) -> tuple[st
     None: the usual ones; of a design with limits, whether they are kept as well.
     """
     if quantities is None:
-        return (*_DEFAULT, *(("within_limits",) if is_limited(hexapod) else ()))
+        return (*_DEFAULT, *(("within_limits",) if hexapod.limits.given else ()))
     names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
     for name in names:
         if name in COMMON_NAMES:

@@ -13,7 +13,7 @@ from flexapod.errors import PoseError
 from flexapod.mechanics.inputs import as_hexapod
 from flexapod.workspace.box import Box
 from flexapod.workspace.descents import BoxSearch, SquaredFrequency, starts_of
-from flexapod.workspace.limit_margins import LimitMargins, is_limited, none_within
+from flexapod.workspace.limit_margins import LimitMargins, margins_to_keep, none_within
 from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.region import RegionLike, as_region, home_of
 
@@ -137,7 +137,7 @@ def worst_pose(
     """
     where = as_region(region)
     index = SquaredFrequency(as_hexapod(hexapod), joint, mode=1)
-    limits = None if all_poses or not is_limited(hexapod) else LimitMargins(hexapod)
+    limits = margins_to_keep(hexapod, all_poses)
     home = home_of(hexapod, where)
     box, threads = where.box(home), thread_count(threads)
     if box is None:
@@ -162,7 +162,7 @@ def worst_pose(
         minima=minima,
         sampled=poses.least,
         at_limits=_at_limits(limits, pose),
-        share_within_limits=poses.share if limits is not None or not is_limited(hexapod) else float("nan"),
+        share_within_limits=_share(index, limits, poses.share),
     )
 
 
@@ -191,8 +191,13 @@ def _worst_of(index: SquaredFrequency, limits: LimitMargins | None, rows: Array,
         minima=[(least, pose)],
         sampled=float(np.nanmin(omega)),
         at_limits=_at_limits(limits, pose),
-        share_within_limits=share,
+        share_within_limits=_share(index, limits, share),
     )
+
+
+def _share(index: SquaredFrequency, limits: LimitMargins | None, found: float) -> float:
+    """The part of the poses that is within the limits; NaN where this was not looked at."""
+    return float("nan") if limits is None and index.hexapod.limits.given else found
 
 
 def _at_limits(limits: LimitMargins | None, pose: Array) -> tuple[str, ...]:

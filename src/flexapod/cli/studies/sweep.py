@@ -20,7 +20,6 @@ from flexapod.plots import sweep as plots
 from flexapod.report.studies.sweep import study
 from flexapod.report.study import Study
 from flexapod.workspace.box import Box
-from flexapod.workspace.limit_margins import is_limited
 from flexapod.workspace.pose_sets import PoseSet, given_poses
 from flexapod.workspace.quantities import QUANTITIES, chosen
 from flexapod.workspace.sampling import low_discrepancy, random_poses
@@ -80,7 +79,7 @@ def _points(hexapod: Hexapod, options: Options) -> tuple[PoseSet, Box | None]:
 def _quantities(hexapod: Hexapod, text: str) -> tuple[str, ...]:
     """What is asked for, and of a design with limits whether they are kept."""
     names = [name.strip() for name in text.split(",") if name.strip()]
-    limits = ("within_limits",) if names and is_limited(hexapod) else ()
+    limits = ("within_limits",) if names and hexapod.limits.given else ()
     return tuple(QUANTITIES) if names == ["all"] else chosen((*names, *limits), hexapod)
 
 
