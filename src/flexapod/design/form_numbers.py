@@ -30,6 +30,14 @@ class Makers:
         places = [PLACES[key].ravel() for key in form.made if key != "base.universal_axes"]
         return np.concatenate([*places, self._axes.ravel()] if "base.universal_axes" in form.made else places)
 
+    def made_twice(self) -> tuple[int, str] | None:
+        """A changed number that one of the short forms makes as well, and the table of this form; None without one."""
+        for form in self.forms:
+            made = self.touched(form)
+            for number in made[self.changed[made]].tolist():
+                return number, form.table
+        return None
+
     def make(self, numbers: Any) -> None:
         """Write what the short forms make into `FULL` numbers, which may be complex."""
         for form in self.forms:

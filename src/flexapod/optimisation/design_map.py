@@ -63,12 +63,11 @@ class DesignMap:
                 if p.name in names:
                     raise ArgumentError(f"two variables are named {p.name!r}. Give one of them another name.")
                 names.add(p.name)
-        for form in self._makers.forms:
-            both = [number for number in self._makers.touched(form).tolist() if number in owner]
-            if both:
-                raise ArgumentError(
-                    f"{owner[both[0]]} and [{form.table}] both set {layout.describe(both[0])}. Leave one of them out."
-                )
+        if made := self._makers.made_twice():
+            place, table = made
+            raise ArgumentError(
+                f"{owner[place]} and [{table}] both set {layout.describe(place)}. Leave one of them out."
+            )
 
     @property
     def names(self) -> list[str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from flexapod.conventions import TRANSLATIONS, Array
 from flexapod.design.form_numbers import Makers
@@ -43,16 +42,9 @@ class Ensemble:
             if p.index is not None:
                 changed[p.index] = True
         self._makers = Makers(hexapod, changed)
-        self._check_apart(changed)
-
-    def _check_apart(self, changed: NDArray[np.bool_]) -> None:
-        """Raises ArgumentError for a number that is uncertain itself and made by a short form of which one is."""
-        for form in self._makers.forms:
-            both = [number for number in self._makers.touched(form).tolist() if changed[number]]
-            if both:
-                raise ArgumentError(
-                    f"{describe(both[0])} and [{form.table}], which makes it, are both uncertain. Take one."
-                )
+        if twice := self._makers.made_twice():
+            number, table = twice
+            raise ArgumentError(f"{describe(number)} and [{table}], which makes it, are both uncertain. Take one.")
 
     def designs(self, u: Array) -> Array:
         """Designs (s, n) at points u (s, p) of the unit cube."""
