@@ -1,4 +1,4 @@
-"""Tables in CSV files, as loggers, spreadsheets and CAD programs write them.
+"""Tables in CSV files, read as loggers, spreadsheets and CAD programs write them, and written.
 
 Commas, semicolons or tabs separate; with the last two, numbers may have decimal commas. Titles are read without regard
 to case, and may end in a unit: `z_um`, `Base X [mm]`, `Frequency (Hz)`; or the units stand in a line of their own below
@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, FlexapodError
@@ -26,9 +27,7 @@ LEFT_OUT = ("name", "note", "comment", "part", "remark")
 #: Unit -> (multiply by, divide by), to SI. Two numbers, because x / 1000 is rounded once and x * 0.001 is not.
 Units = Mapping[str, tuple[float, float]]
 #: A unit below a title, as [mm] or m/s\u00b2, or nothing.
-_UNIT = re.compile(
-    r"[\[(]?[a-zA-Z\u00b5\u03bc\u00b0][\w\u00b2\u00b0\u00b7/^*. -]{0,11}[\])]?|", re.ASCII
-)  # as m/s\u00b2, [mm] or nothing
+_UNIT = re.compile(r"[\[(]?[a-zA-Z\u00b5\u03bc\u00b0][\w\u00b2\u00b0\u00b7/^*. -]{0,11}[\])]?|", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -195,6 +194,18 @@ def _units_line(rows: list[tuple[int, list[str]]]) -> dict[int, str]:
     if not any(cells) or not all(_UNIT.fullmatch(cell) and _number(cell) is None for cell in cells):
         return {}
     return {place: normal_unit(cell) for place, cell in enumerate(rows.pop(0)[1])}
+
+
+def written_table(columns: Mapping[str, NDArray[Any]]) -> str:
+    """Columns by title as the text of a file: numbers with all their digits, nothing where there is none."""
+    rows = zip(*map(_written, columns.values()), strict=True)
+    return "\n".join([",".join(columns), *map(",".join, rows)]) + "\n"
+
+
+def _written(values: NDArray[Any]) -> list[str]:
+    if values.dtype.kind == "f":
+        return ["" if np.isnan(value) else repr(float(value) + 0.0) for value in values]
+    return [str(value) for value in values]
 
 
 def _number(cell: str) -> float | None:

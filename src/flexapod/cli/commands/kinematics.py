@@ -37,15 +37,15 @@ def command(
     flexapod kinematics motion-base lengths.csv --out poses.csv
     flexapod kinematics motion-base lengths.csv --all
     """
-    from flexapod.cli.studies.kinematics import compute, to_csv
+    from flexapod.cli.studies.kinematics import compute
 
     hexapod = common.load_design(design, changes)
     found = compute(hexapod, file, start=common.pose_or_none(hexapod, start), every=every)
     if as_json:
         common.print_json(found.to_dict())
     elif out is None:
-        click.echo(to_csv(found), nl=False)
+        click.echo(found.to_csv(), nl=False)
     if out is not None:
-        write_file(out, to_csv(found))
+        write_file(out, found.to_csv())
     for note in [] if as_json else found.notes:
         click.echo(f"Warning: {note}", err=True)

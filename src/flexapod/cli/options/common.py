@@ -253,11 +253,15 @@ def chosen_pose(hexapod: Hexapod, six: tuple[float, ...] | None) -> Pose:
 def pose_or_none(hexapod: Hexapod, six: tuple[float, ...] | None) -> Pose | None:
     """As `chosen_pose`, but None where there is neither."""
     from flexapod.mechanics.kinematics import home_pose
+
+    return home_pose(hexapod) if six is None else pose_of(six)
+
+
+def pose_of(six: tuple[float, ...]) -> Pose:
+    """The pose of the six numbers of an option (m, deg)."""
     from flexapod.pose import Pose
 
-    if six is None:
-        return home_pose(hexapod)
-    return Pose.from_rpy(*six[:3], *(math.radians(angle) for angle in six[3:]))
+    return Pose.from_rpy(*six, degrees=True)
 
 
 def place(out: Path | None, as_json: bool) -> Path | None:

@@ -99,10 +99,3 @@ def written(pose: Pose) -> dict[str, Array]:
     if about.any():
         columns |= {f"{name}_m": np.full(len(place), about[k]) for k, name in enumerate(PIVOT)}
     return columns
-
-
-def cells(values: np.ndarray) -> list[str]:
-    """A column's cells; numbers with all their digits, nothing where there is none."""
-    if values.dtype.kind == "f":
-        return ["" if np.isnan(value) else repr(float(value) + 0.0) for value in values]
-    return [str(value) for value in values]

@@ -10,7 +10,7 @@ from flexapod.design.units import QUANTITIES
 from flexapod.errors import ArgumentError
 from flexapod.paths.trajectory import Ends, Trajectory
 from flexapod.pose import Pose
-from flexapod.tables import naming, parse_table, read_text
+from flexapod.tables import naming, parse_table, read_text, written_table
 
 COLUMNS = ("t", *AXES)
 NAMES = {"t": "t", "time": "t", "weight": "weight", **pose_columns.TITLES}
@@ -32,6 +32,4 @@ def read(file: Path, ends: Ends, origin: Pose | None = None) -> Trajectory:
 
 def written(path: Trajectory) -> str:
     """A path as the text of a file, which says how its angles turn."""
-    columns = {"t_s": path.times, **pose_columns.written(path.waypoints)}
-    rows = zip(*(pose_columns.cells(values) for values in columns.values()), strict=True)
-    return "\n".join([",".join(columns), *(",".join(row) for row in rows)]) + "\n"
+    return written_table({"t_s": path.times, **pose_columns.written(path.waypoints)})

@@ -10,6 +10,7 @@ import click
 import numpy as np
 
 from flexapod.cli.options import pose_columns
+from flexapod.conventions import LEGS as NUMBERS
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.units import QUANTITIES
@@ -18,9 +19,9 @@ from flexapod.mechanics.joint_limits import check_limits, limit_excess
 from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.pose import Pose
 from flexapod.rotations import rpy_matrix
-from flexapod.tables import Table, naming, parse_table, read_text
+from flexapod.tables import Table, naming, parse_table, read_text, written_table
 
-LEGS = tuple(f"leg{k}" for k in range(1, 7))
+LEGS = tuple(f"leg{number}" for number in NUMBERS)
 _FORM = (
     "Give a column for each leg, leg1 to leg6, or columns x, y, z, roll, pitch, yaw (m, degrees, or units as in "
     "leg1_mm), and if wanted t."
@@ -38,6 +39,10 @@ class Conversion:
     of: str
     columns: dict[str, Any]
     notes: list[str]
+
+    def to_csv(self) -> str:
+        """The rows as the text of a file."""
+        return written_table(self.columns)
 
     def to_dict(self) -> dict[str, Any]:
         """The results as plain data: a row each, with its lengths or its pose as one list."""
@@ -131,9 +136,3 @@ def _lines(lines: np.ndarray) -> str:
     """Names of lines, not all of many."""
     told = ", ".join(str(line) for line in lines[:_TOLD])
     return f"line{'s' * (len(lines) > 1)} {told}" + (f" and {len(lines) - _TOLD} more" if len(lines) > _TOLD else "")
-
-
-def to_csv(found: Conversion) -> str:
-    """The rows as the text of a file."""
-    rows = zip(*(pose_columns.cells(values) for values in found.columns.values()), strict=True)
-    return "\n".join([",".join(found.columns), *(",".join(row) for row in rows)]) + "\n"

@@ -83,7 +83,7 @@ def _planned(hexapod: Hexapod, options: Options, report: Report) -> PathFindings
 
 
 def _pose(six: tuple[float, ...], origin: Pose | None) -> Pose:
-    pose = Pose.from_rpy(*six[:3], *(math.radians(angle) for angle in six[3:]))
+    pose = common.pose_of(six)
     return pose if origin is None else origin.displaced(pose)
 
 
