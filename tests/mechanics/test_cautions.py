@@ -28,7 +28,8 @@ def test_report_and_page_give_the_same_cautions(name, yaw, code):
     hexapod = fx.load(name)
     six = [*fx.home_pose(hexapod).position, 0.0, 0.0, yaw]
     found = gather(hexapod, fx.Pose.from_rpy(*six[:3], 0, 0, np.radians(yaw)))
-    said = state.snapshot(requests.question({"design": hexapod.to_toml(), "pose": six}))["warnings"]
+    shown = state.snapshot(requests.question({"design": hexapod.to_toml(), "pose": six}))
+    said = [*shown["grave"], *shown["warnings"]]
     assert said == [one.text for one in found.cautions if one.code not in ("limit", "design")]
     assert code in [one.code for one in found.cautions] if code else not said or "singular" not in said[0]
 
