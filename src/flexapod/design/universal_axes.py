@@ -68,8 +68,13 @@ def tangent_axes(base_joints: Array) -> tuple[Array, NDArray[np.bool_]]:
     return np.asarray(axes / np.where(exists, length, 1.0)[:, None] + 0.0), exists
 
 
+def legs_at(base_joints: Array, platform_joints: Array, pose: Pose) -> Array:
+    """The legs from base joint to platform joint at a pose, which no leg need be able to take, (6, 3)."""
+    return pose.position + platform_joints @ pose.matrix.T - base_joints
+
+
 def _legs(base_joints: Array, platform_joints: Array, home: Pose) -> Array | None:
     """Directions of the legs at home, (6, 3); None where a leg has no length there."""
-    leg = home.position + platform_joints @ home.matrix.T - base_joints
+    leg = legs_at(base_joints, platform_joints, home)
     length = np.linalg.norm(leg, axis=1, keepdims=True)
     return leg / length if (length > 0).all() else None

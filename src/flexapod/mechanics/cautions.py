@@ -74,6 +74,13 @@ def stands(modes: DampedModes) -> bool:
     return not grows(modes).any()
 
 
+def other_than_vibration(pole: complex, grown: bool) -> str:
+    """What a damped mode does that grows or does not vibrate; "" for one that vibrates and decays."""
+    if grown:
+        return "swings ever wider" if pole.imag else "falls over"
+    return "" if pole.imag else "does not vibrate"
+
+
 def response_cautions(linear: Linearisation) -> list[Caution]:
     """What to say of a response about rest: that nothing approaches it where the machine does not stay at rest."""
     damped = linear.modes()

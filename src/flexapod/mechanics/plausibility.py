@@ -10,6 +10,7 @@ import numpy as np
 
 from flexapod.conventions import LEG_PAIRS, Array
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.universal_axes import legs_at
 from flexapod.errors import FlexapodError
 from flexapod.mechanics.inputs import states
 from flexapod.mechanics.joint_limits import leg_distances
@@ -196,8 +197,7 @@ def _leg_length(hexapod: Hexapod) -> float | None:
     home = home_pose(hexapod)
     if home is None:
         return None
-    ends = home.position + hexapod.platform_joints @ home.matrix.T - hexapod.base_joints
-    return float(np.linalg.norm(ends, axis=1).mean())
+    return float(np.linalg.norm(legs_at(hexapod.base_joints, hexapod.platform_joints, home), axis=1).mean())
 
 
 def _key_of_joints(hexapod: Hexapod, plate: str) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from flexapod.conventions import TWO_PI, Array
-from flexapod.mechanics.cautions import GROWS
+from flexapod.mechanics.cautions import GROWS, other_than_vibration
 from flexapod.plots.style import FAINT, INK, PLATFORM, STRETCHED
 
 if TYPE_CHECKING:
@@ -88,8 +88,7 @@ def _tangent(ax: Axes, rows: NDArray[np.int64], tangent: NDArray[Any]) -> Array:
     grows = pole.real > GROWS * np.nanmax(np.abs(pole), initial=0.0)
     across = ax.get_yaxis_transform()
     for row, one, grown in zip(rows, pole, grows, strict=True):
-        if np.isfinite(one) and (grown or not one.imag):
-            words = ("swings ever wider" if one.imag else "falls over") if grown else "does not vibrate"
+        if words := other_than_vibration(one, grown) if np.isfinite(one) else "":
             ax.text(1.0, row - 0.08, words, transform=across, color=STRETCHED, fontsize=10, ha="right", va="bottom")
     return hz
 

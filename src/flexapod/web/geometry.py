@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.universal_axes import legs_at
 from flexapod.pose import Pose
 
 _RADIANS = np.repeat([1.0, np.pi / 180], 3)
@@ -36,9 +37,7 @@ def mean_radius(joints: Array) -> float:
 
 def mean_leg_length(hexapod: Hexapod, six: list[float]) -> float:
     """Mean distance between the joints of a leg at a pose in m and degrees: how long to draw the parts of a leg."""
-    pose = pose_at(six)
-    ends = pose.position + hexapod.platform_joints @ pose.matrix.T
-    return float(np.linalg.norm(ends - hexapod.base_joints, axis=1).mean())
+    return float(np.linalg.norm(legs_at(hexapod.base_joints, hexapod.platform_joints, pose_at(six)), axis=1).mean())
 
 
 def farthest(joints: Array) -> float:

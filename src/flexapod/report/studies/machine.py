@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from flexapod import plots
 from flexapod.conventions import LEGS, TWO_PI, Array
-from flexapod.mechanics.cautions import Tangent, grows
+from flexapod.mechanics.cautions import Tangent, grows, other_than_vibration
 from flexapod.mechanics.joint_limits import limit_excess
 from flexapod.mechanics.modes import NaturalModes
 from flexapod.plots.style import SHORTENED, STRETCHED
@@ -165,9 +165,7 @@ def _beside(tangent: Tangent, mode: int) -> float | str:
     damped = tangent.modes
     if mode < 0:
         return DASH
-    if grows(damped)[mode]:
-        return "falls over" if damped.pole[mode].imag == 0 else "swings ever wider"
-    return float(damped.omega[mode]) if damped.pole[mode].imag > 0 else "no vibration"
+    return other_than_vibration(damped.pole[mode], grows(damped)[mode]) or float(damped.omega[mode])
 
 
 def _alone(f: Findings) -> list[Table]:

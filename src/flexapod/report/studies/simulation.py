@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from flexapod import plots
-from flexapod.conventions import AXES, TRANSLATIONS
+from flexapod.conventions import AXES, Unit, printed_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
 from flexapod.plots.style import ROUNDING
@@ -81,7 +81,8 @@ def _displacements(summary: dict[str, dict[str, list[float]]]) -> Table:
 
 def _rates(summary: dict[str, dict[str, list[float]]]) -> Table:
     columns = [Column("", AXES)]
-    for name, linear, angular in (("velocity", "m/s", "rad/s"), ("acceleration", "m/s\u00b2", "rad/s\u00b2")):
+    units: dict[str, tuple[Unit, Unit]] = {"velocity": ("m/s", "rad/s"), "acceleration": ("m/s^2", "rad/s^2")}
+    for name, (linear, angular) in units.items():
         columns += [
             _column(name, summary[name]["rms"], linear, angular),
             _column("seen from the base", summary[f"relative_{name}"]["rms"], linear, angular),
@@ -89,9 +90,9 @@ def _rates(summary: dict[str, dict[str, list[float]]]) -> Table:
     return Table(columns, title="RMS of velocity and acceleration")
 
 
-def _column(title: str, values: Sequence[float], linear: str, angular: str) -> Column:
+def _column(title: str, values: Sequence[float], linear: Unit, angular: Unit) -> Column:
     kept = without_rounding(np.asarray(values), ROUNDING)
-    units = (linear if axis in TRANSLATIONS else angular for axis in AXES)
+    units = (printed_unit(unit_of(axis, linear, angular)) for axis in AXES)
     return Column(title, [f"{value:.4g} {unit}" if value else "0" for value, unit in zip(kept, units, strict=True)])
 
 
@@ -99,9 +100,9 @@ def _csv(dataset: xr.Dataset) -> str:
     """Displacements, leg lengths and forces as CSV, one line a sample."""
     names = ["time_s"]
     columns = [dataset.time.values[:, None]]
-    for variable, unit in (("displacement", "m"), ("relative_displacement", "m")):
+    for variable in ("displacement", "relative_displacement"):
         columns.append(dataset[variable].values)
-        names += [f"{variable}_{axis}_{unit if axis in TRANSLATIONS else 'rad'}" for axis in AXES]
+        names += [f"{variable}_{axis}_{unit_of(axis)}" for axis in AXES]
     for variable, unit in (("leg_length", "m"), ("leg_force", "N")):
         columns.append(dataset[variable].values)
         names += [f"{variable}_{leg}_{unit}" for leg in dataset.leg.values]
