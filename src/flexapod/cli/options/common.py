@@ -28,6 +28,7 @@ from click.shell_completion import CompletionItem
 
 from flexapod.cli.options.quantities import LENGTH, POSITIVE_LENGTH, SIX
 from flexapod.conventions import JOINT_MODELS
+from flexapod.errors import OutputError
 from flexapod.output_files import check_directory, check_file
 
 if TYPE_CHECKING:
@@ -72,7 +73,10 @@ class Output(click.ParamType):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
         path = Path(value)
-        self.check(path)
+        try:
+            self.check(path)
+        except OutputError as error:
+            raise OutputError(f"{max(param.opts, key=len)}: {error}" if param else str(error)) from error
         return path
 
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
