@@ -6,7 +6,6 @@ import signal
 import socket
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,7 +17,7 @@ from click.testing import CliRunner
 from flexapod.cli import group
 from flexapod.design import design_file
 
-uvicorn = pytest.importorskip("uvicorn")
+pytest.importorskip("uvicorn")
 
 
 def test_an_unknown_design_is_refused_with_the_names() -> None:
@@ -71,17 +70,10 @@ def test_ctrl_c_ends_it_and_its_processes() -> None:
 
 @pytest.fixture
 def app_and_port() -> Iterator[tuple[Any, int]]:
-    from flexapod.web.app import application
+    from tests.web.serving import running
 
-    app = application()
-    server = uvicorn.Server(uvicorn.Config(app, port=0, log_level="warning", timeout_graceful_shutdown=1))
-    thread = threading.Thread(target=server.run)
-    thread.start()
-    while not server.started:
-        time.sleep(0.02)
-    yield app, server.servers[0].sockets[0].getsockname()[1]
-    server.should_exit = True
-    thread.join(timeout=20)
+    with running() as served:
+        yield served.app, served.port
 
 
 def test_a_job_ends_when_its_page_goes(app_and_port: tuple[Any, int]) -> None:

@@ -20,7 +20,7 @@ from starlette.testclient import TestClient
 from flexapod.design import design_file
 from flexapod.web import designs
 from flexapod.web.app import STATIC, application
-from flexapod.web.security import MAX_BODY
+from flexapod.web.limits import JOB_BYTES
 
 
 @pytest.fixture(scope="module")
@@ -236,9 +236,9 @@ def test_pages_of_other_sites_may_not_ask(client: TestClient, headers: dict[str,
 
 
 def test_long_requests_are_refused_announced_or_not(client: TestClient) -> None:
-    long = b"x" * (MAX_BODY + 1)
+    long = b"x" * (JOB_BYTES + 1)
     assert client.post("/api/design", content=long).status_code == 413
-    assert client.post("/api/design", content=iter([long[: MAX_BODY // 2]] * 3)).status_code == 413
+    assert client.post("/api/design", content=iter([long[: JOB_BYTES // 2]] * 3)).status_code == 413
     assert client.post("/api/design", content=b"not json").status_code == 400
     assert client.post("/api/design", content=b"[1]").status_code == 400
 

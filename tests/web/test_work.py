@@ -1,6 +1,7 @@
 """What a job's process does, here in a thread: the messages of each kind of job, and how jobs fail."""
 
 import asyncio
+import json
 import multiprocessing
 import os
 import signal
@@ -32,6 +33,10 @@ def apart(task: Coroutine[Any, Any, Any]) -> Any:
         return pool.submit(asyncio.run, task).result()
 
 
+def as_bytes(spec: dict[str, Any]) -> bytes:
+    return json.dumps(spec).encode()
+
+
 class Work:
     """The loop of a job's process, at the other end of a pipe."""
 
@@ -41,7 +46,7 @@ class Work:
         self.thread.start()
 
     def __call__(self, kind: str, /, **spec: Any) -> list[tuple[dict[str, Any], bytes]]:
-        self.pipe.send((kind, ASKED | spec))
+        self.pipe.send((kind, as_bytes(ASKED | spec)))
         found = []
         while not found or found[-1][0]["type"] not in ("done", "failed"):
             assert self.pipe.poll(60), "the job says nothing"
@@ -196,7 +201,7 @@ def test_a_fault_within_a_simulation_reaches_the_job(job: Work, monkeypatch: pyt
 
 def test_a_job_whose_page_has_gone_ends_its_loop() -> None:
     ours, theirs = multiprocessing.Pipe()
-    ours.send(("slice", ASKED | {"box": BOX, "across": "x", "up": "y", "side": 2}))
+    ours.send(("slice", as_bytes(ASKED | {"box": BOX, "across": "x", "up": "y", "side": 2})))
     thread = threading.Thread(target=work.serve, args=(theirs,))
     ours.close()
     thread.start()
@@ -219,17 +224,17 @@ def test_a_process_that_dies_is_told_or_replaced(when: str) -> None:
 
     async def messages() -> list[bytes]:
         jobs, found = Jobs(), []
-        await jobs.warm()
-        pids = [worker.process.pid for worker in jobs._idle]
+        await jobs.pool.warm()
+        pids = [worker.process.pid for worker in jobs.pool.idle]
         try:
             if when == "idle":
                 kill(pids)
-            async for part in jobs.run("cloud" if when == "idle" else "time", spec):
+            async for part in jobs.run("cloud" if when == "idle" else "time", as_bytes(spec)):
                 if when == "at work" and len(found) == 1:  # it has begun to tell
                     kill(pids)
                 found.append(part)
         finally:
-            jobs.close()
+            jobs.pool.close()
         return found
 
     last = apart(messages())[-1]

@@ -7,6 +7,7 @@ import math
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+import anyio
 import numpy as np
 from starlette.requests import Request
 
@@ -14,9 +15,8 @@ from flexapod.conventions import AXES, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import FlexapodError
 from flexapod.pose import Pose
-from flexapod.web import designs
+from flexapod.web import designs, limits
 from flexapod.web.geometry import pose_at
-from flexapod.web.security import MAX_BODY
 
 
 class RequestError(FlexapodError, ValueError):
@@ -43,21 +43,62 @@ class Question(NamedTuple):
         return pose_of(self.six)
 
 
-async def body(request: Request) -> dict[str, Any]:
-    """The JSON object of a request. Its length is checked as it arrives, since the header may not state it."""
-    parts, size = [], 0
-    async for part in request.stream():
-        size += len(part)
-        if size > MAX_BODY:
-            raise RequestError(f"the request is longer than {MAX_BODY} bytes; use a smaller file", 413)
-        parts.append(part)
+class Bodies:
+    """Bodies of requests as they arrive: each of limited length, all together of limited size, and in time."""
+
+    def __init__(self) -> None:
+        self._held = 0
+
+    async def read(self, request: Request, most: int) -> bytes:
+        """The body of a request. Its length is checked as it arrives, since the header may not state it."""
+        parts: list[bytes] = []
+        size = 0
+        try:
+            with anyio.fail_after(limits.BODY_SECONDS):
+                async for part in request.stream():
+                    size += len(part)
+                    self._held += len(part)
+                    if size > most:
+                        raise RequestError(f"the request is longer than {most} bytes; use a smaller file", 413)
+                    if self._held > limits.BODIES_BYTES:
+                        raise RequestError("too many long requests arrive at the same time; try again later", 503)
+                    parts.append(part)
+        except TimeoutError:
+            raise RequestError(f"the request took longer than {limits.BODY_SECONDS:g} s to arrive", 408) from None
+        finally:
+            self._held -= size
+        return b"".join(parts)
+
+
+def parsed(body: bytes) -> dict[str, Any]:
+    """The JSON object of a request."""
     try:
-        value = json.loads(b"".join(parts))
-    except (ValueError, RecursionError):
+        value = json.loads(body, parse_int=_integer)
+    except (ValueError, RecursionError) as error:
+        if isinstance(error, RequestError):
+            raise
         raise RequestError("the request is not JSON", 400) from None
     if not isinstance(value, dict):
         raise RequestError("the request must be a JSON object", 400)
+    _check_depth(value)
     return value
+
+
+def _integer(text: str) -> int:
+    if len(text) > limits.DIGITS:
+        raise RequestError(f"the request has an integer of {len(text)} digits; at most {limits.DIGITS} can be", 400)
+    return int(text)
+
+
+def _check_depth(value: Any) -> None:
+    """Raises RequestError for lists and objects that lie too deep within each other."""
+    level = [value]
+    for _ in range(limits.DEPTH):
+        nested = (one.values() if isinstance(one, dict) else one for one in level)
+        level = [item for items in nested for item in items if isinstance(item, dict | list)]
+        if not level:
+            return
+    raise RequestError(f"the request has lists or objects more than {limits.DEPTH} deep", 400)
 
 
 def question(asked: dict[str, Any]) -> Question:

@@ -1,18 +1,26 @@
-"""Checks of every request (host, origin, size), and the security headers of every answer."""
+"""Checks of every request (host, token, origin, size), and the security headers of every answer."""
 
 from __future__ import annotations
 
+import hashlib
+import ipaddress
+import re
+import secrets
+import traceback
 from collections.abc import Iterable
-from urllib.parse import urlsplit
+from urllib.parse import parse_qs
 
+import anyio
 from starlette.datastructures import Headers, MutableHeaders
-from starlette.responses import JSONResponse
+from starlette.requests import ClientDisconnect
+from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from flexapod.web import limits
 from flexapod.web.answers import Refusal
 
-LOCAL_HOSTS = ("127.0.0.1", "localhost", "::1")
-MAX_BODY = 8 * 1024 * 1024  #: bytes; enough for a recorded base motion of about 60 000 rows
+LOCAL_HOSTS = ("127.0.0.1", "localhost", "[::1]")
+_HOST = re.compile(r"(\[[0-9a-f:.]+\]|[\w.-]+)(:\d{1,5})?", re.ASCII)
 
 HEADERS = {
     "content-security-policy": (
@@ -29,61 +37,113 @@ HEADERS = {
 
 
 class Guard:
-    """Middleware that refuses unknown Host headers (DNS rebinding), pages of other sites, and long bodies."""
+    """Middleware that refuses unknown Host headers (DNS rebinding), pages of other sites, and long bodies.
 
-    def __init__(self, app: ASGIApp, hosts: Iterable[str] = (), max_body: int = MAX_BODY) -> None:
+    With a token, it answers only those who know it, from any address of this computer. A page shows it once, in its
+    address, and gets a cookie for it; scripts send it as `Authorization: Bearer`.
+    """
+
+    def __init__(self, app: ASGIApp, hosts: Iterable[str] = (), token: str | None = None) -> None:
         self.app = app
-        self.hosts = {host.lower() for host in (*LOCAL_HOSTS, *hosts)}
-        self.max_body = max_body
+        self.hosts = {_bracketed(host.lower()) for host in (*LOCAL_HOSTS, *hosts)}
+        self.token = token
+        digest = hashlib.sha256((token or "").encode()).hexdigest()
+        self.cookie = f"flexapod-{digest[:8]}={digest[8:]}"  # the name: servers at other ports have their own
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
             if scope["type"] == "lifespan":
                 await self.app(scope, receive, send)
             return
-        headers = Headers(scope=scope)
-        send = _with_headers(send)
-        refused = self._refusal(scope["method"], headers)
-        if refused is not None:
-            status, reason = refused
-            refusal: Refusal = {"error": reason, "fields": []}
-            await JSONResponse(refusal, status)(scope, receive, send)
+        answer = _Sender(send)
+        refused = self._refusal(scope, Headers(scope=scope))
+        try:
+            await (refused or self.app)(scope, receive, answer)
+        except (ClientDisconnect, TimeoutError):  # of a client that takes no more of its answer
             return
-        await self.app(scope, receive, send)
+        except Exception:
+            traceback.print_exc()
+            if not answer.begun:
+                await _refused(500, "internal error; see the server")(scope, receive, answer)
 
-    def _refusal(self, method: str, headers: Headers) -> tuple[int, str] | None:
-        """Status and reason if the request is refused."""
-        host = headers.get("host", "")
-        if not self._known(f"//{host}"):
-            return 421, f"this server does not answer for the host {host[:100]!r}; open it as http://127.0.0.1"
-        if method not in ("GET", "HEAD"):
+    def _refusal(self, scope: Scope, headers: Headers) -> Response | None:
+        """The answer to a request that is refused, or to one that shows the token."""
+        host = headers.get("host", "").lower()
+        if not self._known(host):
+            return _refused(
+                421, f"this server does not answer for the host {host[:100]!r}; open it as http://127.0.0.1"
+            )
+        if self.token is not None and not self._has_token(headers):
+            if not self._shows_token(scope):
+                return _refused(
+                    401,
+                    "open the address that `flexapod serve` printed, with its token",
+                    {"www-authenticate": "Bearer"},
+                )
+            cookie = f"{self.cookie}; Path=/; HttpOnly; SameSite=Lax"
+            return RedirectResponse(scope["path"], 303, {"set-cookie": cookie, "cache-control": "no-store"})
+        if scope["method"] not in ("GET", "HEAD"):
             origin = headers.get("origin")
-            if headers.get("sec-fetch-site", "same-origin") not in ("same-origin", "none"):
-                return 403, "requests from pages of other sites are refused"
-            if origin is not None and (not self._known(origin) or urlsplit(origin).netloc != host):
-                return 403, "requests from pages of other sites are refused"
+            other_site = headers.get("sec-fetch-site", "same-origin") not in ("same-origin", "none")
+            if other_site or (origin is not None and origin.lower() not in (f"http://{host}", f"https://{host}")):
+                return _refused(403, "requests from pages of other sites are refused")
         length = headers.get("content-length", "0")
-        if not length.isdigit() or int(length) > self.max_body:
-            return 413, f"the request is longer than {self.max_body} bytes; use a smaller file"
+        if not re.fullmatch("[0-9]{1,15}", length) or int(length) > limits.JOB_BYTES:
+            return _refused(413, f"the request is longer than {limits.JOB_BYTES} bytes; use a smaller file")
         return None
 
-    def _known(self, url: str) -> bool:
-        """Whether the host of a URL is one of ours."""
-        try:
-            return (urlsplit(url).hostname or "") in self.hosts
-        except ValueError:  # such as an unclosed bracket
-            return False
+    def _known(self, host: str) -> bool:
+        """Whether a Host header, as a whole, is ours. With a token, numbers are too: only names can be rebound."""
+        found = _HOST.fullmatch(host)
+        return found is not None and (found[1] in self.hosts or (self.token is not None and _is_number(found[1])))
+
+    def _has_token(self, headers: Headers) -> bool:
+        given = [*headers.get("cookie", "").split(";"), headers.get("authorization", "")]
+        return any(_same(one.strip(), right) for one in given for right in (self.cookie, f"Bearer {self.token}"))
+
+    def _shows_token(self, scope: Scope) -> bool:
+        """Whether the address of a page holds the token."""
+        shown = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])
+        plain = scope["path"].startswith("/") and not scope["path"].startswith(("//", "/\\"))  # no way to another site
+        return scope["method"] in ("GET", "HEAD") and plain and _same(shown[0], self.token or "")
 
 
-def _with_headers(send: Send) -> Send:
-    """The same `send`, with the security headers added to each answer."""
+def _same(given: str, right: str) -> bool:
+    return secrets.compare_digest(given.encode("utf-8", "replace"), right.encode())
 
-    async def wrapped(message: Message) -> None:
+
+def _bracketed(host: str) -> str:
+    """A host as a Host header has it."""
+    return f"[{host}]" if ":" in host and not host.startswith("[") else host
+
+
+def _is_number(host: str) -> bool:
+    """Whether a host is an IP address."""
+    try:
+        ipaddress.ip_address(host.strip("[]"))
+    except ValueError:
+        return False
+    return True
+
+
+def _refused(status: int, reason: str, headers: dict[str, str] | None = None) -> Response:
+    refusal: Refusal = {"error": reason, "fields": []}
+    return JSONResponse(refusal, status, headers)
+
+
+class _Sender:
+    """Sends the parts of an answer, the first with the security headers; raises TimeoutError if nobody takes them."""
+
+    def __init__(self, send: Send) -> None:
+        self._send = send
+        self.begun = False
+
+    async def __call__(self, message: Message) -> None:
         if message["type"] == "http.response.start":
+            self.begun = True
             headers = MutableHeaders(scope=message)
             for name, value in HEADERS.items():
                 headers[name] = value
             headers.setdefault("cache-control", "no-cache")
-        await send(message)
-
-    return wrapped
+        with anyio.fail_after(limits.SEND_SECONDS):
+            await self._send(message)

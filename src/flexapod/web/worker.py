@@ -1,15 +1,20 @@
-"""The process of jobs: it runs one job after another, each a generator of messages."""
+"""What a process of the server does: one question or job after another. A job is a generator of messages."""
 
 from __future__ import annotations
 
+import time
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from multiprocessing.connection import Connection
 from typing import Any
 
+import numpy as np
+
 from flexapod.errors import FlexapodError
-from flexapod.web import simulation, workspace
-from flexapod.web.answers import Message
+from flexapod.web import description, designs, limits, requests, response, simulation, state, workspace
+from flexapod.web.answers import Message, Refusal
+from flexapod.web.design_errors import InvalidDesign
+from flexapod.web.encode import as_json
 
 KINDS: dict[str, Callable[[dict[str, Any]], Iterator[Message]]] = {
     "cloud": workspace.cloud,
@@ -17,26 +22,55 @@ KINDS: dict[str, Callable[[dict[str, Any]], Iterator[Message]]] = {
     "worst": workspace.worst,
     "time": simulation.simulation,
 }
+QUESTIONS: dict[str, Callable[[dict[str, Any]], Mapping[str, Any]]] = {
+    "design": lambda asked: description.described(requests.source(asked)),
+    "state": lambda asked: state.snapshot(requests.question(asked)),
+    "response": response.response,
+    "shake": response.shake,
+}
 
 
 def serve(pipe: Connection) -> None:
-    """Run jobs from the pipe until it closes. A job that fails sends its error, and the process goes on."""
+    """Answer what comes from the pipe until it closes. What fails sends its error, and the process goes on."""
     while True:
         try:
-            kind, spec = pipe.recv()
-            for message in _messages(kind, spec):
+            kind, body = pipe.recv()
+            for message in _messages(kind, body) if kind in KINDS else (_answer(kind, body),):
                 pipe.send(message)
         except (EOFError, BrokenPipeError, ConnectionResetError):
             return
 
 
-def _messages(kind: str, spec: dict[str, Any]) -> Iterator[Message]:
+def _messages(kind: str, body: bytes) -> Iterator[tuple[Any, bytes]]:
     """The messages of one job, and how it ended."""
     try:
-        yield from KINDS[kind](spec)
+        yield from KINDS[kind](requests.parsed(body))
         yield {"type": "done"}, b""
-    except FlexapodError as error:
-        yield {"type": "failed", "error": str(error)}, b""
-    except Exception as error:  # a defect of the program: traced on the server's terminal
-        traceback.print_exc()
-        yield {"type": "failed", "error": f"internal error ({type(error).__name__}); see the server"}, b""
+    except Exception as error:
+        yield {"type": "failed", "error": _refused(error)[1]}, b""
+
+
+def _answer(kind: str, body: bytes) -> tuple[Any, bytes]:
+    """The answer to a question as JSON text, with its status and how long it took, s."""
+    began, status = time.perf_counter(), 200
+    try:
+        content = as_json(QUESTIONS[kind](requests.parsed(body)))
+    except Exception as error:
+        status, words = _refused(error)
+        refusal: Refusal = {"error": words, "fields": error.errors if isinstance(error, InvalidDesign) else []}
+        content = as_json(refusal)
+    return {"status": status, "seconds": time.perf_counter() - began}, content
+
+
+def _refused(error: Exception) -> tuple[int, str]:
+    """The status of an error and its words. A defect of the program is traced on the server's terminal."""
+    if isinstance(error, FlexapodError):
+        return (error.status if isinstance(error, requests.RequestError) else 422), str(error)
+    if isinstance(error, MemoryError):
+        for cache in (designs.built, designs.original, requests.pose_of):
+            cache.cache_clear()
+        return 422, f"this takes more than {limits.MEMORY // limits.MIB} MiB of memory (MemoryError); ask for less"
+    if isinstance(error, OverflowError | FloatingPointError | np.linalg.LinAlgError):
+        return 400, f"numbers of this request are too large, too small or too far apart to compute with ({error})"
+    traceback.print_exception(error)
+    return 500, f"internal error ({type(error).__name__}); see the server"

@@ -1,0 +1,145 @@
+"""Processes that compute for the server, with limits of memory, and pools of them."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import re
+import signal
+import sys
+import threading
+from collections.abc import Iterator
+from importlib import import_module
+from multiprocessing import resource_tracker
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import anyio
+from anyio.to_thread import run_sync
+
+from flexapod.web import limits, worker
+
+_SPAWN = multiprocessing.get_context("spawn")  # a fork of a server with threads may hang
+
+
+@contextlib.contextmanager
+def _interrupts_blocked() -> Iterator[None]:
+    """Block Ctrl-C for processes started in the block, from their start on: the server ends them itself."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    resource_tracker.ensure_running()  # or the start does it, which unblocks the signal
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _serve(pipe: Connection, niceness: int) -> None:
+    """What a process does: it lets others go first, limits its memory, and answers until its pipe closes."""
+    if niceness and hasattr(os, "nice"):
+        os.nice(niceness)
+    limit_memory(limits.MEMORY)
+    threading.Thread(
+        target=import_module, args=("xarray",), daemon=True
+    ).start()  # slow: before the first response needs it
+    pipe.send(({"type": "ready"}, b""))
+    worker.serve(pipe)
+
+
+def limit_memory(more: int) -> None:
+    """Limit the data of this process to what it has and so many bytes more. Only Linux enforces such a limit."""
+    if sys.platform != "linux":
+        return
+    import resource
+
+    found = re.search(r"VmData:\s*(\d+) kB", Path("/proc/self/status").read_text(encoding="ascii"))
+    most = (int(found[1]) * limits.KIB if found else 0) + more
+    _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+    with contextlib.suppress(ValueError):  # the system's own limit is lower
+        resource.setrlimit(resource.RLIMIT_DATA, (most, hard))
+
+
+class Process(NamedTuple):
+    """A process that answers one question or runs one job after another."""
+
+    process: BaseProcess
+    pipe: Connection
+
+    @classmethod
+    def start(cls, niceness: int) -> Process:
+        ours, theirs = _SPAWN.Pipe()
+        process = _SPAWN.Process(target=_serve, args=(theirs, niceness), name="flexapod-job", daemon=True)
+        with _interrupts_blocked():
+            process.start()
+        theirs.close()
+        return cls(process, ours)
+
+    def stop(self) -> None:
+        self.process.kill()
+        self.process.join()
+        self.pipe.close()
+        self.process.close()
+
+    async def send(self, kind: str, body: bytes) -> None:
+        """Raises OSError if the process has died."""
+        if len(body) > limits.SMALL_BYTES:  # more than a pipe takes at once
+            await run_sync(self.pipe.send, (kind, body))
+        else:
+            self.pipe.send((kind, body))
+
+    async def receive(self, seconds: float) -> tuple[Any, bytes] | None:
+        """The next message, if it comes in time. Raises EOFError or OSError if the process has died."""
+        if not await run_sync(self.pipe.poll, seconds):
+            return None
+        return self.pipe.recv()
+
+
+class Pool:
+    """Some idle processes are kept, since starting one takes longer than most questions and jobs."""
+
+    def __init__(self, kept: int, niceness: int = 0) -> None:
+        self.kept, self.niceness = kept, niceness
+        self.idle: list[Process] = []
+        self._starting = anyio.Lock()
+
+    async def _start(self) -> Process:
+        process = await run_sync(Process.start, self.niceness)
+        end = anyio.current_time() + limits.START_SECONDS
+        while await process.receive(0.1) is None:
+            if anyio.current_time() > end:
+                process.stop()
+                raise OSError("a process did not start")
+        return process
+
+    async def warm(self) -> None:
+        """Start the processes that are kept."""
+        while len(self.idle) < self.kept:
+            async with self._starting:
+                self.idle.append(await self._start())
+
+    async def take(self) -> Process:
+        """An idle process that is alive, or a new one; it waits for one that starts."""
+        async with self._starting:
+            while self.idle:
+                process = self.idle.pop()
+                if process.process.is_alive():
+                    return process
+                process.stop()
+            return await self._start()
+
+    def give_back(self, process: Process, well: bool) -> None:
+        """Keep a process that did its work well; end any other."""
+        if well and len(self.idle) < self.kept:
+            self.idle.append(process)
+        else:
+            process.stop()
+
+    def close(self) -> None:
+        """End the idle processes."""
+        while self.idle:
+            self.idle.pop().stop()
