@@ -23,6 +23,7 @@ from flexapod.web import description, limits, worker
 from flexapod.web.answers import Refusal, Start
 from flexapod.web.encode import JSONAnswer
 from flexapod.web.jobs import Jobs
+from flexapod.web.process import Pool
 from flexapod.web.questions import Answer, Questions
 from flexapod.web.requests import Bodies, RequestError
 from flexapod.web.security import Guard
@@ -36,17 +37,6 @@ def application(start: Path | None = None, hosts: Iterable[str] = (), token: str
     token: what clients must know; None where only this computer can reach the server.
     """
     jobs, questions, bodies = Jobs(), Questions(_presets().values()), Bodies()
-    pools = (questions.quick.pool, jobs.pool, questions.careful.pool)
-
-    @contextlib.asynccontextmanager
-    async def lifespan(_: Starlette) -> AsyncIterator[None]:
-        async with anyio.create_task_group() as tasks:
-            for pool in pools:
-                tasks.start_soon(pool.warm)
-            yield
-            tasks.cancel_scope.cancel()
-        for pool in pools:
-            pool.close()
 
     async def begin(_: Request) -> Response:
         return JSONAnswer(await run_sync(_start, start))
@@ -83,10 +73,22 @@ def application(start: Path | None = None, hosts: Iterable[str] = (), token: str
         routes=routes,
         middleware=[Middleware(Guard, hosts=tuple(hosts), token=token)],
         exception_handlers={FlexapodError: _refused},
-        lifespan=lifespan,
+        lifespan=lambda _: _warm(questions.quick.pool, jobs.pool, questions.careful.pool),
     )
     app.state.jobs = jobs
     return app
+
+
+@contextlib.asynccontextmanager
+async def _warm(*pools: Pool) -> AsyncIterator[None]:
+    """Processes are started at first, and ended with the server."""
+    async with anyio.create_task_group() as tasks:
+        for pool in pools:
+            tasks.start_soon(pool.warm)
+        yield
+        tasks.cancel_scope.cancel()
+    for pool in pools:
+        pool.close()
 
 
 async def _while_there(request: Request, ask: Callable[[], Awaitable[Answer]]) -> Answer:
