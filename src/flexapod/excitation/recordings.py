@@ -119,7 +119,6 @@ def _excitation(
     detrend: Trend | None,
     highpass: float | None,
 ) -> Excitation:
-    one_of(recorded, "recorded", INTEGRATIONS)
     for k, name in enumerate(names):
         if name in ROTATIONS and recorded == "value":
             samples = unwrapped(samples, k)
