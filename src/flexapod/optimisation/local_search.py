@@ -10,6 +10,7 @@ where the lowest are equal, as they are at most optima. It is made sharper from 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -22,7 +23,7 @@ from flexapod.errors import DesignError, PoseError
 from flexapod.optimisation.derivatives import DesignDerivatives
 from flexapod.optimisation.problem import FEASIBLE, Assessment, Problem
 from flexapod.optimisation.requirements import Requirement
-from flexapod.workspace.worst import worst_pose
+from flexapod.workspace.worst import WorstPose, worst_pose
 
 _SHARPNESS = (40.0, 400.0, 4000.0, 4000.0, 4000.0)
 _SLACK = 1e-7  # bounds are kept by this much more than asked, so that rounding does not break them
@@ -96,13 +97,18 @@ def assess_anew(problem: Problem, x: Array, samples: int, seed: int) -> Assessme
 
 def least_index(problem: Problem, hexapod: Hexapod, index: float, samples: int, seed: int) -> float:
     """The index, lowered to what a descent from the worst poses of a sweep finds."""
+    worst = _worst(problem, hexapod, samples, seed)
+    return index if worst is None else min(index, worst.omega_1)
+
+
+def _worst(problem: Problem, hexapod: Hexapod, samples: int, seed: int) -> WorstPose | None:
+    """The worst pose of the objective's box; None where it has none."""
     box = problem.box(hexapod)
     if box is None:
-        return index
-    worst = worst_pose(
+        return None
+    return worst_pose(
         hexapod, box, joint=problem.joint, samples=samples, starts=6, seed=seed, threads=problem.threads, all_poses=True
     )
-    return min(index, worst.omega_1)
 
 
 def _hold(problem: Problem, x: Array, held: list[_Held], samples: int, seed: int) -> None:
@@ -117,22 +123,10 @@ def _hold(problem: Problem, x: Array, held: list[_Held], samples: int, seed: int
         origin = own[HOME] if region.from_home else np.zeros(6)
         if group == 0:
             chosen = rows[problem.objective.worst_poses(np.nan_to_num(found[problem.objective.quantity]))]
-            box = problem.box(hexapod)
-            if box is not None:
-                try:
-                    worst = worst_pose(
-                        hexapod,
-                        box,
-                        joint=problem.joint,
-                        samples=samples,
-                        starts=6,
-                        seed=seed,
-                        threads=1,
-                        all_poses=True,
-                    )
+            with suppress(PoseError):  # the sweep's own worst poses are held then
+                worst = _worst(problem, hexapod, samples, seed)
+                if worst is not None:
                     chosen = np.concatenate([[pose for _, pose in worst.minima], chosen])
-                except PoseError:
-                    pass  # the sweep's own worst poses are held
             if region.box(own[HOME]) is not None or not held:
                 _add(held, None, region.from_home, chosen - origin)
         for requirement in requirements:
