@@ -27,8 +27,8 @@ TWO_PI = 2 * math.pi
 
 #: A unit as the attribute `units` of Datasets spells it, so that Pint and the CF conventions read the same.
 Unit = Literal[
-    "1", "m", "rad", "s", "rad/s", "m/s", "m/s^2", "rad/s^2", "1/s", "1/s^2", "N", "N m", "N/m", "N s/m", "J", "W",
-    "N^2/(rad/s)"
+    "1", "m", "rad", "s", "rad/s", "m/s", "m/s^2", "rad/s^2", "1/s", "1/s^2", "1/s^3", "N", "N m", "N/m", "N s/m",
+    "N/(m s)", "J", "W", "N^2/(rad/s)"
 ]  # fmt: skip
 UNITS: tuple[Unit, ...] = get_args(Unit)
 
@@ -48,7 +48,7 @@ def in_mixed_units(units: str, meaning: str = "") -> dict[str, str]:
 
 def printed_unit(unit: str) -> str:
     """A unit of a Dataset as people write it: `m/s^2` -> `m/s\u00b2`."""
-    return unit.replace("^2", "\u00b2")
+    return unit.replace("^2", "\u00b2").replace("^3", "\u00b3")
 
 
 def unit_of(axis: str, linear: Unit = "m", angular: Unit = "rad") -> Unit:

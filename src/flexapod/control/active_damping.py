@@ -23,6 +23,14 @@ from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.pose import PoseLike
 
+#: What the model of control leaves out, and what that does to its numbers.
+ASSUMPTIONS = (
+    "The machine without control has the friction of its design and no structural loss, and its joints no stiffness. "
+    "Real legs lose energy by themselves, so that control gains less than is told here; with joints that resist "
+    "turning the zeros of force feedback lie above 0 and damping ends below 1: a damping ratio of 1 and zeros at 0 "
+    "are limits of the model."
+)
+
 
 def open_zeros(linear: Linearisation, feedback: Feedback, legs: Sequence[int] = ALL_LEGS) -> Array:
     """Find the frequencies that the poles of active damping approach at high gain.
@@ -176,15 +184,6 @@ def root_locus(
             **response_attributes(plant.linear),
         },
     )
-
-
-#: What the model of control leaves out, and what that does to its numbers.
-ASSUMPTIONS = (
-    "The machine without control has the friction of its design and no structural loss, and its joints no stiffness. "
-    "Real legs lose energy by themselves, so that control gains less than is told here; with joints that resist "
-    "turning the zeros of force feedback lie above 0 and damping ends below 1: a damping ratio of 1 and zeros at 0 "
-    "are limits of the model."
-)
 
 
 def _followed(pole: Complex) -> Complex:

@@ -22,6 +22,13 @@ ALL_LEGS = (1, 2, 3, 4, 5, 6)
 GAIN_UNIT: dict[str, Unit] = {"force": "rad/s", "velocity": "N s/m"}  # of active damping, by feedback
 
 
+def pid_units(law: PID) -> tuple[Unit, Unit, Unit]:
+    """Units of kp, kd and ki where each is a single number."""
+    if law.actuator == "command":
+        return "1", "s", "1/s"
+    return ("N/m", "N s/m", "N/(m s)") if law.space == "joint" else ("1/s^2", "1/s", "1/s^3")
+
+
 @dataclass(frozen=True)
 class PID:
     """Proportional, integral and derivative position control.

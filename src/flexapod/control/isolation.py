@@ -102,7 +102,7 @@ def lqg(
     True
     """
     for name, value in (("effort", effort), ("stroke", stroke), ("noise", noise)):
-        weight(value, name)
+        _weight(value, name)
     measures = measurements(measure)
     task = ScaledPlant(Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint)), measures)
     control = needed("control", "control", "LQG design needs python-control")
@@ -203,7 +203,7 @@ def h_infinity(
         if value is not None:
             positive(value, name, "rad/s")
     for name, value in (("depth", depth), ("effort", effort), ("noise", noise)):
-        weight(value, name)
+        _weight(value, name)
     task = ScaledPlant(Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint)), measures)
     omega = task.plant.omega
     low = 0.5 * float(omega[0]) if corner is None else corner
@@ -219,7 +219,7 @@ def h_infinity(
     return found
 
 
-def weight(value: float, name: str) -> None:
+def _weight(value: float, name: str) -> None:
     """Raises ArgumentError for what is no weight, or one whose square no number holds."""
     if positive(value, name) > _HEAVIEST:
         raise ArgumentError(f"{name} is {value:g}; it must be at most {_HEAVIEST:g}.")

@@ -13,10 +13,10 @@ from numpy.typing import ArrayLike
 
 from flexapod.checks import not_negative, numbers, one_of
 from flexapod.control.closed_loop_poles import ClosedLoop, assess, distances, instability_message, nearest, pole_text
-from flexapod.control.controllers import PID
+from flexapod.control.controllers import PID, pid_units
 from flexapod.control.linear_controller import ControlLaw, controller_for
 from flexapod.control.plant import Plant, damping_ratios, is_stable, poles
-from flexapod.conventions import Array, Complex, JointModel, Unit, in_unit
+from flexapod.conventions import Array, Complex, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, UnstableError
 from flexapod.mechanics.inputs import ZERO
@@ -218,6 +218,7 @@ def gain_map(
 def _map(rows: dict[str, Array], pole: Complex, plant: Plant, controller: PID, nearness: float) -> xr.Dataset:
     distance = np.where(pole.imag > 0, distances(pole, plant.omega), np.inf).min(axis=-1)
     grid = ("kp", "kd")
+    by_position, by_rate, _ = pid_units(controller)
     return xr.Dataset(
         {
             "distance": (grid, distance, in_unit("1", "least distance of poles to natural frequencies, relative")),
@@ -227,8 +228,8 @@ def _map(rows: dict[str, Array], pole: Complex, plant: Plant, controller: PID, n
             "pole": ((*grid, "pole_number"), pole, in_unit("rad/s")),
         },
         {
-            "kp": ("kp", rows["kp"], in_unit(_unit(controller, 0), "proportional gain")),
-            "kd": ("kd", rows["kd"], in_unit(_unit(controller, 1), "derivative gain")),
+            "kp": ("kp", rows["kp"], in_unit(by_position, "proportional gain")),
+            "kd": ("kd", rows["kd"], in_unit(by_rate, "derivative gain")),
         },
         {
             "space": controller.space,
@@ -244,9 +245,3 @@ def _different(value: ArrayLike, name: str) -> Array:
     if not row.size or np.unique(row).size != row.size:
         raise ArgumentError(f"{name} has shape {row.shape}; give a row of different, finite gains")
     return row
-
-
-def _unit(controller: PID, rates: int) -> Unit:
-    """Unit of a single gain, for a position (0) or a rate (1)."""
-    units: tuple[Unit, Unit] = ("N/m", "N s/m") if controller.space == "joint" else ("1/s^2", "1/s")
-    return (("1", "s") if controller.actuator == "command" else units)[rates]

@@ -17,7 +17,7 @@ from flexapod.cli.output.stages import Report
 from flexapod.control.active_damping import root_locus
 from flexapod.control.closed_loop_poles import loop_sampling_time
 from flexapod.control.controlled_response import controlled_transmissibility
-from flexapod.control.controllers import GAIN_UNIT, PID, damping_law
+from flexapod.control.controllers import GAIN_UNIT, PID, damping_law, pid_units
 from flexapod.control.gain_search import best_gain, default_gains
 from flexapod.control.isolation import h_infinity, lqg
 from flexapod.control.linear_controller import ControlLaw, Controller
@@ -25,7 +25,7 @@ from flexapod.control.plant import Plant
 from flexapod.control.position_control import closed_loop, gain_map
 from flexapod.control.sampled_simulation import Hardware, simulate_control
 from flexapod.control.sampling_rate import sampling_time
-from flexapod.conventions import ROTATIONS, TWO_PI, Array
+from flexapod.conventions import ROTATIONS, TWO_PI, Array, printed_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.excitation.excitation import Excitation
 from flexapod.excitation.random_phases import random_motion
@@ -168,13 +168,10 @@ def _pid(hexapod: Hexapod, pose: Pose, options: Options) -> _Made:
 
 
 def _pid_facts(law: PID) -> list[Fact]:
-    units = ("1", "s", "1/s") if law.actuator == "command" else ("N/m", "N s/m", "N/(m s)")
-    if law.actuator == "force" and law.space == "task":
-        units = ("1/s\u00b2", "1/s", "1/s\u00b3")
     names = {"kp": "proportional gain", "kd": "derivative gain", "ki": "integral gain"}
     facts = [
-        Fact(key, words, float(getattr(law, key)), "" if unit == "1" else unit)
-        for (key, words), unit in zip(names.items(), units, strict=True)
+        Fact(key, words, float(getattr(law, key)), "" if unit == "1" else printed_unit(unit))
+        for (key, words), unit in zip(names.items(), pid_units(law), strict=True)
     ]
     facts += [Fact("space", "acts in", f"{law.space} space"), Fact("actuator", "commands", _COMMANDED[law.actuator])]
     if law.bandwidth is not None:
