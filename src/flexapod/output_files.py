@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import stat
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
+_passing: set[Path] = set()  # files and directories that are there for a moment only
 #: Endings of figures that Matplotlib writes.
 FIGURES = (".png", ".pdf", ".svg", ".eps", ".ps", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
 
@@ -34,6 +35,33 @@ def output_path(path: str | PathLike[str]) -> Path:
 
 
 @contextmanager
+def passing(path: Path) -> Iterator[Path]:
+    """A file or directory that is there while the block runs, and no longer, whatever ends it."""
+    _passing.add(path)
+    try:
+        yield path
+    finally:
+        _remove(path)
+        _passing.discard(path)
+
+
+def remove_passing() -> None:
+    """Take away what an interrupt left that came just before it was to be removed."""
+    while _passing:
+        _remove(_passing.pop())
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir() and not path.is_symlink():
+        import shutil  # not with the package, which is light
+
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        with suppress(OSError):
+            path.unlink(missing_ok=True)
+
+
+@contextmanager
 def completed(path: str | PathLike[str]) -> Iterator[Path]:
     """Where to make a file, which gets its own name when the block ends well. Raises OutputError."""
     path = Path(path)
@@ -43,19 +71,16 @@ def completed(path: str | PathLike[str]) -> Iterator[Path]:
     except (OSError, ValueError) as error:
         raise _failed(path, error) from error
     try:
-        yield making
-        if making != place:
-            if place.exists():
-                making.chmod(stat.S_IMODE(place.stat().st_mode))
-            os.replace(making, place)
+        with passing(making) if making != place else nullcontext():
+            yield making
+            if making != place:
+                if place.exists():
+                    making.chmod(stat.S_IMODE(place.stat().st_mode))
+                os.replace(making, place)
     except OutputError:
         raise
     except OSError as error:
         raise _failed(path, error) from error
-    finally:
-        if making != place:
-            with suppress(OSError):
-                making.unlink(missing_ok=True)
 
 
 def write_file(path: str | PathLike[str], content: str | bytes) -> Path:
@@ -142,8 +167,8 @@ def _try_in(folder: Path, name: str) -> None:
     trial = folder / f".{os.getpid()}.{name}"[:255]
     if len(name.encode()) > 255:
         raise OSError(36, "File name too long")
-    trial.touch()
-    trial.unlink()
+    with passing(trial):
+        trial.touch()
 
 
 def _failed(path: Path, error: Exception) -> OutputError:

@@ -15,8 +15,9 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.optimisation.global_search import Study, _storage
+from flexapod.optimisation.global_search import Study
 from flexapod.optimisation.problem import Problem
+from flexapod.optimisation.study_file import open_storage
 
 WORKER = """
 import sys, time
@@ -182,22 +183,36 @@ def test_a_search_is_stopped_between_trials():
     assert len(study.finished()) == 5
 
 
-def test_a_file_that_another_process_is_making_is_waited_for(tmp_path):
-    """Not even its journal mode is set meanwhile: that is what "database is locked" came of."""
-    import optuna
+def test_a_study_file_is_there_as_a_whole_or_not_at_all(tmp_path, monkeypatch):
+    """Whoever finds it finds its tables and its journal mode: that is what "database is locked" came of. No lock that
+    a killed process could leave."""
+    file, seen = tmp_path / "new.db", []
+    link = os.link
 
-    file = tmp_path / "new.db"
-    lock = optuna.storages.journal.JournalFileOpenLock(str(file))
-    lock.acquire()
+    def linked(making, name):
+        with closing(sqlite3.connect(making)) as db:
+            seen.append(db.execute("select count(*) from sqlite_master where name = 'trials'").fetchone()[0])
+            seen.append(db.execute("pragma journal_mode").fetchone()[0])
+        assert not file.exists()
+        link(making, name)
+
+    monkeypatch.setattr(os, "link", linked)
+    open_storage(file).engine.dispose()
+    assert seen == [1, "wal"]
+    assert [path.name for path in tmp_path.iterdir()] == ["new.db"]
+
+
+def test_threads_that_make_one_study_file_at_once_share_it(tmp_path):
     made = []
-    second = threading.Thread(target=lambda: made.append(_storage(file)))
-    second.start()
-    second.join(0.5)
-    touched = file.exists()
-    lock.release()
-    second.join(60)
-    assert not touched
-    assert len(made) == 1
+    threads = [threading.Thread(target=lambda: made.append(open_storage(tmp_path / "new.db"))) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(60)
+    assert len(made) == 4
+    assert len({made[k].create_new_study([1], f"study {k}") for k in range(4)}) == 4
+    for storage in made:
+        storage.engine.dispose()
 
 
 @pytest.mark.parametrize("name", ["run?1.db", "a%20b.db", "a b#c.db", "x&y=1.db"])

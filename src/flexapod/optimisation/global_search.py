@@ -9,9 +9,7 @@ from __future__ import annotations
 import json
 import os
 import socket
-import sqlite3
 from collections.abc import Callable, Mapping
-from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -21,7 +19,7 @@ import numpy as np
 from flexapod.conventions import Array
 from flexapod.errors import OutputError
 from flexapod.optimisation.problem import Assessment, Problem
-from flexapod.optional import needed
+from flexapod.optimisation.study_file import open_storage, optuna_package, told
 from flexapod.workspace.sobol import Sobol
 
 Progress = Callable[[float], object]  # share of the trials done
@@ -55,28 +53,29 @@ class Study:
         sampler: Literal["tpe", "sobol", "nsga2"] = "tpe",
         samples: int = 2**12,
     ) -> None:
-        optuna = _optuna()
+        optuna = optuna_package()
         self.problem, self.seed, self.samples = problem, seed, samples
         self.file = None if file is None else Path(file)
         self._told = {**problem.describe(), "searched for": aim, "poses per trial": samples, "seed": seed}
-        storage = _storage(self.file)
+        storage = open_storage(self.file)
         self._name = f"flexapod {problem.hexapod.name} {_digest(self._told)}"
-        if self.file is not None:
-            self._refuse_others(optuna, storage)
         self._space = {
             p.name: optuna.distributions.FloatDistribution(p.low, p.high, log=p.log) for p in problem.map.parameters
         }
-        self._study = optuna.create_study(
-            storage=storage,
-            study_name=self._name,
-            directions=list(directions),
-            sampler=_sampler(problem, self._space, seed, sampler),
-            load_if_exists=True,
-        )
-        self._study.set_user_attr("problem", json.dumps(self._told, sort_keys=True))
-        self._worker = f"{socket.gethostname()}:{os.getpid()}"
-        self._give_up_dead(optuna)
-        self._study.set_user_attr(f"worker {self._worker}", True)
+        with told(self.file):
+            if self.file is not None:
+                self._refuse_others(optuna, storage)
+            self._study = optuna.create_study(
+                storage=storage,
+                study_name=self._name,
+                directions=list(directions),
+                sampler=_sampler(problem, self._space, seed, sampler),
+                load_if_exists=True,
+            )
+            self._study.set_user_attr("problem", json.dumps(self._told, sort_keys=True))
+            self._worker = f"{socket.gethostname()}:{os.getpid()}"
+            self._give_up_dead(optuna)
+            self._study.set_user_attr(f"worker {self._worker}", True)
 
     def _refuse_others(self, optuna: Any, storage: Any) -> None:
         for summary in optuna.get_all_study_summaries(storage=storage):
@@ -113,28 +112,31 @@ class Study:
         stop: Stop | None = None,
     ) -> None:
         """Goes on until `trials` are finished, by all processes together."""
-        optuna = _optuna()
-        while not (stop is not None and stop()):
-            done = self.finished()
-            if progress is not None:
-                progress(min(1.0, len(done) / trials))
-            if on_trial is not None:
-                on_trial(len(done), trials, max((t.values[0] for t in done if t.feasible), default=float("nan")))
-            if len(done) >= trials or self._enough_under_way(optuna, len(done), trials):
-                return
-            trial = self._study.ask()
-            trial.set_user_attr("worker", self._worker)
-            if self._ahead(optuna, trial.number) >= trials:  # another process asked for the last one first
-                self._study.tell(trial, state=optuna.trial.TrialState.FAIL)
-                return
-            x = np.array([trial.suggest_float(n, s.low, s.high, log=s.log) for n, s in self._space.items()])
-            assessment, values = evaluate(x)
-            trial.set_constraint("index is zero", 0.0 if assessment.index > 0 else 1.0)
-            for k, (requirement, margin) in enumerate(zip(self.problem.requirements, assessment.margins, strict=True)):
-                trial.set_constraint(f"{k} {requirement.name}", 0.0 if margin >= 0 else -float(margin))
-            trial.set_user_attr("feasible", assessment.feasible)
-            trial.set_user_attr("violation", assessment.violation)
-            self._study.tell(trial, values)
+        optuna = optuna_package()
+        with told(self.file):
+            while not (stop is not None and stop()):
+                done = self.finished()
+                if progress is not None:
+                    progress(min(1.0, len(done) / trials))
+                if on_trial is not None:
+                    on_trial(len(done), trials, max((t.values[0] for t in done if t.feasible), default=float("nan")))
+                if len(done) >= trials or self._enough_under_way(optuna, len(done), trials):
+                    return
+                trial = self._study.ask()
+                trial.set_user_attr("worker", self._worker)
+                if self._ahead(optuna, trial.number) >= trials:  # another process asked for the last one first
+                    self._study.tell(trial, state=optuna.trial.TrialState.FAIL)
+                    return
+                x = np.array([trial.suggest_float(n, s.low, s.high, log=s.log) for n, s in self._space.items()])
+                assessment, values = evaluate(x)
+                trial.set_constraint("index is zero", 0.0 if assessment.index > 0 else 1.0)
+                for k, (requirement, margin) in enumerate(
+                    zip(self.problem.requirements, assessment.margins, strict=True)
+                ):
+                    trial.set_constraint(f"{k} {requirement.name}", 0.0 if margin >= 0 else -float(margin))
+                trial.set_user_attr("feasible", assessment.feasible)
+                trial.set_user_attr("violation", assessment.violation)
+                self._study.tell(trial, values)
 
     def _enough_under_way(self, optuna: Any, done: int, trials: int) -> bool:
         """Whether other processes are at work on all trials that are missing."""
@@ -148,9 +150,11 @@ class Study:
 
     def finished(self) -> list[Trial]:
         """In order of their numbers."""
-        optuna = _optuna()
+        optuna = optuna_package()
+        with told(self.file):
+            trials = self._study.get_trials(deepcopy=False, states=(optuna.trial.TrialState.COMPLETE,))
         found = []
-        for t in self._study.get_trials(deepcopy=False, states=(optuna.trial.TrialState.COMPLETE,)):
+        for t in trials:
             x = np.array([t.params[name] for name in self._space])
             found.append(Trial(t.number, x, tuple(t.values), t.user_attrs["feasible"], t.user_attrs["violation"]))
         return found
@@ -178,40 +182,6 @@ def _short(value: Any, most: int = 300) -> str:
     return text if len(text) <= most else text[:most] + " ..."
 
 
-def _optuna() -> Any:
-    optuna = needed("optuna", "optimise", "the search needs Optuna; without it, leave the search out (trials=0)")
-    optuna.logging.set_verbosity(optuna.logging.ERROR)
-    return optuna
-
-
-def _storage(file: Path | None) -> Any:
-    if file is None:
-        return None
-    optuna = _optuna()
-    if not file.parent.is_dir():
-        raise OutputError(f"{file.parent} is no directory, so {file.name} cannot be kept in it. Make it first.")
-    if file.is_dir() or (file.exists() and file.stat().st_size and not file.read_bytes()[:15] == b"SQLite format 3"):
-        raise OutputError(f"{file} is no study file (SQLite). Choose another name.")
-    try:
-        lock = optuna.storages.journal.JournalFileOpenLock(str(file))
-        lock.acquire()  # the first process to open a file makes its tables; the others wait for it
-        try:
-            with closing(sqlite3.connect(file, timeout=60)) as connection:
-                connection.execute("PRAGMA journal_mode=WAL")  # a reader does not hold a writer up
-            return optuna.storages.RDBStorage(_address(file), engine_kwargs={"connect_args": {"timeout": 60}})
-        finally:
-            lock.release()
-    except sqlite3.Error as error:
-        raise OutputError(f"{file} cannot be used as a study file: {error}. Choose another place.") from error
-
-
-def _address(file: Path) -> str:
-    """A study file as an address, whatever characters its name has."""
-    from sqlalchemy import URL
-
-    return URL.create("sqlite", database=str(file.resolve())).render_as_string(hide_password=False)
-
-
 def _at_work(worker: str) -> bool:
     """Whether a worker, host:process, is there; those of other machines are taken to be."""
     host, _, pid = worker.rpartition(":")
@@ -229,7 +199,7 @@ def _at_work(worker: str) -> bool:
 def _sampler(problem: Problem, space: Mapping[str, Any], seed: int, kind: str) -> Any:
     """Number 0 is the start, then twice as many Sobol points as variables (at least 10), then the sampler proper,
     made anew for each trial from the seed and the trial's number: two processes never try the same."""
-    optuna = _optuna()
+    optuna = optuna_package()
     sequence = Sobol(len(space), seed)
     even = max(10, 2 * len(space))
     start = np.clip(problem.map.own(), problem.map.low, problem.map.high)

@@ -13,6 +13,7 @@ import numpy as np
 
 from flexapod.conventions import AXES
 from flexapod.errors import ArgumentError, OutputError
+from flexapod.output_files import passing
 from flexapod.workspace.pose_sets import GridPoses
 from flexapod.workspace.quantities import PENDING, QUANTITIES, attributes, provenance
 from flexapod.workspace.store.block_job import Job, sync, zarr_package
@@ -56,14 +57,12 @@ def make_store(job: Job) -> None:
         raise OutputError(f"{path} exists already. Go on with it (--resume), choose another name, or remove it.")
     if not path.parent.is_dir():
         raise OutputError(f"{path.parent} is no directory, so {path.name} cannot be written in it. Make it first.")
-    making = path.with_name(f".{path.name}.{job.token}")
     try:
-        _write_metadata(making, job)
-        os.replace(making, path)
+        with passing(path.with_name(f".{path.name}.{job.token}")) as making:
+            _write_metadata(making, job)
+            os.replace(making, path)
     except OSError as error:
         raise OutputError(f"{path} cannot be written: {error.strerror or error}. Choose another place.") from error
-    finally:
-        shutil.rmtree(making, ignore_errors=True)
 
 
 def _write_metadata(path: Path, job: Job) -> None:
@@ -105,17 +104,15 @@ def mend_description(job: Job, files: dict[str, str]) -> list[str]:
     path = Path(job.path)
     damaged = damaged_description(path, files)
     if damaged:
-        making = path.with_name(f".{path.name}.{job.token}")
         try:
-            _write_metadata(making, job)
-            for name in damaged:
-                remove(path / name)
-                (path / name).parent.mkdir(parents=True, exist_ok=True)
-                os.replace(making / name, path / name)
+            with passing(path.with_name(f".{path.name}.{job.token}")) as making:
+                _write_metadata(making, job)
+                for name in damaged:
+                    remove(path / name)
+                    (path / name).parent.mkdir(parents=True, exist_ok=True)
+                    os.replace(making / name, path / name)
         except OSError as error:
             raise OutputError(f"{path} cannot be mended: {error.strerror or error}. Choose another store.") from error
-        finally:
-            shutil.rmtree(making, ignore_errors=True)
     return damaged
 
 
