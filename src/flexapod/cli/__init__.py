@@ -7,12 +7,14 @@ interchange, plots, paper, report, web.
 from __future__ import annotations
 
 import json
+import signal
 import sys
 from importlib import import_module
 from pkgutil import iter_modules
 
 import click
 
+from flexapod import output_files
 from flexapod.cli import commands
 from flexapod.cli.output import failures, interrupt, streams
 from flexapod.errors import FlexapodError
@@ -66,9 +68,11 @@ def main(arguments: list[str] | None = None) -> int:
     except FlexapodError as error:
         return _fail(str(error), given, type(error).__name__)
     except (click.Abort, KeyboardInterrupt):
-        return _fail("Interrupted.", given, "Interrupted", code=130)
+        return _cut_short("Interrupted.", given, signal.SIGINT)
     except interrupt.Terminated:
-        return _fail("Terminated.", given, "Terminated", code=143)
+        return _cut_short("Terminated.", given, signal.SIGTERM)
+    except interrupt.CutShort as error:
+        return _cut_short(str(error), given, error.number)
     except Exception as error:
         words = failures.sentence(error)
         if words is None:
@@ -77,15 +81,22 @@ def main(arguments: list[str] | None = None) -> int:
     return code if isinstance(code, int) else 0
 
 
+def _cut_short(message: str, given: list[str], number: int) -> int:
+    """Say that a signal ended a command. Returns the exit code."""
+    output_files.remove_passing()
+    return _fail(message, given, "Terminated" if number == signal.SIGTERM else "Interrupted", code=128 + number)
+
+
 def _fail(message: str, given: list[str], kind: str, usage: str = "", code: int = 2) -> int:
     """Say what is wrong on standard error, as JSON where JSON was asked for. Returns the exit code."""
+    cut_short = {} if code == 2 else {"cut_short": True}
     try:
         sys.stdout.flush()
     except OSError:
         streams.give_up(sys.stdout)
     try:
         if "--json" in given:
-            click.echo(json.dumps({"error": message, "kind": kind}), err=True)
+            click.echo(json.dumps({"error": message, "kind": kind, **cut_short}), err=True)
         else:
             click.echo((usage + "\n" if usage else "") + (f"Error: {message}" if code == 2 else message), err=True)
     except OSError:

@@ -18,6 +18,14 @@ class Terminated(BaseException):
     """SIGTERM came. Like KeyboardInterrupt, it is no Exception, so that nothing takes it for a failed attempt."""
 
 
+class CutShort(Exception):
+    """A signal ended a command in good order, before it had a result: what is kept, and how to go on."""
+
+    def __init__(self, message: str, number: int | None) -> None:
+        super().__init__(message)
+        self.number = number or signal.SIGINT
+
+
 @contextmanager
 def terminable() -> Iterator[None]:
     """While entered, SIGTERM raises Terminated, as Ctrl-C raises KeyboardInterrupt: what was begun is undone."""
@@ -58,7 +66,7 @@ class Stopping:
 
     def _note(self, number: int, frame: FrameType | None) -> None:
         if self.signal is not None:
-            raise KeyboardInterrupt
+            raise Terminated if number == signal.SIGTERM else KeyboardInterrupt
         self.signal = number
         context = click.get_current_context(silent=True)
         if context is not None:

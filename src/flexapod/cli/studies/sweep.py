@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ import xarray as xr
 from flexapod.cli.options import common
 from flexapod.cli.options.poses import box_of, grid_of, read_poses
 from flexapod.cli.options.sweep import DEFAULT_POINTS, Options
-from flexapod.cli.output.interrupt import Stopping
+from flexapod.cli.output.interrupt import CutShort, Stopping
 from flexapod.cli.output.progress import PoseProgress
 from flexapod.design.hexapod import Hexapod
 from flexapod.plots import sweep as plots
@@ -122,10 +121,9 @@ def _run(store: SweepStore, workers: Any) -> None:
     with Stopping() as stop, PoseProgress() as bar:
         state = store.run(workers, progress=lambda share: bar(store.state), stop=stop)
     if not store.complete:
-        click.echo(
+        raise CutShort(
             f"stopped with {state.done} of {state.total} poses in {store.job.path}. "
             "Go on with the same command and --resume.",
-            err=True,
+            stop.signal,
         )
-        sys.exit(128 + (stop.signal or 0))
     click.echo(f"{state.total} poses in {store.job.path}", err=True)
