@@ -99,7 +99,7 @@ fuzz: $(VENV)/.fuzz ## the design reader, for SECONDS; what it finds is kept in 
 	mkdir -p build/fuzz
 	cd build/fuzz && PYTHONPATH=$(CURDIR)/src:$(PACKAGES) $(BARE) $(CURDIR)/tests/fuzz/designs.py corpus -max_total_time=$(SECONDS)
 
-attack: build ## bad arguments, command lines, stores and requests, drawn anew, for SECONDS each
+attack: build ## bad arguments, command lines, stores, requests, kills and full disks, for SECONDS each, and a table of them
 	FLEXAPOD_ATTACK_SECONDS=$(SECONDS) FLEXAPOD_ATTACK_SEED=$${FLEXAPOD_ATTACK_SEED:-$$(date +%s)} $(BIN)/python -m pytest tests/attack
 
 $(VENV)/.fuzz: $(VENV)/.built

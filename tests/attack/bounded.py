@@ -5,6 +5,7 @@ import random
 import signal
 import threading
 import time
+from collections import Counter, defaultdict
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -12,6 +13,8 @@ from contextlib import contextmanager
 SECONDS = float(os.environ.get("FLEXAPOD_ATTACK_SECONDS", "8"))
 #: What is drawn: the same in every run of the tests.
 SEED = int(os.environ.get("FLEXAPOD_ATTACK_SEED", "1"))
+#: What was tried in this run, by attack: how often it came to what.
+TRIED: defaultdict[str, Counter[str]] = defaultdict(Counter)
 LIMIT = 60  # s, of one call: far more than any needs, so that only what never ends reaches it
 
 
@@ -45,3 +48,8 @@ def rounds(share: float, name: str) -> Iterator[random.Random]:
     while number < 3 or time.monotonic() < end:
         yield random.Random(f"{SEED} {name} {number}")
         number += 1
+
+
+def tried(attack: str, outcome: str, count: int = 1) -> None:
+    """Take down an attack that ended as it should, for the table at the end of `make attack`."""
+    TRIED[attack][outcome] += count

@@ -9,7 +9,7 @@ import warnings
 
 import numpy as np
 import pytest
-from tests.attack.bounded import limited, rounds
+from tests.attack.bounded import limited, rounds, tried
 from tests.helpers.public import FUNCTIONS, PUBLIC
 
 import flexapod as fx
@@ -140,8 +140,10 @@ def test_bad_values_are_answered_by_flexapods_errors(part, files):
         given |= {parameter: draw.choice(BAD) for parameter in changed}
         try:
             _call(name, given)
-        except (fx.FlexapodError, TypeError):
-            pass
+            tried("calls of the library with bad values", "answered")
+        except (fx.FlexapodError, TypeError) as error:
+            own = isinstance(error, fx.FlexapodError)
+            tried("calls of the library with bad values", "an error of Flexapod" if own else "TypeError")
         except BaseException as error:
             if isinstance(error, KeyboardInterrupt):
                 raise

@@ -11,7 +11,7 @@ import warnings
 import click
 import numpy as np
 import pytest
-from tests.attack.bounded import limited, rounds
+from tests.attack.bounded import limited, rounds, tried
 
 from flexapod.cli import COMMANDS, group, main
 from flexapod.cli.options import common
@@ -210,3 +210,4 @@ def test_bad_command_lines_end_in_a_sentence(name, files, unserved):
             pytest.fail(f"{told}: {hidden} was left")
         if (files / "own.toml").exists():
             (files / "own.toml").unlink()
+        tried("command lines with bad values", "refused in a sentence" if code else "answered")
