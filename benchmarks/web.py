@@ -126,7 +126,9 @@ def many_pages(url: str) -> list[float]:
 
 def memory(pid: int) -> float:
     """Resident MB of a process and its children."""
-    children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+    children = [
+        child for thread in Path(f"/proc/{pid}/task").iterdir() for child in (thread / "children").read_text().split()
+    ]
     total = 0
     for process in [str(pid), *children]:
         line = next(x for x in Path(f"/proc/{process}/status").read_text().splitlines() if x.startswith("VmRSS"))

@@ -81,10 +81,14 @@ def application(start: Path | None = None, hosts: Iterable[str] = (), token: str
 
 @contextlib.asynccontextmanager
 async def _warm(*pools: Pool) -> AsyncIterator[None]:
-    """Processes are started at first, and ended with the server."""
-    async with anyio.create_task_group() as tasks:
+    """Processes are started at first, one after another so that the first soon answers, and ended with the server."""
+
+    async def start() -> None:
         for pool in pools:
-            tasks.start_soon(pool.warm)
+            await pool.warm()
+
+    async with anyio.create_task_group() as tasks:
+        tasks.start_soon(start)
         yield
         tasks.cancel_scope.cancel()
     for pool in pools:
