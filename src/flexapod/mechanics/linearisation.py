@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -112,6 +113,12 @@ class Linearisation:
 
     def modes(self) -> DampedModes:
         """Compute the complex modes with the base fixed; of a pair of real poles, the slower or growing one."""
+        pole, omega, ratio, shape = self._modes
+        return DampedModes(pole.copy(), omega.copy(), ratio.copy(), shape.copy())
+
+    @cached_property
+    def _modes(self) -> DampedModes:
+        """Computed once: a response needs them for its frequencies and to tell whether the machine stands."""
         zero, one = np.zeros((6, 6)), np.eye(6)
         A = np.block([[zero, one], [-np.linalg.solve(self.M, self.K), -np.linalg.solve(self.M, self.C)]])
         scale = np.sqrt(np.abs(np.linalg.eigvals(A[6:, :6])).max())  # balances displacements against rates
