@@ -55,7 +55,8 @@ STRUTS = Path(__file__).parents[1] / "data" / "cases" / "tangential-struts" / "m
 NEAR = {"base.universal_axes[3]": [1.0, 0.0, np.tan(np.radians(1.0))]}  # strut 4 runs along x
 
 
-def test_a_leg_along_its_axis_is_named_everywhere(result, run, tmp_path):
+def test_a_leg_along_its_axis_is_named_everywhere(result, run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # where the report is written
     hexapod = fx.load(STRUTS).replace(NEAR)
     found = [one for one in gather(hexapod).cautions if one.code == "axis_along_leg"]
     assert [one.numbers["leg"] for one in found] == [4]
