@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, FlexapodError
 
+MOST_UNITS = 8  # that an error lists
 LEFT_OUT = ("name", "note", "comment", "part", "remark")
 #: Unit -> (multiply by, divide by), to SI. Two numbers, because x / 1000 is rounded once and x * 0.001 is not.
 Units = Mapping[str, tuple[float, float]]
@@ -83,7 +84,9 @@ class Table:
             return units[found]
         if not unit:
             return 1.0, 1.0
-        allowed = f"it may be {', '.join(units)}" if units else "this column has none"
+        some = list(units)[:: -(-len(units) // MOST_UNITS) or 1]
+        rest = " and the like" * (len(some) < len(units))
+        allowed = f"it may be {', '.join(some)}{rest}" if units else "this column has none"
         raise self.error(f"column {column.title!r} has the unit {column.unit!r}; {allowed}. Correct the header.")
 
 

@@ -109,7 +109,7 @@ def test_control_says_when_actuators_were_at_their_limit(result):
     found = result("control", "cubic-isolator", "velocity", "--gain", 50, "--shake", 0.01, "--duration", 0.5,
                    "--force-limit", 1e-4)  # fmt: skip
     assert found["run"]["saturated"] > 0
-    assert any(text.startswith("The actuators were at their limit in") for text in found["cautions"])
+    assert any(text.startswith("The actuators were at their limit in") for text in found["warnings"])
 
 
 SPECTRA = {

@@ -115,7 +115,7 @@ def test_damping_gain_is_chosen_for_the_sampled_loop(result):
     assert found["worst_damping"] > 0.5
     slower = result("control", "precision-positioner", "velocity", "--dt", 4 * found["sampling_time_s"])
     assert slower["worst_damping"] > 0.05
-    assert any("sample faster" in text for text in slower["cautions"])
+    assert any("sample faster" in text for text in slower["warnings"])
 
 
 def test_pid_shows_where_gains_are_near(run, tmp_path):

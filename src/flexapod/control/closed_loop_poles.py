@@ -9,6 +9,7 @@ import numpy as np
 from flexapod.control.linear_controller import Controller
 from flexapod.control.plant import Plant, damping_ratios, is_stable, poles
 from flexapod.conventions import Array, Complex
+from flexapod.mechanics.cautions import stands
 from flexapod.mechanics.modes import advised_sampling_time
 
 _KEPT_DAMPING = 0.2  # of the continuous loop: a sampled one that keeps less is sampled too slowly
@@ -84,7 +85,7 @@ def loop_sampling_time(plant: Plant, controller: Controller, longest: float, del
     return dt
 
 
-def instability_message(found: ClosedLoop) -> str:
+def instability_message(found: ClosedLoop, plant: Plant) -> str:
     """What is wrong with an unstable loop, and the remedy."""
     worst = found.pole[int(np.argmax(found.pole.real))]
     if abs(worst.imag) < 1e-6 * abs(worst):
@@ -92,10 +93,13 @@ def instability_message(found: ClosedLoop) -> str:
     growth = f"grows e-fold in {1 / worst.real:.3g} s"
     how = f"oscillates at {abs(worst.imag):.5g} rad/s and {growth}" if worst.imag else growth
     remedy = "reduce the gains" if found.controller.dt is None else "reduce the gains, or sample faster"
-    return (
-        f"the machine is unstable with {found.controller.name}: the pole at {pole_text(worst)} rad/s {how}. To "
-        f"cure it, {remedy}; an integral that takes the legs' static stiffness away needs a leak."
-    )
+    unstable = f"the machine is unstable with {found.controller.name}: the pole at {pole_text(worst)} rad/s {how}."
+    if not stands(plant.linear.modes()):
+        return (
+            f"{unstable} Without control it falls over under its own weight, and this law does not hold it. Stiffen "
+            "the legs or lower the mass centre, or choose a law that holds it, as joint-space PID with high gains."
+        )
+    return f"{unstable} To cure it, {remedy}; an integral that takes the legs' static stiffness away needs a leak."
 
 
 def pole_text(pole: complex) -> str:

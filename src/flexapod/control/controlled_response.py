@@ -130,7 +130,9 @@ def controlled_transmissibility(
 def _stability(plant: Plant, law: Controller) -> dict[str, str]:
     """Whether the loop and the machine without control decay, and what it means where one does not."""
     loop, passive = assess(plant, law), response_attributes(plant.linear)
-    texts = [] if loop.stable else [f"No motion approaches the response with control: {instability_message(loop)}"]
+    texts = (
+        [] if loop.stable else [f"No motion approaches the response with control: {instability_message(loop, plant)}"]
+    )
     if passive["caution"]:
         texts.append(f"Without control: {passive['caution']}")
     return {

@@ -116,7 +116,7 @@ def closed_loop(
     law = controller_for(plant.linear, controller)
     found = assess(plant, law, nearness)
     if not found.stable and unstable == "raise":
-        raise UnstableError(instability_message(found))
+        raise UnstableError(instability_message(found, plant))
     if found.near:
         first = found.near[0]
         warnings.warn(

@@ -157,7 +157,7 @@ def _clock(plant: Plant, controller: Controller, duration: float, after: float) 
         )
     loop = assess(plant, controller)
     if not loop.stable:
-        raise UnstableError(instability_message(loop))
+        raise UnstableError(instability_message(loop, plant))
     return Clock(dt, round(duration / dt), max(1, int(np.ceil(dt * plant.omega_0 / _TURN_A_STEP))))
 
 

@@ -170,5 +170,7 @@ class OptimalDesign:
 
     @property
     def gain(self) -> float:
-        """Relative gain, index / start_index - 1; infinite for a start of index zero."""
+        """Relative gain, index / start_index - 1; infinite for a start of index zero, if it is left."""
+        if self.index == self.start_index:
+            return 0.0
         return self.index / self.start_index - 1 if self.start_index > 0 else float("inf")

@@ -182,7 +182,7 @@ def _told(
     if best.assessment.feasible:
         ended = problem.map.hexapod_at(best.x)
         seen = verified(problem, ended, settings.verify, best.assessment, settings.samples, failures)
-        if begun.breaks or seen.index > (1 + _SAME) * begun.verified.index:
+        if seen.index > (0 if begun.breaks else (1 + _SAME) * begun.verified.index):
             design, checked = ended.replace({"name": f"{start.name}-optimised"}), seen
             variables, at_bounds = problem.map.values(best.x), _at_bounds(problem, best.x)
     return OptimalDesign(

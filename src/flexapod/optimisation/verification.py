@@ -33,7 +33,7 @@ def verify(problem: Problem, hexapod: Hexapod, samples: int) -> Verification:
             threads=problem.threads,
             all_poses=True,
         )
-        index, pose = min(index, worst.omega_1), worst.pose
+        index, pose = 0.0 if worst.singular else min(index, worst.omega_1), worst.pose
     elif not isinstance(problem.objective, MeanIndex):
         rows, swept = problem.sweep(hexapod, 0, samples, 0)
         pose = rows[problem.objective.worst_poses(np.nan_to_num(swept[problem.objective.quantity]))[0]]

@@ -115,8 +115,8 @@ class Study:
     dataset: xr.Dataset | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """The results by name; arrays stay arrays, what is not available is None."""
-        return dict(self.data)
+        """The results by name, and the cautions as `warnings`; arrays stay arrays, what is not available is None."""
+        return {**self.data, "warnings": [caution.text for caution in self.cautions]}
 
     def to_dataset(self) -> xr.Dataset | None:
         """The results as a Dataset, where the study has one."""

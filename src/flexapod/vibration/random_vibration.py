@@ -221,6 +221,10 @@ def _check_damped(poles: Complex, grid: Array) -> None:
     inside = (poles.imag >= grid[0]) & (poles.imag <= grid[-1])
     for i in np.flatnonzero((ratio < -_LEAST_DAMPING) | (inside & (ratio < _LEAST_DAMPING))):
         raise ArgumentError(
-            f"mode {i + 1} ({abs(poles[i]):.6g} rad/s) has damping ratio {ratio[i]:.1e}, so its random response never "
+            f"mode {i + 1} ({abs(poles[i]):.6g} rad/s) has {_damping_words(ratio[i])}, so its random response never "
             "becomes stationary. Give the legs damping, a loss_factor, or a band without the mode."
         )
+
+
+def _damping_words(ratio: float) -> str:
+    return "no damping" if abs(ratio) < _LEAST_DAMPING else f"the damping ratio {ratio:.1e}"

@@ -21,7 +21,8 @@ _TINY = np.finfo(float).eps
 def none_within(count: int) -> PoseError:
     """What is told where poses can be computed and the design's limits allow none of them."""
     return PoseError(
-        f"none of the {count} poses is within the design's limits. Choose other poses, or take all of them (all_poses)."
+        f"none of the {count} poses is within the design's limits. Choose other poses, or take all of them (all_poses, "
+        "on the command line --all-poses)."
     )
 
 

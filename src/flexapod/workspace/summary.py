@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from flexapod import checks
+from flexapod import _core, checks
 from flexapod.conventions import AXES, Array
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.workspace.distribution import QUANTILES, binned, exactly
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 _IN_MEMORY = 2**20  # poses looked at together
+_OF_SINGULAR = {"omega_1": 0.0, "cond_H": np.inf}  # what a sweep holds of them is rounding
 EXACT = 2**22  # poses up to which all are sorted
 
 
@@ -173,8 +174,13 @@ class Counted:
 
     def columns(self, names: tuple[str, ...]) -> Iterator[tuple[np.ndarray, list[Array]]]:
         """Numbers of poses that count, and their columns of quantities (the first omega_1), block by block."""
-        for start, found in columns(self.sweep, (*names, *(("within_limits",) if self.within else ()))):
+        last = ("within_limits",) if self.within else ()
+        for start, (status, *found) in columns(self.sweep, ("status", *names, *last)):
             good = np.isfinite(found[0])
+            singular = status == _core.SweepStatus.singular.value
+            if singular.any():
+                for k, name in enumerate(names):
+                    found[k] = np.where(singular, _OF_SINGULAR[name], found[k])
             if self.within:
                 good &= np.asarray(found.pop(), dtype=bool)
             number = start + np.flatnonzero(good)
@@ -251,8 +257,8 @@ def _at(sweep: xr.Dataset, number: int) -> At:
         points = described(json.loads(sweep.attrs["poses"]))
         pose = np.full(6, np.nan) if points is None else points.rows(number, number + 1)[0]
     cond = float(one["cond_H"]) if "cond_H" in one else np.nan
-    if "status" in one and statuses()[int(one["status"])] == "singular":  # what is left of them is rounding
-        return At(number, pose, 0.0, np.inf if "cond_H" in one else np.nan)
+    if "status" in one and int(one["status"]) == _core.SweepStatus.singular.value:
+        return At(number, pose, _OF_SINGULAR["omega_1"], _OF_SINGULAR["cond_H"] if "cond_H" in one else np.nan)
     return At(number, pose, float(one["omega_1"]), cond)
 
 

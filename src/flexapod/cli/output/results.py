@@ -26,7 +26,8 @@ def emit(study: Study, out: Path | None, as_json: bool, *, listed: str = "files"
     if as_json:
         names = [str(file) for file in files]
         told: dict[str, object] = {"files": names, "html": next(iter(names), None)}
-        cut_short = {"cut_short": True} if exit_code(click.get_current_context()) else {}
+        context = click.get_current_context(silent=True)
+        cut_short = {"cut_short": True} if context is not None and exit_code(context) else {}
         common.print_json({**study.to_dict(), **cut_short, **({listed: told[listed]} if listed else {})})
         return
     from flexapod.report.terminal import show

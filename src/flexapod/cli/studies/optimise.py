@@ -43,7 +43,7 @@ def compute(options: Options) -> Study:
         click.echo(after, err=True)
     if isinstance(found, ParetoFront):
         return studies.front(found, repr(aim))
-    return studies.optimal(found, repr(aim))
+    return studies.optimal(found, repr(aim), options.joint)
 
 
 def _kept(options: Options) -> str:

@@ -34,4 +34,5 @@ def compute(hexapod: Hexapod, given: Mapping[str, Any], report: Report) -> Study
         progress=lambda share: report("designs", share),
         **options,
     )
-    return study(hexapod, found, "home" if over is None else repr(over))
+    pose = None if given["pose"] is None else problem.six(given["pose"])
+    return study(hexapod, found, "home" if over is None else repr(over), pose)

@@ -212,7 +212,6 @@ def _data(hexapod: Hexapod, f: ControlFindings) -> dict[str, Any]:
         "worst_damping": loop.worst_damping,
         "worst_damping_continuous": f.ideal.worst_damping,
         "law": {fact.key: fact.value for fact in f.law},
-        "cautions": [caution.text for caution in cautions(f)],
         "files": [],
     }
     if f.locus is not None:

@@ -7,15 +7,16 @@ from functools import partial
 import numpy as np
 
 from flexapod import plots
-from flexapod.conventions import TWO_PI
+from flexapod.conventions import TWO_PI, JointModel
 from flexapod.mechanics.cautions import Caution
 from flexapod.optimisation.design_results import Check, OptimalDesign, VariableRange
 from flexapod.optimisation.pareto import ParetoFront
-from flexapod.report.numbers import brief, file_name, percent, shown, six_words
+from flexapod.report.numbers import DASH, brief, file_name, percent, shown, six_words
+from flexapod.report.studies import least_index
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 
 
-def optimal(found: OptimalDesign, objective: str) -> Study:
+def optimal(found: OptimalDesign, objective: str, joint: JointModel = "universal") -> Study:
     """What was found, from what, and how it was verified. objective: in words."""
     worst = found.verification.pose
     where = "" if worst is None else f" It is least at {six_words(worst)}."
@@ -35,7 +36,7 @@ def optimal(found: OptimalDesign, objective: str) -> Study:
         data=_optimal_data(found, objective),
         rows=_optimal_rows(found),
         sections=[*sections, Section(search.title, [search])],
-        cautions=_cautions(found),
+        cautions=[*_cautions(found), *least_index.cautions(found.hexapod, worst, joint)],
         files={
             **({} if kept else {f"{name}.toml": found.hexapod.to_toml}),
             f"{name}.html": None,
@@ -57,12 +58,13 @@ def _about(found: OptimalDesign) -> str:
 
 
 def _optimal_rows(found: OptimalDesign) -> list[Row]:
-    gain = f"rad/s ({100 * found.gain:+.3g} %), verified at {found.verification.points} poses"
+    by = f" ({100 * found.gain:+.3g} %)" if np.isfinite(found.gain) else ""
+    gain = f"rad/s{by}, verified at {found.verification.points} poses"
     start = "rad/s, but it breaks a constraint" if found.start_breaks else "rad/s"
     return [
         Row("Index, verified", found.index, f"rad/s = {shown(found.index / TWO_PI, 4)} Hz", 5, on="page"),
         Row("Design begun with", found.start_index, start, 5, on="page"),
-        Row("Gain", percent(found.gain), "of the index", on="page"),
+        Row("Gain", percent(found.gain) if np.isfinite(found.gain) else DASH, "of the index", on="page"),
         Row("Trials", str(found.history.sizes["trial"]), f"in {brief(found.seconds, 3)} s", on="page"),
         Row("index", f"{found.start_index:.6g} -> {found.index:.6g}", gain, on="terminal"),
     ]

@@ -16,6 +16,7 @@ from flexapod.paths.analysis import PathIndex
 from flexapod.paths.plan import Plan
 from flexapod.paths.trajectory import Trajectory
 from flexapod.report.numbers import DASH, pose_numbers, pose_words, shown
+from flexapod.report.studies import least_index
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 
 
@@ -47,7 +48,10 @@ def study(hexapod: Hexapod, f: PathFindings, waypoints: str | None = None) -> St
         data=_data(hexapod, f),
         rows=_rows(f),
         sections=[*(Section(one.title, [one]) for one in drawings), Section("Legs", [_legs(f)])],
-        cautions=cautions(f),
+        cautions=[
+            *least_index.cautions(hexapod, f.along.minimum_pose, f.along.samples.attrs["joint"]),
+            *cautions(f),
+        ],
         files={**files, "path.html": None},
     )
 

@@ -198,7 +198,6 @@ def _data(f: ResponseFindings, peaks: Array) -> dict[str, Any]:
         "amplitude_at_modes": peaks,
         "omega_rad_s": f.response.omega.values,
         "amplitude": {name: np.abs(f.chosen.sel(output=name).values) for name in AXES},
-        "warnings": list(f.notes),
         "phase_rad": {name: np.angle(f.chosen.sel(output=name).values) for name in AXES},
     }
     if f.stepped is not None:

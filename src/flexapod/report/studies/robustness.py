@@ -8,15 +8,17 @@ from typing import Any
 from flexapod import plots
 from flexapod.design.hexapod import Hexapod
 from flexapod.optimisation.uncertainty import Robustness
+from flexapod.pose import PoseLike
 from flexapod.report.numbers import brief, file_name, percent, shown
+from flexapod.report.studies import least_index
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 
 MOST = 8  # parameters that the terminal shows
 CUT = "Normal and lognormal distributions are cut off at four standard deviations; least and largest are their ends."
 
 
-def study(hexapod: Hexapod, found: Robustness, over: str) -> Study:
-    """Distribution, worst case, and what matters most. over: the poses, in words."""
+def study(hexapod: Hexapod, found: Robustness, over: str, pose: PoseLike | None = None) -> Study:
+    """Distribution, worst case, and what matters most. over: the poses, in words. pose: where it is one, not home."""
     count, told = found.samples.sizes["sample"], found.samples.attrs
     poses = f" ({told['poses']} poses)" if told["poses"] > 1 else ""
     spread = Drawing("spread", "How the index strays", partial(plots.optimisation.spread, found),
@@ -27,7 +29,7 @@ def study(hexapod: Hexapod, found: Robustness, over: str) -> Study:
         words = "Sobol indices: shares of the variance of the index, with 95 % confidence."
         importance = Drawing("importance", "What matters most", partial(plots.optimisation.importance, found), words)
         sections.append(Section(importance.title, [importance, _shares(found)]))
-    name = f"{file_name(hexapod.name)}-robust"
+    name, where = f"{file_name(hexapod.name)}-robust", "at home" if pose is None else "at the pose given"
     return Study(
         hexapod=hexapod,
         subject="robustness",
@@ -35,6 +37,7 @@ def study(hexapod: Hexapod, found: Robustness, over: str) -> Study:
         data=_data(hexapod, found, over),
         rows=_rows(found),
         sections=[*sections, Section("The worst case", [_worst(found)])],
+        cautions=least_index.cautions(hexapod, pose, found.samples.attrs["joint"], f"The design as it is, {where}"),
         files={f"{name}.html": None, f"{name}.png": spread.draw},
     )
 
@@ -64,7 +67,7 @@ def _worst(found: Robustness) -> Table:
 
 def _rows(found: Robustness) -> list[Row]:
     quantiles = ", ".join(f"{100 * q:g} %: {value:.6g}" for q, value in found.quantiles.items())
-    below, seed = f"rad/s, {percent(found.worst / found.nominal - 1)}", found.samples.attrs["seed"]
+    below, seed = f"rad/s, {percent(found.worst / found.nominal - 1, 1)}", found.samples.attrs["seed"]
     return [
         Row("Index as designed", found.nominal, "rad/s", 5),
         Row("99 % of designs are above", found.quantiles[0.01], "rad/s", 5, on="page"),

@@ -42,7 +42,7 @@ def study(
         hexapod=hexapod,
         subject="simulation",
         about=f"From rest at {pose_words(pose)}, joint model {dataset.attrs['joint']}.",
-        data={**_data(hexapod, pose, dataset, took, cautions), **summary},
+        data={**_data(hexapod, pose, dataset, took), **summary},
         rows=[
             Row("Leg forces from", f"{force.min():.5g} to {force.max():.5g}", "N", note="(positive: compression)"),
             Row(steps, f"{dataset.attrs['energy_error']:.1e}", note="of the largest of kinetic energy and works"),
@@ -123,9 +123,7 @@ def _summary(dataset: xr.Dataset) -> dict[str, dict[str, list[float]]]:
     }
 
 
-def _data(
-    hexapod: Hexapod, pose: Pose, dataset: xr.Dataset, took: float, cautions: Sequence[Caution]
-) -> dict[str, Any]:
+def _data(hexapod: Hexapod, pose: Pose, dataset: xr.Dataset, took: float) -> dict[str, Any]:
     force = dataset.leg_force.values
     return {
         "design": hexapod.name,
@@ -140,5 +138,4 @@ def _data(
         "steps": dataset.attrs["steps"],
         "evaluations": dataset.attrs["evaluations"],
         "seconds": took,
-        "warnings": [caution.text for caution in cautions],
     }

@@ -14,9 +14,8 @@ from matplotlib.figure import Figure
 from flexapod import plots
 from flexapod.conventions import AXES, Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import PoseError
-from flexapod.mechanics.cautions import Caution, axes_along_legs
-from flexapod.pose import as_pose
+from flexapod.mechanics.cautions import Caution
+from flexapod.report.studies import least_index
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 from flexapod.workspace.summary import At, SweepSummary
 from flexapod.workspace.worst import WorstPose
@@ -52,21 +51,16 @@ def study(
         data=data,
         rows=rows,
         sections=[Section(drawing.title, [drawing, *tables])],
-        cautions=_cautions(hexapod, summary, worst),
+        cautions=_cautions(hexapod, sweep, summary, worst),
         dataset=sweep,
     )
 
 
-def _cautions(hexapod: Hexapod, summary: SweepSummary | None, worst: WorstPose | None) -> list[Caution]:
-    """Legs along the axes of their universal joints at the pose of the least index, which may be the reason for it."""
+def _cautions(
+    hexapod: Hexapod, sweep: xr.Dataset, summary: SweepSummary | None, worst: WorstPose | None
+) -> list[Caution]:
     least = worst.pose if worst is not None else None if summary is None else summary.worst.pose
-    if least is None or not np.isfinite(least).all():
-        return []
-    try:
-        found = axes_along_legs(hexapod, as_pose(least))
-    except PoseError as error:
-        return [Caution("least_index", f"At the pose of the least index: {error}")]
-    return [Caution(one.code, f"At the pose of the least index: {one.text}", one.numbers) for one in found]
+    return [] if least is None else least_index.cautions(hexapod, least, sweep.attrs["joint"])
 
 
 def _figure(sweep: xr.Dataset, all_poses: bool) -> Figure:
@@ -90,8 +84,9 @@ def _summary_rows(summary: SweepSummary, within: str) -> list[Row]:
         rest = "what follows is of these" if within else "what follows is of all poses, also of those beyond the limits"
         rows.append(Row("within the design's limits:", share, note=rest))
     if not math.isnan(summary.correlation):
-        spread = f"at equal cond(H) the 95 % quantile of ω1 is {summary.spread:.3g} times the 5 % quantile"
-        rows.append(Row("rank correlation of ω1 with cond(H):", f"{summary.correlation:.3f};", note=spread))
+        spread = f"; at equal cond(H) the 95 % quantile of ω1 is {summary.spread:.3g} times the 5 % quantile"
+        told = f"{summary.correlation:.3f}{spread if math.isfinite(summary.spread) else ''}"
+        rows.append(Row("rank correlation of ω1 with cond(H):", told))
     if summary.above is not None:
         above = summary.above
         volume = "" if math.isnan(above.volume) else f", {above.volume:.5g} {above.volume_unit}"
