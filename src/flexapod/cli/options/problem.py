@@ -12,7 +12,6 @@ import numpy as np
 
 from flexapod.cli.options.optimise import KEEPS
 from flexapod.cli.options.poses import box_of, read_poses
-from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.units import UNITS, to_si
 from flexapod.optimisation import constraints as c
@@ -77,11 +76,6 @@ def keep(text: str) -> Constraint:
     return makers[name]()
 
 
-def six(pose: tuple[float, ...]) -> Array:
-    """x, y, z in m and roll, pitch, yaw in rad of --pose."""
-    return np.concatenate([pose[:3], np.radians(pose[3:])])
-
-
 def where(
     hexapod: Hexapod,
     pose: tuple[float, ...] | None,
@@ -96,7 +90,7 @@ def where(
         return Workspace.about_home(around[0], math.radians(around[1]))
     if box:
         return Workspace(box_of(hexapod, box, None))
-    return None if pose is None else as_region(six(pose))
+    return None if pose is None else as_region(np.concatenate([pose[:3], np.radians(pose[3:])]))
 
 
 def objective(

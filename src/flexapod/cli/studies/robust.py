@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from flexapod.cli.options import problem
+from flexapod.cli.options import common, problem
 from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
 from flexapod.optimisation.uncertain_parameters import Payload
@@ -34,5 +34,5 @@ def compute(hexapod: Hexapod, given: Mapping[str, Any], report: Report) -> Study
         progress=lambda share: report("designs", share),
         **options,
     )
-    pose = None if given["pose"] is None else problem.six(given["pose"])
+    pose = None if given["pose"] is None else common.pose_of(given["pose"])
     return study(hexapod, found, "home" if over is None else repr(over), pose)
