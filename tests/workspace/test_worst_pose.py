@@ -162,3 +162,9 @@ def test_the_sampling_time_is_that_of_the_poses_within_the_limits():
     assert omega.max() > 1.02 * omega[inside].max()
     with pytest.raises(fx.PoseError, match="within the limits"):
         fx.control.sampling_time(design, fx.Box(z=(3.5, 3.6)))
+
+
+@pytest.mark.parametrize("seed", [-1, 1.5, "x"])
+def test_a_seed_that_is_none_is_refused(seed):
+    with pytest.raises(fx.errors.ArgumentError, match="seed is"):
+        fx.worst_pose(POSITIONER, around(POSITIONER, 0.001, 0.5), samples=16, seed=seed)

@@ -143,7 +143,7 @@ def worst_pose(
     if box is None:
         return _worst_of(index, limits, where.rows(home, samples), threads)
     count = whole(starts, "starts")
-    search = BoxSearch(index, box, limits, whole(samples, "samples"), seed, threads)
+    search = BoxSearch(index, box, limits, whole(samples, "samples"), whole(seed, "seed", 0), threads)
     poses = search.sample()
     ends = [search.descend(start) for start in starts_of(poses, box, count)]
     found = sorted(((index.root(end), end) for end in ends), key=lambda one: one[0])
