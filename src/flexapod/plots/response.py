@@ -194,7 +194,7 @@ def stepped_ratio(
     natural, drawn = list(natural), moves(line.transpose(..., "output").values)
     shown = [axis for axis, seen in zip(AXES, drawn, strict=True) if seen]
     figure = new_figure(10.5, 4.5 if len(shown) <= 3 else 6.2)
-    for name, ax in zip(shown, panels(figure, len(shown), sharex=True), strict=False):
+    for place, (name, ax) in enumerate(zip(shown, panels(figure, len(shown), sharex=True), strict=False)):
         smooth = np.abs(line.sel(output=name).values)
         dots = dataset.ratio.sel(output=name).values
         ax.set_xscale(scale)
@@ -207,7 +207,7 @@ def stepped_ratio(
             _plain_decades(ax)
         _mark(ax, natural, hertz=unit == "Hz")
         dress(ax)
-        name_panel(ax, AXES.index(name), name)
+        name_panel(ax, place, name)
         ax.set_ylabel(f"ratio, {_ratio_unit(unit_of(name), dataset.attrs['amplitude_unit'])}")
         ax.set_xlabel(f"base frequency, {unit}")
     note_still(figure, [OUTPUT_NAMES[axis] for axis in AXES if axis not in shown])

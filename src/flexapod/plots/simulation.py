@@ -68,14 +68,14 @@ def displacements(
     drawn = moves(moved)
     figure = new_figure(10.5, 4.5 if drawn.sum() <= 3 else 6.2)
     shown = [i for i in range(6) if drawn[i]]
-    for i, ax in zip(shown, panels(figure, len(shown), sharex=True), strict=False):
+    for place, (i, ax) in enumerate(zip(shown, panels(figure, len(shown), sharex=True), strict=False)):
         _trace(ax, t, moved[:, i], BLUE)
         if bound is not None:
             edge = np.asarray(bound)[:, i]
             ax.plot(t, edge, color=ORANGE, lw=1.1, label=bound_name)
             ax.plot(t, -edge, color=ORANGE, lw=1.1)
         dress(ax)
-        name_panel(ax, i, AXES[i])
+        name_panel(ax, place, AXES[i])
         ax.yaxis.set_major_locator(MaxNLocator(5))
         prefixed(ax, unit_of(AXES[i]))
         ax.margins(x=0)
