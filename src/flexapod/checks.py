@@ -18,8 +18,10 @@ def is_masked(value: Any) -> bool:
     return isinstance(value, np.ndarray) and type(value) is not np.ndarray and bool(np.ma.is_masked(value))
 
 
-def floats(value: Any) -> Array:
-    """A copy as float64 of any shape. Raises TypeError or ValueError for what is no number, or none that can be used.
+def floats(value: Any, *, copy: bool = True) -> Array:
+    """As float64 of any shape. Raises TypeError or ValueError for what is no number, or none that can be used.
+
+    copy: where it is false, an array that is float64 already is given back itself.
 
     NumPy would leave out the mask of masked entries and the imaginary parts of complex ones, and cannot hold integers
     of hundreds of digits.
@@ -29,7 +31,7 @@ def floats(value: Any) -> Array:
     if isinstance(value, np.ndarray) and value.dtype.kind in "cmM":
         raise TypeError(f"numbers of the type {value.dtype}")
     try:
-        return np.array(value, dtype=np.float64)
+        return np.array(value, dtype=np.float64) if copy else np.asarray(value, dtype=np.float64)
     except OverflowError as error:
         raise ValueError("an integer too large for a number of this machine") from error
 

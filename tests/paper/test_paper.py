@@ -248,7 +248,10 @@ def test_the_stored_answers_are_the_engine_s():
     for kind, cases in engine_answers.cases().items():
         assert len(stored[kind]) == len(cases)
         for kept, case in zip(stored[kind], cases, strict=True):
-            assert relative(kept["engine"], engine_answers.answer(kept)) < 1e-11
+            # Near rest an acceleration is what weight (10 m/s2) and leg forces leave of each other: their rounding stays.
+            engine = np.array(kept["engine"])
+            bound = 1e-11 * np.abs(engine).max() + 1e-12
+            np.testing.assert_allclose(engine_answers.answer(kept), engine, rtol=0, atol=bound)
             for body in ("platform", "base"):  # the states are those that the script describes
                 for name, value in case[body].items():
                     np.testing.assert_allclose(kept[body][name], value, rtol=1e-12, atol=1e-12)

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flexapod.conventions import AXES, Array
-from flexapod.errors import ArgumentError
+from flexapod.conventions import Array
 from flexapod.output_files import write_figure
 from flexapod.plots.style import BLUE, FAINT, INK, LEGEND, NO_VALUE, ORANGE, VALUES
 from flexapod.plots.sweep_axes import (
@@ -25,6 +24,7 @@ from flexapod.plots.sweep_axes import (
     entitle,
     grid_values,
     held,
+    is_grid,
     new_axes,
     spelled,
 )
@@ -156,18 +156,6 @@ def save(ax: Axes, path: str | Path) -> None:
     write_figure(ax.figure, path)  # type: ignore[arg-type]
 
 
-def check_swept(dims: tuple[str, ...], quantities: tuple[str, ...]) -> None:
-    """Raises ArgumentError, before a sweep over `dims`, where its figure would lack a quantity."""
-    needed = ("omega_1",) if _is_grid(dims) else ("omega_1", "cond_H")
-    if missing := [name for name in needed if name not in quantities]:
-        raise ArgumentError(f"the figure of this sweep needs the quantity {' and '.join(missing)}. Sweep it.")
-
-
-def _is_grid(dims: tuple[str, ...]) -> bool:
-    """Whether a line, a map or a surface shows a sweep over these axes."""
-    return len(dims) in (1, 2, 3) and all(dim in AXES for dim in dims)
-
-
 def auto(sweep: xr.Dataset, level: float | None = None, *, all_poses: bool = False) -> Axes:
     """Draw the figure that fits a sweep: a line, a map, a surface, or else the scatter.
 
@@ -197,7 +185,7 @@ def auto(sweep: xr.Dataset, level: float | None = None, *, all_poses: bool = Fal
     'x (mm)'
     """
     dims = tuple(str(dim) for dim in sweep["omega_1"].dims) if "omega_1" in sweep else ()
-    if not _is_grid(dims):
+    if not is_grid(dims):
         return index_scatter(sweep, all_poses=all_poses)
     if len(dims) == 1:
         return index_line(sweep)

@@ -97,3 +97,15 @@ def beyond_limits(sweep: xr.Dataset, dims: tuple[str, ...]) -> np.ndarray | None
 def spelled(quantity: str) -> str:
     known = QUANTITIES[quantity]
     return f"{known.meaning} ({known.unit})" if known.unit not in ("", "1") else known.meaning
+
+
+def check_swept(dims: tuple[str, ...], quantities: tuple[str, ...]) -> None:
+    """Raises ArgumentError, before a sweep over `dims`, where its figure would lack a quantity."""
+    needed = ("omega_1",) if is_grid(dims) else ("omega_1", "cond_H")
+    if missing := [name for name in needed if name not in quantities]:
+        raise ArgumentError(f"the figure of this sweep needs the quantity {' and '.join(missing)}. Sweep it.")
+
+
+def is_grid(dims: tuple[str, ...]) -> bool:
+    """Whether a line, a map or a surface shows a sweep over these axes."""
+    return len(dims) in (1, 2, 3) and all(dim in AXES for dim in dims)

@@ -240,7 +240,7 @@ def six_numbers(rows: Array) -> Array:
 def six_columns(value: Any) -> Array:
     """Rows (..., 6) of numbers, or PoseError."""
     try:
-        array = np.ascontiguousarray(floats(value))
+        array = np.ascontiguousarray(floats(value, copy=False))
     except (TypeError, ValueError):
         raise PoseError(
             f"poses is {type(value).__name__}; give rows of x, y, z (m), roll, pitch, yaw (rad), or a Pose"

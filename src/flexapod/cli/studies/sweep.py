@@ -16,6 +16,7 @@ from flexapod.cli.output.interrupt import CutShort, Stopping
 from flexapod.cli.output.progress import PoseProgress
 from flexapod.design.hexapod import Hexapod
 from flexapod.plots import sweep as plots
+from flexapod.plots import sweep_axes
 from flexapod.report.studies.sweep import study
 from flexapod.report.study import Study
 from flexapod.workspace.box import Box
@@ -40,7 +41,7 @@ def compute(options: Options) -> Study:
     if not options.streamed and (options.resume or options.scheduler):
         raise click.UsageError("--resume and --scheduler need a store to write to. Give --out NAME.zarr.")
     if options.figure is not None:
-        plots.check_swept(points.dims, quantities)
+        sweep_axes.check_swept(points.dims, quantities)
     found = (_streamed if options.streamed else _in_memory)(hexapod, points, quantities, options)
     everywhere = options.all_poses
     if options.figure is not None:
