@@ -145,9 +145,9 @@ def _number(ax: Axes, base: Array, platform: Array) -> None:
     """Numbers on the legs, where most of them stand apart; those that lie behind one another share a place."""
     near = 0.05 * np.ptp(np.concatenate([base, platform]), axis=0).max()
     rows = (_apart(base + along * (platform - base), near) for along in (0.4, 0.3, 0.5, 0.2, 0.6))
-    for at, names in max(rows, key=len):
-        ax.text(*at, ", ".join(names), ha="center", va="center", fontsize=8, color=INK,
-                bbox={"boxstyle": "round,pad=0.2", "fc": "white", "ec": "none"}, zorder=5)  # fmt: skip
+    frame = {"boxstyle": "round,pad=0.2", "fc": "white", "ec": "none"}
+    for (x, y), names in max(rows, key=len):
+        ax.text(x, y, ", ".join(names), ha="center", va="center", fontsize=8, color=INK, bbox=frame, zorder=5)
 
 
 def _apart(points: Array, near: float) -> list[tuple[Array, list[str]]]:
