@@ -202,6 +202,28 @@ def test_nearest_physical_bodies_are_solid(name):
     assert (hexapod.legs.upper.mass > 0).all()
 
 
+@pytest.mark.parametrize("size", [1.0, 0.1, 1e-2])
+def test_mujoco_takes_legs_that_had_no_mass(tmp_path, size):
+    """Machines of metres, decimetres and centimetres, their frequencies alike."""
+    given = fx.load("motion-base")
+    massless = given.replace(
+        {
+            "base.joints": given.base_joints * size,
+            "platform.joints": given.platform_joints * size,
+            "home.position": given.home.position * size,
+            "platform.mass": given.platform_mass * size**3,
+            "platform.mass_center": given.platform_mass_center * size,
+            "platform.inertia": given.platform_inertia * size**5,
+            "legs.stiffness": given.legs.stiffness * size,
+            "legs.lower": None,
+            "legs.upper": None,
+        }
+    )
+    solid = fx.interchange.nearest_physical(massless)
+    assert fx.natural_modes(solid).omega == pytest.approx(fx.natural_modes(massless).omega, rel=1e-3)
+    assert mujoco.MjModel.from_xml_path(str(fx.interchange.write_mjcf(tmp_path / "m.xml", solid))).nbody > 10
+
+
 def test_names_need_no_care(tmp_path):
     hexapod = machine(5).replace({"name": 'a "b" <c>\x07 & d'})
     assert mujoco.MjModel.from_xml_path(str(fx.interchange.write_mjcf(tmp_path / "m.xml", hexapod))).nbody > 20
