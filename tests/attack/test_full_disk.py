@@ -15,11 +15,10 @@ import pytest
 from tests.attack.bounded import rounds, tried
 from tests.attack.killing import killed
 from tests.helpers.stores import content
-from tests.helpers.writers import WRITERS, files_of, given_files, needs, same
+from tests.helpers.writers import WRITERS, files_of, given_files, needs, same, small_files
 
 if os.name != "posix":
     pytest.skip("disks and limits of POSIX", allow_module_level=True)
-import resource
 
 BEFORE = b"from before"
 #: Commands that keep their work in a file of many pieces, which can be gone on with when there is room again.
@@ -30,16 +29,8 @@ KEPT = {
 PAGE = 4096
 
 
-@pytest.fixture
-def small_files():
-    """No file may grow beyond 2 kB, as on a disk that is full."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    yield lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2048, before[1]))
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
-
-
 @pytest.mark.parametrize("name", WRITERS)
-def test_a_full_disk_is_a_sentence_and_leaves_nothing_cut(name, run, small_files, tmp_path, monkeypatch):
+def test_a_full_disk_is_a_sentence_and_leaves_nothing_cut(name, run, tmp_path, monkeypatch):
     needs(name)
     monkeypatch.chdir(tmp_path)
     line = WRITERS[name]
@@ -47,8 +38,8 @@ def test_a_full_disk_is_a_sentence_and_leaves_nothing_cut(name, run, small_files
     if target.suffix and name != "new":
         target.write_text("from before")
     given_files(tmp_path)
-    small_files()
-    code, _, err = run(*line)
+    with small_files():
+        code, _, err = run(*line)
     assert code == 2, err
     assert "File too large" in err
     assert "Usage:" not in err

@@ -2,28 +2,19 @@
 
 import os
 import re
-import resource
 import shutil
 import signal
 import threading
 from importlib import import_module
 
 import pytest
-from tests.helpers.writers import WRITERS, needs
+from tests.helpers.writers import WRITERS, needs, small_files
 
 import flexapod as fx
 from flexapod import output_files
 from flexapod.cli import COMMANDS
 
 WRITE_NOTHING = {"check", "designs", "modes", "serve"}
-
-
-@pytest.fixture
-def small_files():
-    """No file may grow beyond 2 kB, as on a disk that is full."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    yield lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2048, before[1]))
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 def test_every_command_that_writes_is_tried_here():
@@ -67,11 +58,10 @@ def test_the_current_directory_is_tried_too(name, run, tmp_path, monkeypatch):
     assert "cannot be made a directory" in err or "No such file" in err
 
 
-def test_a_design_is_saved_as_a_whole(small_files, tmp_path):
+def test_a_design_is_saved_as_a_whole(tmp_path):
     file = tmp_path / "own.toml"
     file.write_text("from before")
-    small_files()
-    with pytest.raises(fx.errors.OutputError, match="File too large"):
+    with small_files(), pytest.raises(fx.errors.OutputError, match="File too large"):
         fx.load("mukherjee-ii").save(file)
     assert [path.read_text() for path in tmp_path.iterdir()] == ["from before"]
 

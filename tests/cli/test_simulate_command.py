@@ -264,3 +264,22 @@ def test_legs_that_leave_their_stroke_are_told(capsys):
     assert "3.41038 m against 3.261 m" in told
     assert main(["simulate", BASE, *steps, "--duration", "0.4"]) == 0
     assert "Warning: Limit exceeded: length of legs" in capsys.readouterr().out
+
+
+def test_a_balance_that_rounding_hides_is_said_to_be_none(run):
+    """A millinewton on a mirror of 150 kg: its works are less than the rounding of the energy stored."""
+    line = [
+        "simulate",
+        case("tangential-struts", "m2.toml"),
+        "--harmonic",
+        "force:z",
+        "1e-3",
+        "10",
+        "--duration",
+        "0.5",
+    ]
+    code, out, _ = run(*line)
+    assert code == 0
+    assert "rounding of the energy stored in springs and height hides them" in " ".join(out.split())
+    code, out, _ = run(*line[:4], "1e3", *line[5:])
+    assert "rounding" not in out

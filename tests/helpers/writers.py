@@ -1,6 +1,7 @@
 """A small command line of every command that writes, and what it finds and leaves in its folder."""
 
 import re
+from contextlib import contextmanager
 
 import pytest
 
@@ -55,3 +56,16 @@ _OF_THE_RUN = re.compile(rb"<dc:date>[^<]*|Created on: [^\0]*|\b[mp][0-9a-f]{10}
 def same(found, whole):
     """Whether two runs wrote the same file."""
     return _OF_THE_RUN.sub(b"", found) == _OF_THE_RUN.sub(b"", whole)
+
+
+@contextmanager
+def small_files():
+    """No file may grow beyond 2 kB, as on a disk that is full; nor may the test runner's own log meanwhile."""
+    import resource  # POSIX only
+
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2048, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)

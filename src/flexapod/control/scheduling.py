@@ -11,6 +11,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
+from flexapod.checks import positive
 from flexapod.control.closed_loop_poles import least_damping
 from flexapod.control.controllers import GAIN_UNIT, Feedback, damping_law
 from flexapod.control.gain_search import ascending_gains, best_gain, default_gains
@@ -107,7 +108,7 @@ def gain_schedule(
     """
     base = _checked(hexapod, base, force, moment, joint)
     poses = poses_of(hexapod, region, samples, seed)
-    if damping is not None and not 0 < damping < 1:
+    if damping is not None and not positive(damping, "damping") < 1:
         raise ArgumentError(f"damping is {damping}; a damping ratio between 0 and 1 is needed")
     if callable(feedback) and gains is None:
         raise ArgumentError("a control law of your own needs `gains`, a row of gains to choose from")

@@ -17,6 +17,8 @@ from flexapod.pose import Motion
 from flexapod.simulation.integrator import Trajectories
 from flexapod.simulation.run import SimulationRun
 
+ROUNDING = 1e-11  # of the energies that make up the balance
+
 
 def one_run(
     run: SimulationRun, found: Trajectories, i: int, times: Array, *, joint: JointModel, energies: bool, reactions: bool
@@ -100,6 +102,7 @@ def _energies(state: _State, work: Array, joint: JointModel) -> dict[str, Any]:
     done = work.sum(axis=1)
     error = total - total[0] - (done - done[0])  # the first instant need not be t = 0
     scale = max(np.nanmax(kinetic), np.nanmax(np.abs(work)))
+    stored = max(np.nanmax(np.abs(part)) for part in (kinetic, gravitational, elastic))
     joules = in_unit("J")
     return {
         "kinetic_energy": (("time",), kinetic, joules),
@@ -107,6 +110,7 @@ def _energies(state: _State, work: Array, joint: JointModel) -> dict[str, Any]:
         "elastic_energy": (("time",), elastic, joules),
         "work": (("time", "source"), work, joules),
         "energy_error": (("time",), error, joules),
+        "energy_rounding": ((), ROUNDING * stored, joules),
         "energy_error_relative": ((), np.nanmax(np.abs(error)) / scale if scale > 0 else 0.0, in_unit("1")),
     }
 

@@ -18,7 +18,6 @@ from flexapod.simulation.run import SimulationRun
 JUMPS = 0.01  # of a recording's range: where it begins farther off zero, its start is a blow
 ABSOLUTE = 0.5  # of a leg: a command that begins with more is the leg's length, and no change of it
 BALANCE = 1e-3  # of the largest of kinetic energy and works
-ROUNDING = 1e-11  # of the energies that make up the balance
 
 
 def of_recordings(run: SimulationRun, highest: float) -> list[str]:
@@ -102,8 +101,7 @@ def _of_balance(result: xr.Dataset) -> list[str]:
     if "energy_error" not in result or not result.sizes["time"]:
         return []
     share, error = float(result.energy_error_relative), float(np.abs(result.energy_error).max())
-    size = max(float(np.abs(result[f"{kind}_energy"]).max()) for kind in ("elastic", "gravitational", "kinetic"))
-    if share <= BALANCE or error <= ROUNDING * size:
+    if share <= BALANCE or error <= float(result.energy_rounding):
         return []
     return [
         f"the energy balance is off by {share:.2g} of the largest of kinetic energy and works: this motion is not that "

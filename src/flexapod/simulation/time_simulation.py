@@ -125,8 +125,8 @@ def simulate(
           `energies`
         - the variables of `joint_reactions`, with `reactions`
 
-        Attributes: energy_error, the largest one over the largest of kinetic energy and works; steps, evaluations,
-        warnings and the settings.
+        Attributes: energy_error, the largest one over the largest of kinetic energy and works; energy_rounding (J), the
+        rounding of the stored energies, which hides a smaller error; steps, evaluations, warnings and the settings.
 
     Raises
     ------
@@ -203,7 +203,7 @@ def simulate(
 
 def _complete(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset of one run, with its numbers as attributes; raises SimulationError where it ended early."""
-    told = ("status", "end_time", "steps", "evaluations", "energy_error_relative")
+    told = ("status", "end_time", "steps", "evaluations", "energy_error_relative", "energy_rounding")
     for name in told:
         if name in dataset:  # without energies there is no balance
             dataset.attrs[name.removesuffix("_relative")] = dataset[name].values.item()

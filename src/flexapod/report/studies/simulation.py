@@ -45,7 +45,7 @@ def study(
         data={**_data(hexapod, pose, dataset, took), **summary},
         rows=[
             Row("Leg forces from", f"{force.min():.5g} to {force.max():.5g}", "N", note="(positive: compression)"),
-            Row(steps, f"{dataset.attrs['energy_error']:.1e}", note="of the largest of kinetic energy and works"),
+            Row(steps, f"{dataset.attrs['energy_error']:.1e}", note=_of_what(dataset)),
         ],
         sections=[Section("Motion", [*drawings, _displacements(summary), _rates(summary)])],
         cautions=cautions,
@@ -121,6 +121,14 @@ def _summary(dataset: xr.Dataset) -> dict[str, dict[str, list[float]]]:
         name: {"largest": np.abs(part).max(axis=0).tolist(), "rms": np.sqrt((part**2).mean(axis=0)).tolist()}
         for name, part in parts.items()
     }
+
+
+def _of_what(dataset: xr.Dataset) -> str:
+    """What the error of the energy balance is a part of, and whether it is one of the motion."""
+    of = "of the largest of kinetic energy and works"
+    if np.abs(dataset.energy_error).max() > dataset.attrs["energy_rounding"] or dataset.attrs["energy_error"] < 1e-3:
+        return of
+    return f"{of}: these are so small that the rounding of the energy stored in springs and height hides them"
 
 
 def _data(hexapod: Hexapod, pose: Pose, dataset: xr.Dataset, took: float) -> dict[str, Any]:
