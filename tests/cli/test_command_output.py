@@ -351,4 +351,6 @@ def test_serve_shows_what_is_wrong_with_a_design_and_serves_it(served, tmp_path)
 def test_serve_writes_addresses_of_the_sixth_version_in_brackets(served):
     out, _ = served("--host", "::1", "--json")
     assert json.loads(out)["url"].startswith("http://[::1]:")
-    assert json.loads(served("--host", "0.0.0.0", "--json")[0])["url"].startswith("http://127.0.0.1:")
+    address, *warned = served("--host", "0.0.0.0", "--json")[0].splitlines()
+    assert json.loads(address)["url"].startswith("http://127.0.0.1:")
+    assert "token" in " ".join(warned)  # other computers can reach it

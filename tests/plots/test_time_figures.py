@@ -16,7 +16,7 @@ def drawn(sizes, turns=3.0):
 
 def test_rounding_has_no_panel():
     figure = drawn([3e-20, 0, 2e-6, 1e-19, 4e-7, 0])
-    assert [ax.get_title("left") for ax in figure.axes] == ["(c) translation z", "(e) rotation about y"]
+    assert [ax.get_title("left") for ax in figure.axes] == ["(a) translation z", "(b) rotation about y"]
     assert figure.get_supxlabel() == f"no motion: {', '.join(NAMES[i] for i in (0, 1, 3, 5))}"
     assert [ax.get_ylabel() for ax in figure.axes] == ["µm", "nrad"]
 
