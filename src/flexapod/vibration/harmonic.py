@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import eigh
 
 from flexapod.checks import floats
@@ -54,14 +54,15 @@ def steady_response(linear: Linearisation, omega: Array, loss_factor: ArrayLike 
     eta = loss_factors(loss_factor)
     out = SteadyResponse(*(np.empty((omega.size, 6, 6), dtype=np.complex128) for _ in range(4)))
     basis = _Modes(linear, eta)
+    # Below the highest resonance the motion is near the base's, above it nearly none is left: what is small is solved
+    # for, and the other is found from it without a small difference.
+    fast = omega**2 > basis.square[-1]
     for start in range(0, omega.size, _BLOCK):
         part = slice(start, start + _BLOCK)
-        for target, columns in zip(out, np.split(basis.solve(omega[part]), 4, axis=2), strict=True):
-            target[part] = columns
-    # Below the highest resonance the motion is near the base's, above it nearly none is left: each is the sum of two
-    # numbers or their small difference.
-    slow = omega**2 <= basis.square[-1]
-    out.absolute[slow] = out.relative[slow] + linear.carry
+        base, out.wrench[part], out.command[part] = np.split(basis.solve(omega[part], fast[part]), 3, axis=2)
+        rigid = np.where(fast[part, None, None], linear.carry, 0.0)
+        out.relative[part] = base - rigid
+        out.absolute[part] = base + (linear.carry - rigid)
     return out
 
 
@@ -92,20 +93,19 @@ class _Modes:
         command = linear.H * (linear.leg_stiffness * (1 + 1j * eta))  # wrench of unit commands
         self.given = np.hstack([left, left @ command])
 
-    def solve(self, omega: Array) -> Complex:
-        """Displacements (n, 6, 24) per base displacement, also less the rigid motion, per wrench and command."""
+    def solve(self, omega: Array, absolute: NDArray[np.bool_]) -> Complex:
+        """Displacements (n, 6, 18) per base displacement, wrench and command; absolute: else less the rigid motion."""
         w = omega[:, None, None]
         root = np.sqrt(self.square.astype(np.complex128))  # imaginary for a mode that gravity topples
         detuning = (root - omega[:, None]) * (root + omega[:, None])
         Z: Complex = self.skew + 1j * self.loss + 1j * w * self.friction
         Z[:, range(6), range(6)] += detuning
         given = np.broadcast_to(self.given, (omega.size, 6, 12))
-        M_b, C_b, K_b = self.base
-        absolute, relative = (
-            w**2 * mass - 1j * w * damping - stiffness
-            for mass, damping, stiffness in ((M_b, C_b, K_b), (self.inertia, self.rubbed, self.tilt))
+        mass, damping, stiffness = (
+            np.where(absolute[:, None, None], whole, less)
+            for whole, less in zip(self.base, (self.inertia, self.rubbed, self.tilt), strict=True)
         )
-        right = np.concatenate([absolute, relative, given], axis=2)
+        right = np.concatenate([w**2 * mass - 1j * w * damping - stiffness, given], axis=2)
         return self.shape @ _solve(Z, right)
 
 
