@@ -29,11 +29,18 @@ DESIGN_LAYOUT: tuple[Field, ...]
 MOTION_LAYOUT: tuple[Field, ...]
 PIECE: list[Any]  # a piece of an excitation, as numpy.dtype takes it
 design_size: int
+plain_size: int  # the first numbers of a design, which a machine without laws, joint springs and suspension needs
 motion_size: int
 
 class Joint(Enum):
     universal = 1
     spin_free = 0
+
+class Law(Enum):
+    constant = 0
+    screw = 1
+    hydraulic = 2
+    table = 3
 
 class Measure(Enum):
     leg_length = 0

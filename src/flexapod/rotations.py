@@ -75,7 +75,8 @@ def angles_of_matrix(matrix: Array, order: str = FIXED) -> Array:
 
 def rpy_matrix(rpy: ArrayLike) -> Array:
     """Rotation matrices (..., 3, 3) of roll, pitch, yaw (..., 3) in rad about the fixed axes x, y, z, in this order."""
-    angles = np.asarray(rpy, dtype=np.float64)
+    angles = np.asarray(rpy)  # complex ones keep their derivatives
+    angles = angles.astype(np.result_type(angles, np.float64))
     (cr, cp, cy), (sr, sp, sy) = (np.moveaxis(f(angles), -1, 0) for f in (np.cos, np.sin))
     rows = [
         [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],

@@ -30,7 +30,7 @@ import flexapod as fx
 from flexapod import _core
 from flexapod.design.layout import PLACES, describe, entries, numbers
 
-assert _core.design_size == 217
+assert _core.plain_size == 217
 machine = fx.load("motion-base").replace({"legs.lead_mm": [4, 5, 6, 7, 8, 9], "legs.stiffness": [2e7, 3e7, 4e7, 5e7, 6e7, 7e7]})
 assert np.array_equal(machine.legs.more["lead"], np.arange(4, 10) / 1000)
 assert np.array_equal(machine.packed[PLACES["legs.lead"]], machine.legs.more["lead"])

@@ -12,6 +12,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from flexapod import _core
 from flexapod.design.changes import parse_assignments
 from flexapod.design.design_file import packaged_designs, template
 from flexapod.design.hexapod import Hexapod
@@ -274,14 +275,14 @@ def test_packed_layout():
         }
     )
     packed = hexapod.packed
-    assert packed.shape == (211,)
+    assert packed.shape == (_core.design_size,)
     assert packed.dtype == np.float64
     np.testing.assert_array_equal(packed[:3], hexapod.gravity)
     np.testing.assert_array_equal(packed[3:21].reshape(6, 3), hexapod.base_joints)
     np.testing.assert_array_equal(packed[21:39].reshape(6, 3), hexapod.universal_axes)
     np.testing.assert_array_equal(packed[39:57].reshape(6, 3), hexapod.platform_joints)
     np.testing.assert_array_equal(packed[57:67], [40, 0.04, 0.03, -0.06, 1, 2, 2.5, 0.04, 0.05, 0.06])
-    legs = packed[67:].reshape(6, 24)
+    legs = packed[67 : _core.plain_size].reshape(6, 24)
     np.testing.assert_array_equal(legs[:, 0], [1, 2, 3, 4, 5, 6])
     np.testing.assert_array_equal(legs[:, 1], [10, 20, 30, 40, 50, 60])
     np.testing.assert_array_equal(legs[:, 2:4], [[0.5, 0.25]] * 6)

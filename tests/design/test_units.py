@@ -70,6 +70,11 @@ def test_every_dimension_has_its_article(dimension):
         "stiffness": "legs.stiffness",
         "damping": "legs.damping.prismatic",
         "angular damping": "legs.damping.universal",
+        "angular stiffness": "legs.joint_stiffness.torsion",
+        "force": "legs.stiffness_law.axial_rigidity",
+        "moment": "limits.universal_moment",
+        "pressure": "legs.stiffness_law.bulk_modulus",
+        "area": "legs.stiffness_law.area",
         "acceleration": "gravity",
         "angle": "limits.universal_angle",
     }[dimension]

@@ -174,12 +174,12 @@ def test_slopes_where_frequencies_are_equal(measured):
     assert omega[2] - omega[0] < 1e-9 * omega[0]  # three times sqrt(2 k / M)
     np.testing.assert_allclose(omega[0], np.sqrt(2 * 1e4 / 20), rtol=1e-9)
     rng = np.random.default_rng(1)
-    direction = np.zeros((1, 211))
+    direction = np.zeros((1, _core.design_size))
     direction[0, 3:21] = rng.standard_normal(18) * 0.01  # joints of the base
     direction[0, PLACES["legs.stiffness"]] = rng.standard_normal(6) * 1e3
     own = numbers(hexapod)
-    jacobian = np.zeros((217, 1))
-    jacobian[:211] = direction.T
+    jacobian = np.zeros((HOME.stop, 1))
+    jacobian[: _core.design_size] = direction.T
     at = DesignDerivatives(own, jacobian, own[None, HOME], True, _core.Joint.universal)
     block = at.omega[1][0, :3, :3, 0]
     by_formula = np.linalg.eigvalsh(block) / (2 * omega[0])

@@ -54,11 +54,17 @@ void bind_layouts(nb::module_& m) {
   m.attr("MOTION_LAYOUT") = rows_of(motion_layout);
   m.attr("PIECE") = piece_type();
   m.attr("design_size") = design_size;
+  m.attr("plain_size") = plain_size;
   m.attr("motion_size") = motion_size;
 }
 
 void bind_enums(nb::module_& m) {
   nb::enum_<Joint>(m, "Joint").value("universal", Joint::universal).value("spin_free", Joint::spin_free);
+  nb::enum_<Law>(m, "Law")
+      .value("constant", Law::constant)
+      .value("screw", Law::screw)
+      .value("hydraulic", Law::hydraulic)
+      .value("table", Law::table);
   nb::enum_<Rest>(m, "Rest")
       .value("found", Rest::found)
       .value("singular", Rest::singular)

@@ -1,5 +1,5 @@
 // What a search for a better design asks of a machine at a pose: frequencies and geometry with exact derivatives along
-// given directions, each a change of the 211 numbers of the design together with a displacement of the pose.
+// given directions, each a change of the numbers of the design together with a displacement of the pose.
 #pragma once
 
 #include "model/kinematics.hpp"
@@ -15,7 +15,7 @@ struct SeededDesign {
   Design<Seed> design;
   int count;
 
-  /// directions: rows of 211.
+  /// directions: rows of `design_size`.
   SeededDesign(const Design<double>& d, const double* directions, int count_) : count(count_) {
     const double* value = &d.gravity.x;
     Seed* number = &design.gravity.x;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 
+#include "numbers/packed.hpp"
 #include "numbers/vec3.hpp"
 
 namespace flexapod {
@@ -11,7 +12,15 @@ namespace flexapod {
 /// One value of each leg.
 template <class T> using EachLeg = T[6];
 
-enum class FieldShape { number, vector, matrix, symmetric };  // (), (3,), (3, 3) by rows, (3, 3) as xx yy zz xy xz yz
+enum class FieldShape {
+  number,      // ()
+  pair,        // (2,)
+  vector,      // (3,)
+  nodes,       // (24,)
+  matrix,      // (3, 3) by rows
+  symmetric,   // (3, 3) as xx yy zz xy xz yz
+  symmetric6,  // (6, 6), the lower triangle by rows
+};
 
 /// One named value, or one of each leg, in a structure of doubles.
 struct Field {
@@ -21,17 +30,25 @@ struct Field {
   FieldShape shape;  // of the value, or of one leg's
   const char* unit;
 
-  constexpr int rows() const { return shape == FieldShape::number ? 1 : 3; }
-  constexpr int columns() const { return shape == FieldShape::matrix || shape == FieldShape::symmetric ? 3 : 1; }
+  constexpr int rows() const {
+    constexpr int of_shape[] = {1, 2, 3, table_capacity, 3, 3, 6};
+    return of_shape[static_cast<int>(shape)];
+  }
+  constexpr int columns() const { return shape >= FieldShape::matrix ? rows() : 1; }
+  constexpr bool is_symmetric() const { return shape >= FieldShape::symmetric; }
   /// Where the entry of a leg's value is; a symmetric matrix has each number beside the diagonal once.
   constexpr int at(int leg, int row, int column) const {
     constexpr int symmetric[3][3] = {{0, 3, 4}, {3, 1, 5}, {4, 5, 2}};
-    const int entry = shape == FieldShape::symmetric ? symmetric[row][column] : row * columns() + column;
-    return offset + leg * stride + entry;
+    const int first = offset + leg * stride;
+    if (shape == FieldShape::symmetric6) return first + Sym6<double>::place(row, column);
+    return first + (shape == FieldShape::symmetric ? symmetric[row][column] : row * columns() + column);
   }
 };
 
 template <class T> inline constexpr FieldShape field_shape = FieldShape::number;
+template <> inline constexpr FieldShape field_shape<Pair<double>> = FieldShape::pair;
+template <> inline constexpr FieldShape field_shape<Nodes<double>> = FieldShape::nodes;
+template <> inline constexpr FieldShape field_shape<Sym6<double>> = FieldShape::symmetric6;
 template <> inline constexpr FieldShape field_shape<Vec3<double>> = FieldShape::vector;
 template <> inline constexpr FieldShape field_shape<Mat3<double>> = FieldShape::matrix;
 template <> inline constexpr FieldShape field_shape<Sym3<double>> = FieldShape::symmetric;
@@ -44,14 +61,14 @@ template <class T> constexpr Field field(const char* name, std::size_t bytes, co
   return {name, offset, std::is_array_v<T> ? size : stride, field_shape<Value>, unit};
 }
 
-/// Whether the fields hold each of `size` numbers exactly once (a symmetric matrix names six of them twice).
+/// Whether the fields hold each of `size` numbers exactly once (a symmetric matrix names some of them twice).
 template <int size, std::size_t n> constexpr bool cover(const std::array<Field, n>& fields) {
   int count[size] = {};
   for (const Field& f : fields)
     for (int leg = 0; leg < (f.stride > 0 ? 6 : 1); ++leg)
       for (int row = 0; row < f.rows(); ++row)
         for (int column = 0; column < f.columns(); ++column)
-          if (f.shape != FieldShape::symmetric || column >= row) ++count[f.at(leg, row, column)];
+          if (!f.is_symmetric() || column >= row) ++count[f.at(leg, row, column)];
   for (const int c : count)
     if (c != 1) return false;
   return true;

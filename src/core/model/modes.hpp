@@ -59,17 +59,19 @@ Vec6<product_t<T, D>> rayleigh_residuals(const Machine<D>& machine, const Geomet
   return residual;
 }
 
-/// Derivatives of the six omega^2 by the 211 numbers of the design, exact: row m, one column a number.
+/// Derivatives of the six omega^2 by the numbers of the design, exact: row m, one column a number.
 inline void design_derivatives(const Design<double>& design, Joint joint, const Pose<double>& platform,
                                const Pose<double>& base, const Modes& modes, double (*out)[design_size]) {
   constexpr int lanes = 8;
   using D = Dual<lanes>;
   const double* value = &design.gravity.x;
-  for (int first = 0; first < design_size; first += lanes) {
+  const int used = used_size(design);
+  for (int m = 0; m < 6; ++m) std::fill(out[m] + used, out[m] + design_size, 0.0);
+  for (int first = 0; first < used; first += lanes) {
     Design<D> seeded;
     D* number = &seeded.gravity.x;
-    for (int i = 0; i < design_size; ++i) number[i] = value[i];
-    const int count = std::min(lanes, design_size - first);
+    for (int i = 0; i < used; ++i) number[i] = value[i];
+    const int count = std::min(lanes, used - first);
     for (int i = 0; i < count; ++i) number[first + i].d[i] = 1.0;
     const Machine<D> machine(seeded, joint);
     const Pose<D> p = constant<D>(platform), b = constant<D>(base);

@@ -1,5 +1,7 @@
 from .design_file import packaged_designs as packaged_designs
 from .design_file import template as template
+from .flexible_joints import JointStiffness as JointStiffness
+from .flexible_joints import Suspension as Suspension
 from .hexapod import Hexapod as Hexapod
 from .joint_table import read_joints as read_joints
 from .loading import load as load
@@ -7,3 +9,6 @@ from .parts import Damping as Damping
 from .parts import LegPart as LegPart
 from .parts import Legs as Legs
 from .parts import Limits as Limits
+from .stiffness_laws import HydraulicLaw as HydraulicLaw
+from .stiffness_laws import ScrewLaw as ScrewLaw
+from .stiffness_laws import TableLaw as TableLaw

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from flexapod.design.key_names import resolve, unknown_key
-from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS
+from flexapod.design.schema import ANY, KEYS, TABLES, TEXT_KEYS, is_of_each_leg
 from flexapod.design.short_forms import ShortForm
-from flexapod.design.shorthands import BESIDE, MAKES, NEEDS, Values, expand, stands_in_pairs
-from flexapod.design.tables import complete, flatten, table_of
+from flexapod.design.shorthands import BESIDE, MAKES, NEEDS, SETS, Values, expand, stands_in_pairs
+from flexapod.design.tables import complete, flatten, has_law, table_of
 from flexapod.design.text_limits import MOST_KEYS
 from flexapod.design.value_checks import check_value
 from flexapod.errors import DesignError, shown
@@ -58,7 +58,7 @@ def changed(
     values = _opened(values, opened)
     for key in taken:
         _take_out(values, key)
-    for key in _overruled(new, opened):
+    for key in (*_overruled(new, opened), *_other_stiffness(values, new)):
         values.pop(key, None)
     values |= new
     short = [key for key in places if any(key in form for form in opened)]
@@ -98,6 +98,19 @@ def _overruled(new: Values, opened: Iterable[ShortForm]) -> set[str]:
         if "half_angle" in given:
             _check_pairs(table, opened)
         keys |= {f"{table}.{key}" for need in needs if given & {*need} for key in need if key not in given}
+    return keys
+
+
+def _other_stiffness(values: Values, new: Values) -> set[str]:
+    """Keys of the stiffness that another one takes the place of: a constant, a law, a law of another kind."""
+    keys = {key for name, sets in SETS.items() if name in new for key in sets}
+    law = {key for key in values if key.startswith("legs.stiffness_law.")}
+    if "legs.stiffness" in new and not has_law(new):
+        return keys | law
+    if "legs.stiffness_law.kind" in new:
+        keys.add("legs.stiffness")
+        if new["legs.stiffness_law.kind"] != values.get("legs.stiffness_law.kind"):
+            keys |= law
     return keys
 
 
@@ -165,7 +178,9 @@ def _set_place(values: Values, key: str, value: Any) -> None:
         raise DesignError(f"{key}: {canonical} is not a list in this design. Give {canonical} as a whole.")
     rule = KEYS[canonical]
     index = tuple(int(number) for number in re.findall(r"\d+", match[2]))
-    shape = (6, *rule.shapes[0]) if canonical.startswith("legs.") else values[canonical].shape
+    shape = values[canonical].shape
+    if is_of_each_leg(canonical) and shape[:1] != (6,):
+        shape = (6, *(shape if ANY in rule.shapes[0] else rule.shapes[0]))
     whole = np.broadcast_to(values[canonical], shape).copy()
     if len(index) > len(shape) or any(i >= n for i, n in zip(index, shape, strict=False)):
         raise DesignError(

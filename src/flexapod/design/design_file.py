@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from flexapod.design.schema import KEYS, TEXT_KEYS
+from flexapod.design.schema import KEYS, TEXT_KEYS, is_of_each_leg
 from flexapod.design.short_forms import ShortForm, written
 from flexapod.design.shorthands import Values, expand
 from flexapod.design.tables import START, complete, flatten
@@ -180,5 +180,5 @@ def write_text(values: Values, forms: Iterable[ShortForm] = ()) -> str:
 
 def _one_for_all(key: str, value: Any) -> Any:
     """One value where all six legs have the same, else the value itself."""
-    per_leg = key.startswith("legs.") and value.shape == (6, *KEYS[key].shapes[0])
+    per_leg = is_of_each_leg(key) and value.ndim > len(KEYS[key].shapes[0])
     return value[0] if per_leg and (value == value[0]).all() else value

@@ -1,4 +1,4 @@
-"""Numbers of short forms that a search changes, and what they make of the design's other numbers (see layout.py)."""
+"""Numbers that a search changes, and what they make of the design's other numbers (see layout.py): the one place."""
 
 from __future__ import annotations
 
@@ -8,15 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.conventions import Array
+from flexapod.design.derived_numbers import Derived
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.layout import PLACES, SHORT
+from flexapod.design.layout import PLACES, SHORT, WORDED
+from flexapod.design.packing import DERIVED
 from flexapod.design.short_forms import ShortForm
 from flexapod.design.shorthands import cube_centers, make
+from flexapod.design.stiffness_laws import TableLaw
 from flexapod.design.universal_axes import keeps_tangents
 
 
 class Makers:
-    """The short forms of a design of which some numbers are `changed`, and what they make of them."""
+    """What follows from numbers of a design that are `changed`, by its short forms and in the core's words."""
 
     def __init__(self, hexapod: Hexapod, changed: NDArray[np.bool_]) -> None:
         self.changed = changed
@@ -24,6 +27,14 @@ class Makers:
         tangent = keeps_tangents(hexapod.base_joints, hexapod.platform_joints, hexapod.home)
         self._axes = PLACES["base.universal_axes"][tangent]  # which they are does not change within a search
         self._tangent = tangent
+        every = changed.copy()
+        for form in self.forms:
+            every[self.touched(form)] = True
+            every[PLACES["home.position"]] |= "home.position" in form.made
+        self._derived = Derived(hexapod, every)
+
+    def __bool__(self) -> bool:
+        return bool(self.forms or self._derived)
 
     def touched(self, form: ShortForm) -> NDArray[np.int64]:
         """The numbers that one of the short forms makes."""
@@ -39,7 +50,7 @@ class Makers:
         return None
 
     def make(self, numbers: Any) -> None:
-        """Write what the short forms make into `FULL` numbers, which may be complex."""
+        """Write what follows into `FULL` numbers, which may be complex."""
         for form in self.forms:
             given = given_to(form, numbers, self.changed)
             for key, value in make(form.table, given).items():
@@ -52,6 +63,7 @@ class Makers:
                 out = (out - out.mean(axis=0))[self._tangent]
                 length = np.sqrt(out[:, 0] ** 2 + out[:, 1] ** 2)
                 numbers[self._axes] = np.stack([-out[:, 1] / length, out[:, 0] / length, 0 * length], axis=1)
+        self._derived.make(numbers)
 
 
 def given_to(form: ShortForm, numbers: Any, changed: NDArray[np.bool_]) -> dict[str, Any]:
@@ -76,8 +88,15 @@ def _keys(form: ShortForm) -> list[str]:
 def with_numbers(hexapod: Hexapod, given: Array, changed: NDArray[np.bool_]) -> Hexapod:
     """The design with the entries that are `changed` taken from `FULL` numbers. Raises DesignError if it is none."""
     values = dict(hexapod.values())
-    for key, place in PLACES.items():
-        if changed[place].any():
+    for key, place in (PLACES | WORDED).items():
+        if changed[place].any() and key not in DERIVED:
             values[key] = given[place]
+    if changed[WORDED["legs.series_stiffness"]].any():
+        values["legs.series_stiffness"] = given[WORDED["legs.series_stiffness"]][
+            :, : hexapod.legs.series_stiffness.shape[1]
+        ]
+    if isinstance(hexapod.legs.stiffness_law, TableLaw):
+        for key in ("legs.stiffness_law.lengths", "legs.stiffness_law.stiffnesses"):
+            values[key] = values[key][: len(hexapod.legs.stiffness_law.lengths)]
     forms = [changed_form(form, given, changed) for form in hexapod.short_forms]
     return Hexapod.from_values(values, forms)

@@ -13,18 +13,23 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod import _core
 from flexapod._suggestions import Suggesting, suggests
 from flexapod.conventions import Array
 from flexapod.design import changes as design_changes
 from flexapod.design import design_file
+from flexapod.design.flexible_joints import Suspension
 from flexapod.design.geometry_checks import joint_warnings, platform_warnings, unit_axes, warnings_of_part
 from flexapod.design.home import Home, home_of
 from flexapod.design.packing import packed
-from flexapod.design.parts import Damping, LegPart, Legs, Limits, Value, bytes_of, more_keys
+from flexapod.design.parts import Damping, LegPart, Legs, Limits
 from flexapod.design.short_forms import ShortForm, standing
 from flexapod.design.shorthands import circle_table, expand
+from flexapod.design.spring_checks import check_springs
 from flexapod.design.tables import DEFAULT_GRAVITY, complete, flatten
 from flexapod.design.universal_axes import default_axes
+from flexapod.design.value import Value, bytes_of
+from flexapod.design.values import legs_of, suspension_of, values_of_legs, values_of_suspension
 from flexapod.errors import DesignError, shown
 from flexapod.output_files import write_file
 from flexapod.pose import Pose
@@ -73,12 +78,14 @@ class Hexapod(Value, metaclass=Suggesting):
     platform_inertia : array_like
         Inertia about the mass centre, platform axes, kg m2, (3, 3), or three principal moments.
     legs : Legs
-        Stiffness, friction and bodies of the legs.
+        Stiffness, friction and bodies of the legs, and the stiffness of their joints.
     limits : Limits, optional
         What joints and legs allow.
     home : Pose or array_like, optional
         Pose of the platform in the base frame that is taken where none is given: a Pose, or x, y, z in m and roll,
         pitch, yaw in rad. It is kept as a `Pose`.
+    suspension : Suspension, optional
+        A spring and damper between base and platform beside the legs.
     short_forms : tuple, optional
         The circles, cube and rods of a design file that joints and bodies were made by. `replace` changes their
         numbers and `to_toml` writes them; those that do not make the other values are left out. Designs of the same
@@ -130,6 +137,7 @@ class Hexapod(Value, metaclass=Suggesting):
     legs: Legs
     limits: Limits = field(default_factory=Limits)
     home: Pose | None = None
+    suspension: Suspension | None = None
     short_forms: tuple[ShortForm, ...] = field(default=(), compare=False)
     warnings: tuple[str, ...] = field(default=(), init=False)
 
@@ -142,12 +150,15 @@ class Hexapod(Value, metaclass=Suggesting):
         for part, kind in (("legs", Legs), ("limits", Limits)):
             if not isinstance(getattr(self, part), kind):
                 raise DesignError(f"{part} is {shown(getattr(self, part))}; it must be a {kind.__name__}.")
+        if self.suspension is not None and not isinstance(self.suspension, Suspension):
+            raise DesignError(f"suspension is {shown(self.suspension)}; it must be a Suspension.")
         if self.home is not None:
             object.__setattr__(self, "home", Home.of(self.home))
         axes = self.universal_axes
         if axes is None:
             axes = default_axes(self.base_joints, self.platform_joints, self.home)
         object.__setattr__(self, "universal_axes", unit_axes(axes))
+        check_springs(self)
         warnings = joint_warnings(self.base_joints, self.platform_joints) + platform_warnings(self.platform_inertia)
         for side in ("lower", "upper"):
             warnings += warnings_of_part(f"legs.{side}", getattr(self.legs, side).inertia)
@@ -261,22 +272,13 @@ class Hexapod(Value, metaclass=Suggesting):
             For values that make no hexapod.
         """
 
-        def part(name: str) -> LegPart:
-            return LegPart(*(values[f"legs.{name}.{item.name}"] for item in fields(LegPart)))
-
-        damping = Damping(*(values[f"legs.damping.{item.name}"] for item in fields(Damping)))
         return cls(
             name=values.get("name", "hexapod"),
             **{name: values[key] for name, key in _KEYS.items()},
-            legs=Legs(
-                values["legs.stiffness"],
-                damping,
-                part("lower"),
-                part("upper"),
-                more={key: values[f"legs.{key}"] for key in more_keys()},
-            ),
+            legs=legs_of(values),
             limits=Limits(**{item.name: values.get(f"limits.{item.name}") for item in fields(Limits)}),
             home=home_of(values),
+            suspension=suspension_of(values),
             short_forms=tuple(short_forms),
         )
 
@@ -295,20 +297,14 @@ class Hexapod(Value, metaclass=Suggesting):
         """The whole design by dotted file key: text for `name`, arrays in SI units for all else."""
         values: dict[str, Any] = {"name": self.name}
         values |= {key: np.asarray(getattr(self, name)) for name, key in _KEYS.items()}
-        legs = {"legs.stiffness": self.legs.stiffness}
-        legs |= {f"legs.{key}": np.asarray(value) for key, value in self.legs.more.items()}
-        legs |= {f"legs.damping.{item.name}": getattr(self.legs.damping, item.name) for item in fields(Damping)}
-        for part in ("lower", "upper"):
-            given = getattr(self.legs, part)
-            legs |= {f"legs.{part}.{item.name}": getattr(given, item.name) for item in fields(LegPart)}
-        values |= dict(sorted(legs.items(), key=lambda item: item[0].count(".")))  # keys before the tables below them
+        values |= values_of_legs(self.legs)
         for item in fields(Limits):
             limit = getattr(self.limits, item.name)
             if limit is not None:
                 values[f"limits.{item.name}"] = np.asarray(limit)
         if self.home is not None:
             values |= {"home.position": self.home.position, "home.orientation": self.home.rpy}
-        return values
+        return values | values_of_suspension(self.suspension)
 
     def replace(self, changes: Mapping[str, Any] | None = None, /, **more: Any) -> Hexapod:
         """This design with changes, by the keys of a design file.
@@ -366,20 +362,38 @@ class Hexapod(Value, metaclass=Suggesting):
     @cached_property
     def digest(self) -> str:
         """Sixteen hex digits that tell designs apart by their numbers (not by their names)."""
-        content = self.packed.astype("<f8").tobytes() + bytes_of(self.limits) + bytes_of(self.home)
+        numbers = self.packed.astype("<f8")
+        content = numbers[: _core.plain_size].tobytes() + bytes_of(self.limits) + bytes_of(self.home)
+        springs = {key: value for key, value in self.values().items() if key.startswith(_SPRINGS)}
+        if springs:  # designs without them have the digest that they had before there were any
+            content += bytes_of(springs)
         return hashlib.sha256(content).hexdigest()[:16]
+
+    @property
+    def rest(self) -> Pose | None:
+        """Pose in which joints and suspension are without force: the design's `legs.joint_rest`, or home."""
+        return self.home if self.legs.joint_rest is None else self.legs.joint_rest
+
+    @property
+    def sprung(self) -> bool:
+        """Whether there are springs in the joints, or a suspension."""
+        return self.legs.joint_stiffness.any or self.suspension is not None
 
     def __repr__(self) -> str:
         stiffness = np.unique(self.legs.stiffness)
-        k = f"{stiffness[0]:.4g}" + (f" to {stiffness[-1]:.4g}" if stiffness.size > 1 else "")
+        k = f"{stiffness[0]:.4g}" + (f" to {stiffness[-1]:.4g}" if stiffness.size > 1 else "") + " N/m"
+        if self.legs.stiffness_law is not None:
+            k = f"stiffness by a {self.legs.stiffness_law.kind.name} law"
         leg_mass = self.legs.lower.mass.mean() + self.legs.upper.mass.mean()
         notes = f", {len(self.warnings)} warnings" if self.warnings else ""
         return (
             f"<Hexapod {self.name!r}: platform {self.platform_mass:.4g} kg, legs of {leg_mass:.4g} kg "
-            f"and {k} N/m{notes}, digest {self.digest}>"
+            f"and {k}{notes}, digest {self.digest}>"
         )
 
 
+#: Beginnings of the keys of springs other than constant ones along the legs, and of their losses.
+_SPRINGS = ("legs.series_stiffness", "legs.loss_factor", "legs.stiffness_law.", "legs.joint_", "suspension.")
 #: Fields of a Hexapod that are numbers, and their keys in a design file.
 _KEYS = {
     "gravity": "gravity",

@@ -17,30 +17,30 @@ from flexapod.pose import Pose, PoseLike, as_pose
 from flexapod.rotations import rpy_matrix
 
 
-def home_of(values: Mapping[str, Any]) -> Home | None:
-    """The home pose of a design by its values, where they have one."""
-    if "home.position" not in values:
+def home_of(values: Mapping[str, Any], table: str = "home") -> Home | None:
+    """The home pose of a design by its values, or another pose of the same kind, where they have one."""
+    if f"{table}.position" not in values:
         return None
-    return Home(values["home.position"], values.get("home.orientation", (0.0, 0.0, 0.0)))
+    return Home(values[f"{table}.position"], values.get(f"{table}.orientation", (0.0, 0.0, 0.0)), table)
 
 
 class Home(Pose):
-    """The home pose of a design: one `Pose` that keeps roll, pitch and yaw as they were given, bit for bit.
+    """The home pose of a design, or its rest: one `Pose` that keeps roll, pitch and yaw as given, bit for bit.
 
     Unpacks as `position, rpy = home`.
     """
 
     __slots__ = ("_rpy",)
 
-    def __init__(self, position: ArrayLike, rpy: ArrayLike = (0.0, 0.0, 0.0)) -> None:
-        angles = check_value("home.orientation", rpy, KEYS["home.orientation"])
-        super().__init__(check_value("home.position", position, KEYS["home.position"]), rpy_matrix(angles))
+    def __init__(self, position: ArrayLike, rpy: ArrayLike = (0.0, 0.0, 0.0), table: str = "home") -> None:
+        angles = check_value(f"{table}.orientation", rpy, KEYS["home.orientation"])
+        super().__init__(check_value(f"{table}.position", position, KEYS["home.position"]), rpy_matrix(angles))
         angles.flags.writeable = False
         self._rpy = angles
 
     @classmethod
-    def of(cls, value: PoseLike) -> Home:
-        """A home from any single pose; DesignError where it is none."""
+    def of(cls, value: PoseLike, table: str = "home") -> Home:
+        """A home from any single pose; DesignError, which says the key `table`, where it is none."""
         if isinstance(value, Home):
             return value
         if not isinstance(value, Pose):
@@ -50,13 +50,13 @@ class Home(Pose):
                 six = np.empty(0)
             if six.shape != (6,):
                 raise DesignError(
-                    f"home is {shown(value)}; it must be a Pose, or x, y, z in m and roll, pitch, yaw in rad."
+                    f"{table} is {shown(value)}; it must be a Pose, or x, y, z in m and roll, pitch, yaw in rad."
                 )
-            return cls(six[:3], six[3:])
-        pose = as_pose(value, "home")
+            return cls(six[:3], six[3:], table)
+        pose = as_pose(value, table)
         if pose.shape:
-            raise DesignError(f"home has batch axes {pose.shape}; a design has one home pose. Index it first.")
-        return cls(pose.position, pose.rpy)
+            raise DesignError(f"{table} has batch axes {pose.shape}; a design has one such pose. Index it first.")
+        return cls(pose.position, pose.rpy, table)
 
     @property
     def rpy(self) -> Array:

@@ -1,13 +1,14 @@
 """The numbers of a design that a search may change.
 
-Those of `Hexapod.packed`, after them six of the home pose, and then those of all short forms, which make some of the
-others.
+Those of `Hexapod.packed`, after them six of the home pose, then those of springs in series and of the angles of rest,
+and those of all short forms; these last make some of the first (see form_numbers.py).
 """
 
 from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +18,10 @@ from flexapod.conventions import LEGS, ROTATIONS, TRANSLATIONS, Array
 from flexapod.design import packing
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.key_names import resolve
+from flexapod.design.parts import MOST_IN_SERIES
 from flexapod.design.schema import KEYS, Key
-from flexapod.design.shorthands import MAKES
+from flexapod.design.shorthands import MAKES, SETS
+from flexapod.design.stiffness_laws import TableLaw, keys_of
 from flexapod.design.units import printed, to_si
 from flexapod.errors import ArgumentError, DesignError
 
@@ -31,20 +34,29 @@ PLACES = packing.PLACES | {
 }
 
 
-def _short_places() -> dict[str, NDArray[np.int64]]:
+def _places(first: int, shapes: Mapping[str, tuple[int, ...]]) -> dict[str, NDArray[np.int64]]:
     places: dict[str, NDArray[np.int64]] = {}
-    first = SIZE
-    for key, rule in KEYS.items():
-        if key.rpartition(".")[0] in MAKES:
-            shape = rule.shapes[-1]  # what may be one for all legs is a number of each
-            places[key] = np.arange(first, first := first + math.prod(shape)).reshape(shape)
+    for key, shape in shapes.items():
+        places[key] = np.arange(first, first := first + math.prod(shape)).reshape(shape)
     return places
 
 
-#: The same of the keys of short forms.
-SHORT = _short_places()
-FULL = SIZE + sum(place.size for place in SHORT.values())
-EVERY = PLACES | SHORT
+#: The same of keys of which the core has other words, with room for the most springs in series.
+WORDED = _places(SIZE, {"legs.series_stiffness": (6, MOST_IN_SERIES), "legs.joint_rest.orientation": (3,)})
+_SHORT_FIRST = SIZE + sum(place.size for place in WORDED.values())
+#: The same of the keys of short forms: what may be one for all legs is a number of each.
+SHORT = _places(_SHORT_FIRST, {key: rule.shapes[-1] for key, rule in KEYS.items() if key.rpartition(".")[0] in MAKES})
+FULL = _SHORT_FIRST + sum(place.size for place in SHORT.values())
+EVERY = {key: place for key, place in PLACES.items() if key not in packing.DERIVED} | WORDED | SHORT
+#: Keys that stand for the numbers of several others.
+_SETS = {key: np.stack([PLACES[other] for other in keys], axis=-1) for key, keys in SETS.items()}
+#: What the last index of a key counts, where it is no axis.
+_COUNTED = {
+    "legs.series_stiffness": "spring",
+    "legs.joint_stiffness.universal": "axis",
+    "legs.stiffness_law.lengths": "node",
+    "legs.stiffness_law.stiffnesses": "node",
+}
 #: What optional keys of a short form that is given are where they are left out.
 _LEFT_OUT = {"circle.height": 0.0, "rod.radius": 0.0, "cubic.center_in_platform": 0.0}
 
@@ -58,6 +70,10 @@ def numbers(hexapod: Hexapod) -> Array:
 def with_short_forms(hexapod: Hexapod) -> Array:
     """The design as `FULL` numbers; those of short forms that it does not have are NaN as well."""
     found = np.concatenate([numbers(hexapod), np.full(FULL - SIZE, np.nan)])
+    legs = hexapod.legs
+    found[WORDED["legs.series_stiffness"][:, : legs.series_stiffness.shape[1]]] = legs.series_stiffness
+    if legs.joint_rest is not None:
+        found[WORDED["legs.joint_rest.orientation"]] = legs.joint_rest.rpy
     for form in hexapod.short_forms:
         for key, value in _LEFT_OUT.items():
             if key.partition(".")[0] == form.table.rpartition(".")[2]:
@@ -69,10 +85,13 @@ def with_short_forms(hexapod: Hexapod) -> Array:
 
 def own(hexapod: Hexapod, index: NDArray[np.int64], name: str) -> Array:
     """Numbers of the design. Raises ArgumentError for those that it does not have."""
-    found = with_short_forms(hexapod)[index]
-    missing = index[np.isnan(found)]
+    numbers = with_short_forms(hexapod)
+    found = numbers[index]
+    missing = index[np.isnan(found) | _is_absent(hexapod)[index]]
     if not missing.size:
         return found
+    if missing[0] < HOME.start or (missing[0] < _SHORT_FIRST and missing[0] >= SIZE):
+        raise ArgumentError(f"{name}: {hexapod.name!r} has no {describe(int(missing[0]))}. {_remedy(int(missing[0]))}")
     if missing[0] < SIZE:
         raise ArgumentError(f"{name} changes the home pose, but {hexapod.name!r} names none. Add [home].")
     table, _, key = owner(int(missing[0])).rpartition(".")
@@ -83,6 +102,49 @@ def own(hexapod: Hexapod, index: NDArray[np.int64], name: str) -> Array:
     raise ArgumentError(
         f"{name}: {hexapod.name!r} has no [{table}]; it gives {' and '.join(MAKES[table])} as they are. Take these, or "
         f"write the design with [{table}].{hint}"
+    )
+
+
+def present(hexapod: Hexapod, index: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The numbers without room that the design leaves unused: further springs in series, further nodes of a table."""
+    room = np.zeros(FULL, dtype=bool)
+    for key in ("legs.series_stiffness", "legs.stiffness_law.lengths", "legs.stiffness_law.stiffnesses"):
+        room[EVERY[key]] = True
+    lost = (_is_absent(hexapod) | np.isnan(with_short_forms(hexapod))) & room
+    return index if lost[index].all() else index[~lost[index]]
+
+
+def _is_absent(hexapod: Hexapod) -> NDArray[np.bool_]:
+    """Which of the numbers the design does not have although the core has room for them."""
+    absent = np.zeros(FULL, dtype=bool)
+    law, legs = hexapod.legs.stiffness_law, hexapod.legs
+    own = () if law is None else tuple(f"legs.stiffness_law.{name}" for name in keys_of(type(law)))
+    for key, place in EVERY.items():
+        if key.startswith("legs.stiffness_law."):
+            absent[place] = key not in own
+        elif key.startswith("suspension."):
+            absent[place] = hexapod.suspension is None
+        elif key.startswith("legs.joint_stiffness."):
+            absent[place] = hexapod.rest is None
+    if isinstance(law, TableLaw):
+        for key in own:
+            absent[EVERY[key][len(law.lengths) :]] = True
+    absent[EVERY["legs.stiffness"]] = law is not None
+    absent[EVERY["legs.joint_rest.position"]] = legs.joint_rest is None
+    return absent
+
+
+def _remedy(number: int) -> str:
+    """What a design lacks that does not have one of the numbers."""
+    key = owner(number)
+    if key == "legs.stiffness":
+        return "Its legs have a stiffness law: change the numbers of [legs.stiffness_law]."
+    if key.startswith("legs.joint_stiffness."):
+        return "It names no pose in which its joints are without moment: add [home] or [legs.joint_rest]."
+    return (
+        f"Write the design with [{key.rpartition('.')[0]}]."
+        if key.count(".") > 1 or "suspension" in key
+        else (f"Write the design with {key}.")
     )
 
 
@@ -101,12 +163,13 @@ def entries(key: str) -> tuple[NDArray[np.int64], Key, float]:
         name, unit = resolve(table, last)
     except DesignError as error:
         raise ArgumentError(f"{key}: {error}") from None
-    if name not in EVERY:
-        raise ArgumentError(f"{key} is not a number that a search can change. There are: {', '.join(sorted(EVERY))}.")
+    places = EVERY | _SETS
+    if name not in places:
+        raise ArgumentError(f"{key} is not a number that a search can change. There are: {', '.join(sorted(places))}.")
     rule = KEYS[name]
     scale = float(to_si(1.0, rule.dimension, unit)) if rule.dimension else 1.0
     index = tuple(slice(None) if i == ":" else int(i) for i in re.findall(r"\[(\d+|:)\]", match[2]))
-    place = EVERY[name]
+    place = places[name]
     try:
         chosen = place[index]
     except IndexError:
@@ -133,10 +196,17 @@ def indices(number: int) -> list[int]:
 
 def words(number: int) -> str:
     """Which of its key's numbers it is, for readers: "leg 3", "leg 3, y", "xz"; "" for a key of one number."""
-    at = indices(number)
-    leg = [f"leg {LEGS[at.pop(0)]}"] if at and len(EVERY[owner(number)]) == len(LEGS) else []
-    axes = ROTATIONS if owner(number) == "home.orientation" else TRANSLATIONS
-    return ", ".join([*leg, *filter(None, ("".join(axes[i] for i in at),))])
+    key, at = owner(number), indices(number)
+    of_leg = at and len(EVERY[key]) == len(LEGS) and not key.startswith("suspension.")
+    leg = [f"leg {LEGS[at.pop(0)]}"] if of_leg else []
+    if key.endswith(".orientation"):
+        names: tuple[str, ...] = tuple(ROTATIONS)
+    elif key in _COUNTED:
+        names = tuple(f"{_COUNTED[key]} {i + 1}" for i in range(EVERY[key].shape[-1]))
+    else:
+        names = (*TRANSLATIONS, *ROTATIONS)
+    told = [names[i] for i in at]
+    return ", ".join([*leg, *filter(None, (("-" if max(map(len, told), default=1) > 1 else "").join(told),))])
 
 
 def owner(number: int) -> str:

@@ -5,57 +5,23 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from flexapod import _core
 from flexapod.conventions import Array
+from flexapod.design.flexible_joints import JointStiffness
 from flexapod.design.home import Home
-from flexapod.design.packing import PLACES
+from flexapod.design.packing import PLACES, series_compliance
 from flexapod.design.schema import KEYS
 from flexapod.design.shorthands import rod
+from flexapod.design.stiffness_laws import LAWS, StiffnessLaw
+from flexapod.design.value import ADDED, Value
 from flexapod.design.value_checks import check_value
 from flexapod.errors import DesignError, shown, told_apart
 
-
-class Value:
-    """A frozen bundle of read-only arrays, equal and hashed by value; copies and pickles are built and checked anew."""
-
-    def state(self) -> dict[str, Any]:
-        """What the bundle is made from, by field."""
-        return {item.name: getattr(self, item.name) for item in fields(self) if item.init}  # type: ignore[arg-type]
-
-    def __eq__(self, other: object) -> bool:
-        return type(self) is type(other) and bytes_of(self) == bytes_of(other)
-
-    def __hash__(self) -> int:
-        return hash(bytes_of(self))
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return functools.partial(type(self), **self.state()), ()
-
-    def set_checked(self, name: str, value: Any, key: str, shape: tuple[int, ...] | None = None) -> None:
-        """Store a checked value, spread over the legs when `shape` says so."""
-        array = check_value(key, value, KEYS[key])
-        if shape is not None:
-            array = np.broadcast_to(array, shape).copy()
-        array.flags.writeable = False
-        object.__setattr__(self, name, array)
-
-
-def bytes_of(value: Any) -> bytes:
-    """Every number of a design in one string of bytes; parts that are left out are marked."""
-    if isinstance(value, Home):
-        return b"(" + bytes_of(value.position) + b"," + bytes_of(value.rpy) + b")"
-    if isinstance(value, Value):
-        compared = (getattr(value, item.name) for item in fields(value) if item.init and item.compare)  # type: ignore[arg-type]
-        return b"(" + b",".join(map(bytes_of, compared)) + b")"
-    if isinstance(value, Mapping):
-        return b"{" + b",".join(key.encode() + bytes_of(item) for key, item in value.items()) + b"}"
-    if isinstance(value, np.ndarray):
-        return str(value.shape).encode() + value.tobytes()
-    return repr(value).encode()
+MOST_IN_SERIES = 5  #: springs with one leg
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -169,8 +135,9 @@ class Legs(Value):
 
     Parameters
     ----------
-    stiffness : array_like
-        Axial stiffness of everything in series from joint to joint, N/m, one or six, stored as (6,).
+    stiffness : array_like or None
+        Axial stiffness of the leg between its joints, N/m, one or six, stored as (6,). With a stiffness law it is left
+        out, and stored as NaN.
     damping : Damping, optional
         Viscous friction; none where left out.
     lower, upper : LegPart, optional
@@ -178,22 +145,39 @@ class Legs(Value):
     more : mapping, optional
         Further numbers of the legs, one or six each, by the keys of a design file below `legs`. There are none yet:
         it is for numbers that are added to the core and to the schema.
+    series_stiffness : array_like, optional
+        Further axial springs in series with the leg (joints, mounts), N/m: one number, n numbers for all legs, or six
+        rows of n, stored as (6, n); none where left out.
+    loss_factor : array_like, optional
+        Structural loss factor of the axial springs, one or six, stored as (6,).
+    joint_stiffness : JointStiffness, optional
+        Springs in the joints; none where left out.
+    joint_rest : Pose or array_like, optional
+        Pose of the platform in the base frame in which joints and suspension are without force, as `home` is given;
+        the home pose where left out.
+    stiffness_law : ScrewLaw, HydraulicLaw or TableLaw, optional
+        Axial stiffness by the leg's length, in place of `stiffness`.
 
     Raises
     ------
     DesignError
-        For a stiffness of another shape, or not > 0, and for an unknown key in `more`.
+        For a stiffness of another shape, or not > 0, for an unknown key in `more`, and if both or neither of
+        `stiffness` and `stiffness_law` are given.
 
     Notes
     -----
     Leg axes: x from base joint to platform joint, y = k x s normalised, z = x cross y, where k is the axis of the
     universal joint that is fixed in the base and s the leg's direction (Eqs 2 to 4 and Section 4.1 of the paper).
+    With springs in series a leg of stiffness k is one of 1 / (1 / k + 1 / k_1 + ...).
 
     Examples
     --------
     >>> legs = fx.design.Legs(2e7, fx.design.Damping(prismatic=200.0))
     >>> float(legs.stiffness[5])
     20000000.0
+    >>> stiff = fx.design.Legs(50e6, series_stiffness=[94e6, 94e6])
+    >>> round(1e-6 / float(1 / stiff.stiffness[0] + stiff.series_compliance[0]), 2)  # N/um, joint to joint
+    24.23
     """
 
     stiffness: Array
@@ -201,13 +185,62 @@ class Legs(Value):
     lower: LegPart = field(default_factory=LegPart.massless)
     upper: LegPart = field(default_factory=LegPart.massless)
     more: Mapping[str, ArrayLike] = field(default_factory=dict)
+    series_stiffness: Array = field(default_factory=lambda: np.zeros((6, 0)))
+    loss_factor: Array = field(default_factory=lambda: np.zeros(6))
+    joint_stiffness: JointStiffness = field(default_factory=JointStiffness)
+    joint_rest: Home | None = None
+    stiffness_law: StiffnessLaw | None = None
 
     def __post_init__(self) -> None:
         self._set_more()
-        self.set_checked("stiffness", self.stiffness, "legs.stiffness", (6,))
-        for name, kind in (("damping", Damping), ("lower", LegPart), ("upper", LegPart)):
+        self._set_axial()
+        self.set_checked("loss_factor", self.loss_factor, "legs.loss_factor", (6,))
+        parts = {"damping": Damping, "lower": LegPart, "upper": LegPart, "joint_stiffness": JointStiffness}
+        for name, kind in parts.items():
             if not isinstance(getattr(self, name), kind):
                 raise DesignError(f"legs.{name} is {shown(getattr(self, name))}; it must be a {kind.__name__}.")
+        if self.joint_rest is not None:
+            object.__setattr__(self, "joint_rest", Home.of(self.joint_rest, "legs.joint_rest"))
+
+    @property
+    def series_compliance(self) -> Array:
+        """Of the springs in series with each leg together, m/N, (6,)."""
+        compliance: Array = series_compliance(self.series_stiffness)
+        return compliance
+
+    def _set_axial(self) -> None:
+        """Check the stiffness, or the law in its place, and the springs in series."""
+        law = self.stiffness_law
+        if law is not None and not isinstance(law, tuple(LAWS.values())):
+            names = " or ".join(kind.__name__ for kind in LAWS.values())
+            raise DesignError(f"legs.stiffness_law is {shown(law)}; it must be a {names}.")
+        if law is None:
+            if self.stiffness is None:
+                raise DesignError("legs.stiffness and legs.stiffness_law are both missing; give one of them.")
+            self.set_checked("stiffness", self.stiffness, "legs.stiffness", (6,))
+        elif self.stiffness is None or np.isnan(self.stiffness).all():
+            self.hold("stiffness", np.full(6, np.nan))
+        else:
+            raise DesignError(
+                "legs.stiffness and [legs.stiffness_law] are both given, and both say how stiff the legs are. Leave "
+                "one of them out."
+            )
+        series = np.asarray(self.series_stiffness)
+        if series.shape == (6, 0):
+            self.hold("series_stiffness", series)
+            return
+        if series.shape == (6,):
+            raise DesignError(
+                "legs.series_stiffness has six numbers, which may be one for each leg or six in series with every leg. "
+                "Write six rows: [[94e6], [94e6], ...] for one spring at each leg."
+            )
+        array = check_value("legs.series_stiffness", series, KEYS["legs.series_stiffness"])
+        if array.shape[-1:] > (MOST_IN_SERIES,):
+            raise DesignError(
+                f"legs.series_stiffness has {array.shape[-1]} springs in series with a leg; there may be "
+                f"{MOST_IN_SERIES} at most. Put two in one: 1 / (1 / k_1 + 1 / k_2)."
+            )
+        self.hold("series_stiffness", np.broadcast_to(np.atleast_1d(array), (6, np.atleast_1d(array).shape[-1])))
 
     def _set_more(self) -> None:
         """Check the further numbers, fill in those left out, and spread them over the legs."""
@@ -229,7 +262,8 @@ def more_keys() -> tuple[str, ...]:
     """Keys below `legs` of numbers that the core has and no attribute of `Legs` names."""
     named = {"stiffness", *(f"damping.{item.name}" for item in fields(Damping))}
     named |= {f"{part}.{item.name}" for part in ("lower", "upper") for item in fields(LegPart)}
-    keys = (key.removeprefix("legs.") for key in PLACES if key.startswith("legs."))
+    first = (key for key, place in PLACES.items() if key.startswith("legs.") and place.max() < _core.plain_size)
+    keys = (key.removeprefix("legs.") for key in first)
     return tuple(key for key in keys if key not in named)
 
 
@@ -245,6 +279,8 @@ class Limits(Value):
         Cone half angle of a base joint and of a platform joint, from the leg's direction at home, rad.
     leg_distance : float, optional
         Least distance between two leg axes, m.
+    universal_moment, spherical_moment : float, optional
+        Largest bending moment that the stiffness of a base joint and of a platform joint may make, N m.
 
     Raises
     ------
@@ -265,6 +301,8 @@ class Limits(Value):
     universal_angle: float | None = None
     spherical_angle: float | None = None
     leg_distance: float | None = None
+    universal_moment: float | None = field(default=None, metadata=ADDED)
+    spherical_moment: float | None = field(default=None, metadata=ADDED)
 
     def __post_init__(self) -> None:
         if self.leg_length is not None:
@@ -278,9 +316,9 @@ class Limits(Value):
                     f"limits.leg_length{place} is [{low}, {high}] m; the first must be < the second. "
                     "Give the shortest length first."
                 )
-        for name in ("universal_angle", "spherical_angle", "leg_distance"):
-            value = getattr(self, name)
-            if value is not None:
+        for item in fields(self):
+            name, value = item.name, getattr(self, item.name)
+            if name != "leg_length" and value is not None:
                 key = f"limits.{name}"
                 object.__setattr__(self, name, float(check_value(key, value, KEYS[key])))
 

@@ -2,14 +2,18 @@
 
 from dataclasses import dataclass
 
+ANY = -1  #: a length that is not fixed
 SHAPES = {
     (): "one number",
     (2,): "two numbers [min, max]",
+    (ANY,): "some numbers",
     (3,): "three numbers [x, y, z]",
     (6,): "six numbers, one for each leg",
     (3, 3): "three rows of three numbers",
     (6, 2): "six pairs [min, max]",
+    (6, ANY): "six rows of as many numbers each",
     (6, 3): "six rows [x, y, z]",
+    (6, 6): "six rows of six numbers",
     (6, 3, 3): "six matrices of three rows of three numbers",
 }
 
@@ -21,7 +25,7 @@ class Key:
     `default` (SI) is what a design has that leaves the key out, where that is said here and not in tables.py. A new
     number of each leg needs its line in the core (`model/design.hpp`) and one here with a default.
 
-    A value that must be `symmetric` may also be given as the three numbers on its diagonal.
+    A value that must be `symmetric` may also be given as the numbers on its diagonal. `pair` is what two numbers are.
     """
 
     meaning: str
@@ -34,16 +38,26 @@ class Key:
     open_: bool = False
     symmetric: bool = False
     default: float | None = None
+    pair: str = "[min, max]"
 
     @property
     def shape_text(self) -> str:
-        moments = ", or the three principal moments" if self.symmetric else ""
-        return " or ".join(SHAPES[shape] for shape in self.shapes) + moments
+        moments = ", or the three principal moments" if self.dimension == "inertia" else ", or those on the diagonal"
+        words = " or ".join(SHAPES[shape].replace("[min, max]", self.pair) for shape in self.shapes)
+        return words + (moments if self.symmetric else "")
+
+    def takes(self, shape: tuple[int, ...]) -> bool:
+        """Whether a value may have this shape."""
+        return any(
+            len(known) == len(shape) and all(n in (ANY, m) and m for n, m in zip(known, shape, strict=True))
+            for known in self.shapes
+        )
 
 
 _ONE: tuple[tuple[int, ...], ...] = ((),)
 _LEGS: tuple[tuple[int, ...], ...] = ((), (6,))
 _VECTOR = ((3,),)
+_NODES = ((ANY,),)
 _JOINTS = ((6, 3),)
 _INERTIA = "Write the same number on both sides of the diagonal; principal moments alone may be given as three numbers."
 _FLAT_ANGLE = 3.141592653589793
@@ -82,6 +96,46 @@ def _part(joint: str) -> dict[str, Key]:
     }
 
 
+def _law() -> dict[str, Key]:
+    """The numbers of the laws of stiffness: of a screw, of two columns of oil, of a table."""
+
+    def positive(meaning: str, dimension: str, remedy: str, least: float = 0.0, open_: bool = True) -> Key:
+        return Key(meaning, dimension, _LEGS, remedy, least=least, open_=open_)
+
+    chamber = "Give the area of the piston on that side, less that of the rod."
+    dead = "Some oil is left in ports and hoses: give its volume over the area, which is > 0."
+    return {
+        "fixed": positive("stiffness that does not change with the length", "stiffness", "Give that of the nut."),
+        "axial_rigidity": positive(
+            "Young's modulus times cross section", "force", "In N; for steel 2.1e11 Pa times the area in m2."
+        ),
+        "zero_length": positive(
+            "length of the leg at which only the fixed stiffness is left", "length", "Give a length >= 0.", open_=False
+        ),
+        "bulk_modulus": positive("bulk modulus of the oil", "pressure", "Oil with some air has about 1.4e9 Pa."),
+        "area": positive("area of both chambers", "area", chamber),
+        "area_1": positive("area in the chamber that lengthens the leg", "area", chamber),
+        "area_2": positive(
+            "area in the chamber that shortens the leg", "area", "Give 0 for one chamber only.", open_=False
+        ),
+        "dead_1": positive("column left in the first chamber where the leg is shortest", "length", dead),
+        "dead_2": positive("column left in the second chamber where the leg is longest", "length", dead),
+        "stroke": positive("longest minus shortest leg", "length", "Give a stroke > 0."),
+        "shortest": positive("shortest leg", "length", "Give the length between the joints at the lower end."),
+        "lengths": Key(
+            "lengths of a table of stiffnesses", "length", _NODES, "Give rising lengths > 0.", least=0.0, open_=True
+        ),
+        "stiffnesses": Key(
+            "axial stiffness at each of the lengths",
+            "stiffness",
+            _NODES,
+            "A leg without stiffness holds nothing.",
+            least=0.0,
+            open_=True,
+        ),
+    }
+
+
 def _circle(plate: str) -> dict[str, Key]:
     pairs = "60, 180 and 300" if plate == "base" else "0, 120 and 240"
     return {
@@ -116,6 +170,27 @@ _DAMPING = Key(
     "viscous friction", "angular damping", _LEGS, "Give 0 for a joint without friction.", least=0.0, default=0.0
 )
 
+_LOSS = Key(
+    "structural loss factor",
+    None,
+    _LEGS,
+    "It is about 0.01 to 0.05 for machines; 2 times the damping ratio.",
+    least=0.0,
+    most=10.0,
+    default=0.0,
+)
+
+
+def _joint_stiffness(meaning: str, shapes: tuple[tuple[int, ...], ...] = _LEGS) -> Key:
+    remedy = "Give 0 for a joint that turns freely."
+    return Key(meaning, "angular stiffness", shapes, remedy, least=0.0, default=0.0, pair="[first axis, second axis]")
+
+
+def _suspension(what: str) -> Key:
+    remedy = "Write the same number on both sides of the diagonal; SI units, translations before rotations."
+    return Key(f"{what} between base and platform, axes of the base, SI units", None, ((6, 6),), remedy, symmetric=True)
+
+
 KEYS: dict[str, Key] = {
     "gravity": Key("gravity, inertial frame", "acceleration", _VECTOR),
     "base.joints": Key("base joints, base frame", "length", _JOINTS, _ROW_REMEDY),
@@ -148,11 +223,39 @@ KEYS: dict[str, Key] = {
         least=0.0,
         open_=True,
     ),
+    "legs.series_stiffness": Key(
+        "further axial springs in series with the leg",
+        "stiffness",
+        ((ANY,), (), (6, ANY)),
+        "Leave out what is rigid; a spring of no stiffness holds nothing.",
+        too_large="Leave out what is rigid.",
+        least=0.0,
+        open_=True,
+    ),
+    "legs.loss_factor": _LOSS,
     "legs.damping.prismatic": Key(
         "viscous friction along the leg", "damping", _LEGS, "Give 0 for a leg without friction.", least=0.0, default=0.0
     ),
     "legs.damping.universal": _DAMPING,
     "legs.damping.spherical": _DAMPING,
+    "legs.joint_stiffness.universal": _joint_stiffness(
+        "rotational stiffness of the base joint about its two axes", ((2,), (), (6,), (6, 2))
+    ),
+    "legs.joint_stiffness.spherical": _joint_stiffness("bending stiffness of the platform joint, across the leg"),
+    "legs.joint_stiffness.torsion": _joint_stiffness("torsional stiffness between leg and platform, about the leg"),
+    "legs.joint_stiffness.loss_factor": _LOSS,
+    "legs.joint_rest.position": Key(
+        "platform frame's origin where joints and suspension are without force, base frame", "length", _VECTOR
+    ),
+    "legs.joint_rest.orientation": Key(
+        "roll, pitch, yaw where joints and suspension are without force",
+        "angle",
+        _VECTOR,
+        _ANGLE_REMEDY,
+        least=-2 * _FLAT_ANGLE,
+        most=2 * _FLAT_ANGLE,
+    ),
+    **_under("legs.stiffness_law", _law()),
     **_under("legs.lower", _part("base joint")),
     **_under("legs.upper", _part("platform joint")),
     "limits.leg_length": Key(
@@ -183,6 +286,25 @@ KEYS: dict[str, Key] = {
     "limits.leg_distance": Key(
         "least distance between leg axes", "length", _ONE, "Leave it out for no limit.", least=0.0
     ),
+    "limits.universal_moment": Key(
+        "largest bending moment of a base joint's stiffness",
+        "moment",
+        _ONE,
+        "Leave it out for no limit.",
+        least=0.0,
+        open_=True,
+    ),
+    "limits.spherical_moment": Key(
+        "largest bending moment of a platform joint's stiffness",
+        "moment",
+        _ONE,
+        "Leave it out for no limit.",
+        least=0.0,
+        open_=True,
+    ),
+    "suspension.stiffness": _suspension("stiffness"),
+    "suspension.damping": _suspension("damping"),
+    "suspension.point": Key("point that the suspension acts at, platform frame", "length", _VECTOR),
     "home.turned.position": Key(
         "platform frame's origin at home before it is turned about the pivot, base frame", "length", _VECTOR
     ),
@@ -216,6 +338,17 @@ KEYS: dict[str, Key] = {
     "cubic.center_in_platform": Key("cube's centre, platform frame, at home", "length", _VECTOR),
 }
 
+
+def is_of_each_leg(key: str) -> bool:
+    """Whether six values may be given, one for each leg, in place of one of the first shape."""
+    return key.startswith("legs.") and (6, *KEYS[key].shapes[0]) in KEYS[key].shapes
+
+
 #: Keys whose values are text, with an example of each.
-TEXT_KEYS = {"name": "my hexapod", "joints.csv": "joints.csv", "home.turned.rotation_order": "XYZ"}
+TEXT_KEYS = {
+    "name": "my hexapod",
+    "joints.csv": "joints.csv",
+    "home.turned.rotation_order": "XYZ",
+    "legs.stiffness_law.kind": "screw",
+}
 TABLES = frozenset(key.rsplit(".", depth)[0] for key in {*KEYS, *TEXT_KEYS} for depth in range(1, key.count(".") + 1))

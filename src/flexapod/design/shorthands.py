@@ -34,6 +34,10 @@ BESIDE = {
     "base.circle": ("base.universal_axes",),
     "cubic": ("base.universal_axes", "home.position", "home.orientation"),
 }
+#: Keys that set several others, and these.
+SETS: dict[str, tuple[str, ...]] = {
+    "legs.stiffness_law.area": ("legs.stiffness_law.area_1", "legs.stiffness_law.area_2")
+}
 #: What a table needs, by its last name: keys, or pairs of keys of which it takes one.
 NEEDS: dict[str, tuple[str | tuple[str, str], ...]] = {
     "circle": ("radius", ("angles", "half_angle")),
@@ -50,6 +54,13 @@ def expand(values: Values, directory: Path | None = None) -> tuple[Values, tuple
     names are looked for; without it none is read, so that a text from elsewhere cannot make this computer read files.
     """
     values = dict(values)
+    for key, keys in SETS.items():
+        if key in values:
+            one = values.pop(key)
+            for other in keys:
+                if other in values:
+                    raise DesignError(f"{key} and {other} are both given, and both set {other}. Leave one of them out.")
+                values[other] = one
     given: dict[str, Values] = {}
     made: dict[str, Values] = {}
     for table, keys in MAKES.items():

@@ -65,7 +65,13 @@ def table_of(value: Any, name: str) -> Any:
 
 def complete(values: Values) -> Values:
     """Values with the defaults filled in. Raises DesignError that lists every key that is missing."""
-    missing = [key for key in (*_REQUIRED, "legs.stiffness") if key not in values]
+    required = _REQUIRED if has_law(values) else (*_REQUIRED, "legs.stiffness")
+    if has_law(values) and "legs.stiffness" in values:
+        raise DesignError(
+            "legs.stiffness and [legs.stiffness_law] are both given, and both say how stiff the legs are. Leave one of "
+            "them out."
+        )
+    missing = [key for key in required if key not in values]
     parts = [part for part in ("legs.lower", "legs.upper") if any(key.startswith(f"{part}.") for key in values)]
     for part in parts:
         missing += [f"{part}.{key}" for key in ("mass", "mass_center", "inertia") if f"{part}.{key}" not in values]
@@ -75,8 +81,8 @@ def complete(values: Values) -> Values:
             f"[{other}] is missing while [{parts[0]}] is given. Give both parts (one may have mass 0), "
             "or leave both out for massless legs."
         )
-    if "home.orientation" in values and "home.position" not in values:
-        missing.append("home.position")
+    poses = [pose for pose in ("home", "legs.joint_rest") if f"{pose}.orientation" in values]
+    missing += [f"{pose}.position" for pose in poses if f"{pose}.position" not in values]
     if missing:
         lines = "; ".join(f"{key} ({_how_to_give(key)})" for key in missing)
         raise DesignError(f"missing: {lines}. Add {'it' if len(missing) == 1 else 'them'} to the design. {START}")
@@ -85,9 +91,15 @@ def complete(values: Values) -> Values:
     defaults |= {key: np.array(rule.default) for key, rule in KEYS.items() if rule.default is not None}
     for part in ("legs.lower", "legs.upper"):
         defaults |= {f"{part}.mass": zero, f"{part}.mass_center": np.zeros(3), f"{part}.inertia": np.zeros((3, 3))}
-    if "home.position" in values:
-        defaults["home.orientation"] = np.zeros(3)
+    for pose in ("home", "legs.joint_rest"):
+        if f"{pose}.position" in values:
+            defaults[f"{pose}.orientation"] = np.zeros(3)
     return defaults | values
+
+
+def has_law(values: Values) -> bool:
+    """Whether a stiffness law is given, or a part of one."""
+    return any(key.startswith("legs.stiffness_law.") for key in values)
 
 
 def _how_to_give(key: str) -> str:

@@ -18,9 +18,9 @@ def check_value(name: str, value: Any, rule: Key, unit: str | None = None) -> Ar
     """One value as an array in SI units, in the shape it was given. Raises DesignError that says what is wrong."""
     unit = si_unit(rule.dimension) if unit is None else unit
     given = _numbers(name, value, rule)
-    if rule.symmetric and given.shape == (3,):
+    if rule.symmetric and given.shape == rule.shapes[0][:1]:
         given = np.diag(given)
-    if given.shape not in rule.shapes:
+    if not rule.takes(given.shape):
         shape = "one number" if given.ndim == 0 else f"shape {' x '.join(map(str, given.shape))}"
         raise DesignError(f"{name} has {shape}; it must be {rule.shape_text}. {rule.remedy}")
     si = to_si(given, rule.dimension, unit) if rule.dimension else given
@@ -88,9 +88,12 @@ def _check_each(name: str, given: Array, si: Array, rule: Key, unit: str) -> Non
 
 
 def _symmetric(name: str, given: Array, si: Array, rule: Key, unit: str) -> Array:
-    """The symmetric part of 3 x 3 matrices that are symmetric but for rounding; others are refused."""
+    """The symmetric part of matrices that are symmetric but for rounding; others are refused."""
     turned = np.swapaxes(si, -1, -2)
     scale = np.abs(si).max(axis=(-1, -2), keepdims=True)
+    if rule.dimension is None:  # translations and rotations: numbers of several units
+        root = np.sqrt(np.abs(np.diagonal(si, axis1=-2, axis2=-1)))
+        scale = root[..., :, None] * root[..., None, :]
     bad = np.abs(si - turned) > 1e-9 * scale  # beyond what printing with ten digits does
     if bad.any():
         index = tuple(np.argwhere(bad)[0])
@@ -99,6 +102,6 @@ def _symmetric(name: str, given: Array, si: Array, rule: Key, unit: str) -> Arra
         one, other = given[index], np.swapaxes(given, -1, -2)[index]
         raise DesignError(
             f"{name}{place} is not symmetric: [{i}][{j}] is {one:.6g} and [{j}][{i}] is {other:.6g} {printed(unit)}; "
-            f"an inertia must be symmetric. {rule.remedy}"
+            f"{'an inertia' if rule.dimension == 'inertia' else 'it'} must be symmetric. {rule.remedy}"
         )
     return (si + turned) / 2

@@ -59,7 +59,7 @@ class Ensemble:
                     found[:, p.index] = self.base[p.index] * away[:, None]
                 else:
                     found[:, p.index] += away[:, None] * p.width
-        if self._makers.forms:
+        if self._makers:
             for row in found:
                 self._makers.make(row)
         found = found[:, : HOME.start]

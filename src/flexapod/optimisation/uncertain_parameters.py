@@ -77,6 +77,7 @@ class Uncertain:
         index, rule, unit = entries(self.target)
         if self.target.startswith("home"):
             raise ArgumentError("the home pose is where the platform is told to stand, not an uncertain number.")
+        index = layout.present(hexapod, index)
         value = layout.own(hexapod, index, self.target)
         if self.relative and not value.any():
             raise ArgumentError(

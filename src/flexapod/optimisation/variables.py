@@ -86,8 +86,9 @@ class Variable:
         parameter = Parameter(self._name, low, high, unit, self.log, unit_name=named)
         parameter.check()
         found = [(layout.entries(key), factor) for key, factor in factors.items()]
-        index = np.concatenate([place for (place, _, _), _ in found])
-        factor = np.concatenate([np.full(len(place), factor) for (place, _, _), factor in found])
+        places = [layout.present(hexapod, place) for (place, _, _), _ in found]
+        index = np.concatenate(places)
+        factor = np.concatenate([np.full(len(place), factor) for place, (_, factor) in zip(places, found, strict=True)])
         if self.kind != "scale":
             for (_, rule, _), scale in found:
                 self._check_range(parameter, rule, scale)

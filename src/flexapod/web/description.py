@@ -18,8 +18,13 @@ from flexapod.web.parameters import main_parameters
 
 
 def fields() -> list[Field]:
-    """Every key of a design file that holds numbers, with its meaning, unit and shapes, for the form."""
-    shorthand = re.compile(r"\.(circle|rod)\.|^cubic\.")
+    """Every key of a design file that holds numbers, with its meaning, unit and shapes, for the form.
+
+    Those of springs other than constant ones along the legs are changed in the file.
+    """
+    shorthand = re.compile(
+        r"\.(circle|rod)\.|^cubic\.|^suspension\.|^legs\.(series_|loss_|joint_|stiffness_law)|_moment$"
+    )
     return [
         {
             "key": _field_key(key),
