@@ -42,7 +42,8 @@ def names_of(package: str) -> list[str]:
     inside = [
         name for name in _package(package).__all__ if not isinstance(getattr(_package(package), name), ModuleType)
     ]
-    return [name if name in flexapod.__all__ else f"{package}.{name}" for name in inside]
+    names = [name if name in flexapod.__all__ else f"{package}.{name}" for name in inside]
+    return names + [f"{package}.{module}.{name}" for module in _modules(package) for name in _defined(package, module)]
 
 
 def _home(name: str) -> str:
@@ -74,11 +75,29 @@ def file(package: str) -> str:
 
 def page(package: str) -> str:
     shown = "\n\n".join(f"::: flexapod.{name}" for name in names_of(package))
-    extra = "" if package != "plots" else "\n\n" + "\n\n".join(f"::: flexapod.plots.{name}" for name in _modules())
+    extra = "" if package != "plots" else "\n\n" + "\n\n".join(f"::: flexapod.plots.{name}" for name in _figures())
     return f"# {title(package)}\n\n{about(package)}\n\n{shown}{extra}\n"
 
 
-def _modules() -> list[str]:
+def _modules(package: str) -> list[str]:
+    """The modules that a package shows by name, but for those of figures, which are shown as a whole."""
+    if package == "plots":
+        return []
+    place = _package(package)
+    return [name for name in place.__all__ if isinstance(getattr(place, name), ModuleType)]
+
+
+def _defined(package: str, module: str) -> list[str]:
+    """The functions and classes of such a module."""
+    place = getattr(_package(package), module)
+    return [
+        name
+        for name, found in vars(place).items()
+        if not name.startswith("_") and getattr(found, "__module__", "") == place.__name__
+    ]
+
+
+def _figures() -> list[str]:
     """The modules of figures, which are public as a whole."""
     plots = _package("plots")
     return [name for name in plots.__all__ if isinstance(getattr(plots, name), ModuleType)]

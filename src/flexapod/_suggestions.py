@@ -103,11 +103,20 @@ def _at_top(name: str, known: str) -> list[str]:
     found = {one: one for one in top.__all__}
     for place in top.__all__:
         if _is_module(f"{TOP}.{place}"):  # a package
-            names = getattr(importlib.import_module(f"{TOP}.{place}"), "__all__", ())
-            found = {one: f"{place}.{one}" for one in names} | found
+            package = importlib.import_module(f"{TOP}.{place}")
+            names = getattr(package, "__all__", ())
+            modules = [one for one in names if place != "plots" and _is_module(f"{TOP}.{place}.{one}")]
+            inside = {one: f"{place}.{module}.{one}" for module in modules for one in _own(getattr(package, module))}
+            found = inside | {one: f"{place}.{one}" for one in names} | found
     if known in found:
         return [found[known]]
     return [call for one, call in found.items() if one.lower() == known.lower()]
+
+
+def _own(module: Any) -> list[str]:
+    """The names that a module defines for its users."""
+    own = ((one, getattr(thing, "__module__", "")) for one, thing in vars(module).items())
+    return [one for one, place in own if place == module.__name__ and not one.startswith("_")]
 
 
 def british(name: str) -> str:

@@ -61,6 +61,18 @@ SINGLE = {
     *("kp", "kd", "nearness", "unstable", "bound", "singular", "goal", "timing", "plan", "study", "against", "refine"),
     *("number", "dataset", "window", "frames", "exaggeration", "sensitivity", "sampler", "verify", "on_trial", "stop"),
     "pose_samples",
+    *(
+        "length",
+        "radius",
+        "thickness",
+        "width",
+        "diameter",
+        "material",
+        "first",
+        "second",
+        "at_base",
+        "at_platform",
+    ),  # flexures
 }
 
 

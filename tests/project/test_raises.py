@@ -28,6 +28,7 @@ THROUGH = fx.Trajectory(fx.Pose.from_rpy(*HOME.position, 0, 0, [1.4, 1.5, 1.65])
 SHAKEN = fx.harmonic("z", 1e-6, 100.0)
 SAMPLED = fx.control.VelocityFeedback(1e3).on(fx.linearise(MACHINE, HOME)).sampled(1e-4)
 TOO_MUCH = fx.control.VelocityFeedback(1e6)
+STEEL = fx.design.flexures.Material(200e9, 400e6)
 BOX = fx.Box(x=(-1, 1))
 LEGS = fx.inverse_kinematics(MACHINE, HOME)
 
@@ -107,6 +108,12 @@ PROVOKED = {
     ),
     ("animate_mode", "ArgumentError"): lambda: fx.animate_mode(MACHINE, HOME, 7, "never.gif"),
     ("animate_simulation", "ArgumentError"): lambda: fx.animate_simulation(None, MACHINE, "never.gif", frames=1),
+    ("circular_notch", "ArgumentError"): lambda: fx.design.flexures.circular_notch(1e-3, 2e-3, 8e-3, STEEL),
+    ("crossed", "ArgumentError"): lambda: fx.design.flexures.crossed(1.0, 2.0),
+    ("leaf", "ArgumentError"): lambda: fx.design.flexures.leaf(1.0, 2.0, 3.0, STEEL),
+    ("leg_keys", "ArgumentError"): lambda: fx.design.flexures.leg_keys(1.0, 2.0),
+    ("round_notch", "ArgumentError"): lambda: fx.design.flexures.round_notch(1e-3, -1.0, STEEL),
+    ("wire", "ArgumentError"): lambda: fx.design.flexures.wire(1.0, 2.0, STEEL),
     ("closed_loop", "ArgumentError"): lambda: fx.control.closed_loop(MACHINE, HOME, "pid"),
     ("closed_loop", "UnstableError"): lambda: fx.control.closed_loop(
         MACHINE, HOME, TOO_MUCH.on(fx.linearise(MACHINE, HOME)).sampled(0.1)

@@ -1,3 +1,4 @@
+from . import flexures as flexures
 from .design_file import packaged_designs as packaged_designs
 from .design_file import template as template
 from .flexible_joints import JointStiffness as JointStiffness
