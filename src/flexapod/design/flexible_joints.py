@@ -53,9 +53,9 @@ class JointStiffness(Value):
     loss_factor: Array = field(default_factory=lambda: np.zeros(6))
 
     def __post_init__(self) -> None:
-        universal = np.asarray(self.universal)
-        if universal.shape == (6,):  # both axes of each joint
-            object.__setattr__(self, "universal", np.stack([universal, universal], axis=1))
+        self.set_checked("universal", self.universal, "legs.joint_stiffness.universal")
+        if self.universal.shape == (6,):  # both axes of each joint
+            self.hold("universal", np.stack([self.universal, self.universal], axis=1))
         for name, shape in SHAPES.items():
             self.set_checked(name, getattr(self, name), f"legs.joint_stiffness.{name}", shape)
 

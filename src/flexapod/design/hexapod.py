@@ -364,7 +364,7 @@ class Hexapod(Value, metaclass=Suggesting):
         """Sixteen hex digits that tell designs apart by their numbers (not by their names)."""
         numbers = self.packed.astype("<f8")
         content = numbers[: _core.plain_size].tobytes() + bytes_of(self.limits) + bytes_of(self.home)
-        springs = {key: value for key, value in self.values().items() if key.startswith(_SPRINGS)}
+        springs = {key: value for key, value in self.values().items() if key.startswith(SPRINGS)}
         if springs:  # designs without them have the digest that they had before there were any
             content += bytes_of(springs)
         return hashlib.sha256(content).hexdigest()[:16]
@@ -393,7 +393,7 @@ class Hexapod(Value, metaclass=Suggesting):
 
 
 #: Beginnings of the keys of springs other than constant ones along the legs, and of their losses.
-_SPRINGS = ("legs.series_stiffness", "legs.loss_factor", "legs.stiffness_law.", "legs.joint_", "suspension.")
+SPRINGS = ("legs.series_stiffness", "legs.loss_factor", "legs.stiffness_law.", "legs.joint_", "suspension.")
 #: Fields of a Hexapod that are numbers, and their keys in a design file.
 _KEYS = {
     "gravity": "gravity",

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from flexapod import _core
 from flexapod.conventions import LEGS, ROTATIONS, TRANSLATIONS, Array
 from flexapod.design import packing
-from flexapod.design.hexapod import Hexapod
+from flexapod.design.hexapod import SPRINGS, Hexapod
 from flexapod.design.key_names import resolve
 from flexapod.design.parts import MOST_IN_SERIES
 from flexapod.design.schema import KEYS, Key
@@ -87,7 +87,7 @@ def own(hexapod: Hexapod, index: NDArray[np.int64], name: str) -> Array:
     """Numbers of the design. Raises ArgumentError for those that it does not have."""
     numbers = with_short_forms(hexapod)
     found = numbers[index]
-    missing = index[np.isnan(found) | _is_absent(hexapod)[index]]
+    missing = index[np.isnan(found) | is_absent(hexapod)[index]]
     if not missing.size:
         return found
     if missing[0] < HOME.start or (missing[0] < _SHORT_FIRST and missing[0] >= SIZE):
@@ -110,11 +110,17 @@ def present(hexapod: Hexapod, index: NDArray[np.int64]) -> NDArray[np.int64]:
     room = np.zeros(FULL, dtype=bool)
     for key in ("legs.series_stiffness", "legs.stiffness_law.lengths", "legs.stiffness_law.stiffnesses"):
         room[EVERY[key]] = True
-    lost = (_is_absent(hexapod) | np.isnan(with_short_forms(hexapod))) & room
+    lost = (is_absent(hexapod) | np.isnan(with_short_forms(hexapod))) & room
     return index if lost[index].all() else index[~lost[index]]
 
 
-def _is_absent(hexapod: Hexapod) -> NDArray[np.bool_]:
+def springs(hexapod: Hexapod) -> list[str]:
+    """Keys of the springs that the design has beside constant ones along the legs."""
+    values = hexapod.values()
+    return [key for key in values if key.startswith(SPRINGS) and key in EVERY and not key.startswith("legs.joint_rest")]
+
+
+def is_absent(hexapod: Hexapod) -> NDArray[np.bool_]:
     """Which of the numbers the design does not have although the core has room for them."""
     absent = np.zeros(FULL, dtype=bool)
     law, legs = hexapod.legs.stiffness_law, hexapod.legs

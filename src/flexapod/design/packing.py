@@ -40,6 +40,13 @@ def series_compliance(stiffness: Any) -> Any:
     return (1.0 / stiffness).sum(axis=-1)
 
 
+def compliance_slope(stiffness: Array) -> Array:
+    """Derivative of that compliance by each of the stiffnesses, of their shape."""
+    step = 1e-200
+    slope: Array = series_compliance((stiffness + 1j * step)[..., None]).imag / step
+    return slope
+
+
 def _law(values: Mapping[str, Any]) -> dict[str, Any]:
     """Which law there is, and a table with its last node repeated; a constant stiffness that is not there is 1."""
     kind = values.get(f"{_LAW}.kind")

@@ -218,7 +218,7 @@ class Legs(Value):
             if self.stiffness is None:
                 raise DesignError("legs.stiffness and legs.stiffness_law are both missing; give one of them.")
             self.set_checked("stiffness", self.stiffness, "legs.stiffness", (6,))
-        elif self.stiffness is None or np.isnan(self.stiffness).all():
+        elif self.stiffness is None or (isinstance(self.stiffness, np.ndarray) and np.isnan(self.stiffness).all()):
             self.hold("stiffness", np.full(6, np.nan))
         else:
             raise DesignError(

@@ -218,5 +218,6 @@ def law_of(values: Mapping[str, Any]) -> StiffnessLaw | None:
     missing = [name for name in names if name not in given]
     if missing:
         lines = "; ".join(f"{TABLE}.{name} ({KEYS[f'{TABLE}.{name}'].meaning})" for name in missing)
-        raise DesignError(f"missing: {lines}. The law {kind!r} needs {', '.join(names)}.")
+        both = " (area gives both areas)" if "area_1" in missing or "area_2" in missing else ""
+        raise DesignError(f"missing: {lines}. The law {kind!r} needs {', '.join(names)}{both}.")
     return LAWS[kind](**given)

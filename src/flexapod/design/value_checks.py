@@ -101,7 +101,8 @@ def _symmetric(name: str, given: Array, si: Array, rule: Key, unit: str) -> Arra
         place = "".join(f"[{n}]" for n in leg)
         one, other = given[index], np.swapaxes(given, -1, -2)[index]
         raise DesignError(
-            f"{name}{place} is not symmetric: [{i}][{j}] is {one:.6g} and [{j}][{i}] is {other:.6g} {printed(unit)}; "
+            f"{name}{place} is not symmetric: [{i}][{j}] is {one:.6g} and [{j}][{i}] is "
+            f"{f'{other:.6g} {printed(unit)}'.rstrip()}; "
             f"{'an inertia' if rule.dimension == 'inertia' else 'it'} must be symmetric. {rule.remedy}"
         )
     return (si + turned) / 2

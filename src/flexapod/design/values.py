@@ -12,6 +12,7 @@ from flexapod.design.flexible_joints import JointStiffness, Suspension
 from flexapod.design.home import home_of
 from flexapod.design.parts import Damping, LegPart, Legs, more_keys
 from flexapod.design.stiffness_laws import law_of, values_of_law
+from flexapod.errors import DesignError
 
 
 def legs_of(values: Mapping[str, Any]) -> Legs:
@@ -60,6 +61,8 @@ def values_of_legs(legs: Legs) -> dict[str, Any]:
 def suspension_of(values: Mapping[str, Any]) -> Suspension | None:
     """The suspension of a design, where it has one. Raises DesignError for one that cannot be."""
     given = [item.name for item in fields(Suspension) if f"suspension.{item.name}" in values]
+    if given == ["point"]:
+        raise DesignError("suspension.point is given without stiffness and damping. Add one of them, or leave it out.")
     return Suspension(**{name: values[f"suspension.{name}"] for name in given}) if given else None
 
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
 from flexapod import _core
 from flexapod.conventions import Array, JointModel
+from flexapod.design import layout
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.packing import PLACES
+from flexapod.design.packing import PLACES, compliance_slope
+from flexapod.design.stiffness_laws import TableLaw
 from flexapod.mechanics.inputs import as_joint, single_base, single_pose, states
 from flexapod.mechanics.modes import natural_modes
 from flexapod.pose import PoseLike
@@ -34,6 +38,9 @@ class Sensitivity(NamedTuple):
         By the masses of the parts of each leg, (6, 6).
     pose : ndarray
         By translation (m) and rotation vector (rad) of the platform, (6, 6).
+    springs : mapping of str to ndarray
+        By the numbers of the springs that the design has beside constant ones along the legs, by key of the design
+        file: springs in series, joints, stiffness law, suspension (off its diagonal by a change of both equal entries).
     """
 
     platform_mass: Array
@@ -45,6 +52,7 @@ class Sensitivity(NamedTuple):
     lower_mass: Array
     upper_mass: Array
     pose: Array
+    springs: Mapping[str, Array] = MappingProxyType({})
 
 
 def frequency_sensitivity(
@@ -102,6 +110,12 @@ def frequency_sensitivity(
     half = np.where(omega > 0, 0.5 / np.where(omega > 0, omega, 1.0), np.nan)[:, None]
     derivatives = half * by_design[0]
     by = {key: derivatives[:, place] for key, place in PLACES.items()}
+    series = hexapod.legs.series_stiffness
+    by["legs.series_stiffness"] = by["legs.series_compliance"][..., None] * compliance_slope(series)
+    springs = {key: by[key] for key in layout.springs(hexapod) if key != "suspension.damping"}
+    if isinstance(hexapod.legs.stiffness_law, TableLaw):
+        for key in ("legs.stiffness_law.lengths", "legs.stiffness_law.stiffnesses"):
+            springs[key] = springs[key][:, : len(hexapod.legs.stiffness_law.lengths)]
     return Sensitivity(
         platform_mass=by["platform.mass"],
         platform_mass_center=by["platform.mass_center"],
@@ -112,4 +126,5 @@ def frequency_sensitivity(
         lower_mass=by["legs.lower.mass"],
         upper_mass=by["legs.upper.mass"],
         pose=half * by_pose[0],
+        springs=springs,
     )

@@ -15,6 +15,19 @@ from flexapod.pose import Pose
 MOVE = 0.01  # of the distance of the farthest platform joint from the platform's reference point
 NOTHING = 5e-6  # relative changes of the index below this are left out: they would print as 0.000 %
 
+#: Springs beside constant ones along the legs, in words.
+_SPRINGS = {
+    "legs.series_stiffness": "springs in series with the legs",
+    "legs.joint_stiffness.universal": "stiffness of the base joints",
+    "legs.joint_stiffness.spherical": "stiffness of the platform joints",
+    "legs.joint_stiffness.torsion": "torsional stiffness of the joints",
+    "legs.stiffness_law.fixed": "fixed stiffness of the legs",
+    "legs.stiffness_law.axial_rigidity": "axial rigidity of the legs",
+    "legs.stiffness_law.bulk_modulus": "bulk modulus of the oil",
+    "legs.stiffness_law.stiffnesses": "stiffness of all legs at all lengths",
+    "suspension.stiffness": "stiffness of the suspension",
+}
+
 
 class Influence(NamedTuple):
     """A change of the design and what it does to the index.
@@ -38,7 +51,9 @@ def influences(hexapod: Hexapod, pose: Pose, joint: JointModel, modes: list[int]
     """
     omega = natural_modes(hexapod, pose, joint=joint).omega[modes].mean()
     d = frequency_sensitivity(hexapod, pose, joint=joint)
-    relative = Sensitivity(*(by[modes].mean(axis=0) / omega for by in d))
+    plain = {name: by[modes].mean(axis=0) / omega for name, by in d._asdict().items() if name != "springs"}
+    springs = {key: by[modes].mean(axis=0) / omega for key, by in d.springs.items()}
+    relative = Sensitivity(**plain, springs=springs)
     move = MOVE * float(np.linalg.norm(hexapod.platform_joints, axis=1).max())
     step = f"{move * 1e3:.2g} mm"
     found = [*_masses(hexapod, relative), *_stiffness(hexapod, relative)]
@@ -62,9 +77,16 @@ def _masses(hexapod: Hexapod, relative: Sensitivity) -> list[Influence]:
 
 
 def _stiffness(hexapod: Hexapod, relative: Sensitivity) -> list[Influence]:
-    each = hexapod.legs.stiffness * relative.stiffness
-    one = [Influence(f"stiffness of leg {i + 1} + 1 %", 0.01 * float(each[i]), None, "stiffness") for i in range(6)]
-    return [*one, Influence("stiffness of all legs + 1 %", 0.01 * float(each.sum()), None, "stiffness")]
+    found: dict[str, float] = {}
+    if hexapod.legs.stiffness_law is None:
+        each = hexapod.legs.stiffness * relative.stiffness
+        found = {f"stiffness of leg {i + 1}": each[i] for i in range(6)} | {"stiffness of all legs": each.sum()}
+    values = hexapod.values()
+    for key, name in _SPRINGS.items():
+        if key in relative.springs:
+            products = values[key] * relative.springs[key]
+            found[name] = np.triu(products).sum() if key == "suspension.stiffness" else products.sum()
+    return [Influence(f"{name} + 1 %", 0.01 * float(value), None, "stiffness") for name, value in found.items()]
 
 
 def _rank(one: Influence) -> tuple[float, str]:
