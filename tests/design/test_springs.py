@@ -1,10 +1,13 @@
 """Springs of a design other than constant ones along the legs: what a file says, what it is refused, where it goes."""
 
+import re
+
 import numpy as np
 import pytest
 
 import flexapod as fx
 from flexapod import _core
+from flexapod.design.design_file import template
 from flexapod.design.packing import PLACES, compliance_slope
 from flexapod.optimisation.design_map import DesignMap
 from flexapod.optimisation.ensemble import Ensemble
@@ -226,7 +229,7 @@ def test_a_law_that_is_none_is_refused(law, changes, words):
 
 def test_a_law_and_a_constant_are_not_both_given():
     text = with_law(BASE, OIL).to_toml().replace("[legs.stiffness_law]", "[legs]\nstiffness = 1\n[legs.stiffness_law]")
-    with pytest.raises(fx.DesignError, match="both say how stiff the legs are. Leave one of them out"):
+    with pytest.raises(fx.DesignError, match="both say how stiff the legs are"):
         fx.Hexapod.from_toml(text)
     law = fx.design.TableLaw([1, 2], [1e7, 2e7])
     for make, words in (
@@ -341,3 +344,32 @@ def test_slope_of_the_compliance_in_series():
 
 def test_the_core_has_room_for_the_nodes_that_a_table_may_have():
     assert PLACES["legs.stiffness_law.lengths"].size == fx.design.stiffness_laws.MOST_NODES
+
+
+def in_use(block: str, law: str) -> str:
+    """Commented lines of the template as they are without the comment sign, of one law."""
+    found, kind = [], law
+    for line in block.split("\n"):
+        bare = line.removeprefix("# ")
+        kind = bare.split('"')[1] if bare.startswith("kind = ") else law if bare.startswith("[") else kind
+        if re.match(r"[a-z0-9_A-Z]+ = |\[", bare) and kind == law:
+            found.append(bare)
+    return "\n".join(found)
+
+
+@pytest.mark.parametrize("law", ["screw", "hydraulic", "table"])
+def test_what_the_template_says_of_springs_can_be_used(law):
+    text = template("sprung")
+    first, last = text.index("stiffness_N_per_um = 20.0"), text.index("# Viscous friction")
+    legs = in_use(text[first:last], law).replace("stiffness_N_per_um = 20.0", "#", 1)
+    text = text[:first] + legs + "\n" + text[last:]
+    text = text.replace("# universal_moment", "universal_moment").replace("# spherical_moment", "spherical_moment")
+    last = text.index("# ---- Home")
+    first = text.index("# [suspension]")
+    machine = fx.Hexapod.from_toml(text[:first] + in_use(text[first:last], law) + "\n" + text[last:])
+    assert machine.legs.stiffness_law.kind.name == law
+    assert machine.legs.joint_stiffness.any
+    assert machine.legs.series_stiffness.shape == (6, 2)
+    assert machine.suspension is not None
+    assert machine.limits.spherical_moment == 2.0
+    assert machine.rest is not machine.home

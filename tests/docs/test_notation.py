@@ -51,7 +51,8 @@ def samples() -> dict[str, object]:
     """What public functions return for a small machine, and instances of public types."""
     h = fx.load("cubic-isolator").replace(
         {"limits.leg_length": [0.1, 0.2], "limits.universal_angle": 0.5, "limits.spherical_angle": 0.5,
-         "limits.leg_distance": 0.01}
+         "limits.leg_distance": 0.01, "limits.universal_moment": 1.0, "limits.spherical_moment": 1.0,
+         "legs.series_stiffness": [1e6, 2e6], "legs.joint_stiffness.universal": 0.1, "suspension.stiffness": [1e2] * 6}
     )  # fmt: skip
     home, law = fx.home_pose(h), fx.control.VelocityFeedback(100.0)
     two = fx.Pose(np.tile(home.position, (2, 1)))
@@ -71,7 +72,8 @@ def samples() -> dict[str, object]:
         "closed_loop": fx.control.closed_loop(h, home, law, nearness=0.0),
         "sampling_time": fx.control.sampling_time(h, home),
     }
-    instances = (h, h.legs, h.legs.damping, h.legs.lower, h.limits, two, fx.Motion(two), tangent.modes())
+    parts = (h.legs.damping, h.legs.lower, h.legs.joint_stiffness, h.suspension)
+    instances = (h, h.legs, *parts, h.limits, two, fx.Motion(two), tangent.modes())
     return {f"{name}()": value for name, value in returned.items()} | {
         type(value).__name__: value for value in (*instances, tangent.state_space())
     }

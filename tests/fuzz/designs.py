@@ -22,6 +22,13 @@ NUMBER = re.compile(rb"[-+]?\d[\d_.eE+-]*")
 VALUES = [b"0", b"-1", b"1", b"-0.0", b"nan", b"inf", b"-inf", b"1e308", b"-1e308", b"1e101", b"1e99", b"1e-320"]
 VALUES += [b"9" * 400, b"0x" + b"f" * 40, b"true", b'"text"', b'""', b"[]", b"[[]]", b"[1, [2]]", b"{}", b"{a = 1}"]
 VALUES += [b"1979-05-27", b"07:32:00", b"[0, 0, 0]", b"[1, 2, 3, 4, 5, 6]", b'"\\u0000\\U0001F916"', b"'''a\nb'''"]
+SPRINGS = (
+    "stiffness = 2e7\nseries_stiffness = [94e6, 94e6]\nloss_factor = 0.02\n"
+    "joint_stiffness = {universal = [15.0, 20.0], spherical = 15.0, torsion = 10.0}\n"
+    "joint_rest = {position = [0.0, 0.0, 0.5]}",
+    'stiffness_law = {kind = "table", lengths = [0.4, 0.6, 0.8], stiffnesses = [3e7, 2e7, 1e7]}',
+    'stiffness_law = {kind = "screw", fixed = 8e7, axial_rigidity = 4e7, zero_length = 0.4}',
+)
 SCRATCH = Path("scratch.toml")
 
 
@@ -87,7 +94,10 @@ def main() -> None:
     Path(corpus).mkdir(parents=True, exist_ok=True)
     for name in hexapod.packaged_designs():
         (Path(corpus) / name).write_bytes(design_file.find(name).read_bytes())
-    (Path(corpus) / "template").write_text(hexapod.template("fuzz"), encoding="utf-8")
+    template = hexapod.template("fuzz")
+    (Path(corpus) / "template").write_text(template, encoding="utf-8")
+    for number, springs in enumerate(SPRINGS):
+        (Path(corpus) / f"springs{number}").write_text(template.replace("stiffness_N_per_um = 20.0", springs, 1))
     words = [*KEYS, *(f"[{table}]".encode() for table in sorted(schema.TABLES)), *VALUES[:12]]
     dictionary = Path("keys.dict")
     dictionary.write_text("".join(f'"{word.decode()}"\n' for word in words))

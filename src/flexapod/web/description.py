@@ -20,18 +20,19 @@ from flexapod.web.parameters import main_parameters
 def fields() -> list[Field]:
     """Every key of a design file that holds numbers, with its meaning, unit and shapes, for the form.
 
-    Those of springs other than constant ones along the legs are changed in the file.
+    Short forms, stiffness laws, springs in series and a suspension are changed in the file.
     """
     shorthand = re.compile(
-        r"\.(circle|rod)\.|^cubic\.|^suspension\.|^legs\.(series_|loss_|joint_|stiffness_law)|_moment$"
+        r"\.(circle|rod)\.|^cubic\.|^suspension\.|^legs\.(series_stiffness|joint_rest|stiffness_law)"
     )
+    optional = ("limits.", "home.", "legs.loss_factor", "legs.joint_stiffness.")
     return [
         {
             "key": _field_key(key),
             "meaning": rule.meaning,
             "unit": "°" if rule.dimension == "angle" else printed(si_unit(rule.dimension)),
             "shapes": [list(shape) for shape in rule.shapes],
-            "optional": key.startswith(("limits.", "home.")),
+            "optional": key.startswith(optional),
         }
         for key, rule in KEYS.items()
         if not shorthand.search(key)

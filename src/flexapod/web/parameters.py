@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import DesignError
 from flexapod.web.answers import Parameter
@@ -36,7 +38,10 @@ _SLIDERS = (
 
 
 def main_parameters(hexapod: Hexapod, original: Hexapod) -> list[Parameter]:
-    """The main parameters of a hexapod beside those of the design without changes."""
+    """The main parameters of a hexapod beside those of the design without changes.
+
+    The stiffness of legs with a stiffness law is none: it is another at each length.
+    """
     size = mean_radius(original.base_joints)
     return [
         {
@@ -49,6 +54,7 @@ def main_parameters(hexapod: Hexapod, original: Hexapod) -> list[Parameter]:
             "size": size,
         }
         for slider in _SLIDERS
+        if np.isfinite([slider.read(original), slider.read(hexapod)]).all()
     ]
 
 
