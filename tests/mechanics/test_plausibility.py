@@ -47,6 +47,14 @@ def test_packaged_designs_are_plausible(name):
         ({"platform.circle.radius_mm": 0.3}, "size", "the platform's 0.0003 m"),
         ({"home.position": [0, 0, 500]}, "size", "in mm it is home.position_mm"),
         ({"legs.stiffness": 20}, "soft_legs", "legs.stiffness_N_per_um"),
+        ({"legs.series_stiffness": [94, 94]}, "series_stiffness", "leaves 2.35e-06 of the 2e+07 N/m of leg 1"),
+        ({"legs.joint_stiffness.universal": [0, 15e6]}, "joint_stiffness", "universal_N_mm_per_rad"),
+        ({"legs.joint_stiffness.spherical": 15e6}, "joint_stiffness", "times the leg's axial stiffness of 2e+07 N/m"),
+        ({"legs.joint_stiffness.spherical_N_mm_per_rad": 0.015}, "joint_stiffness", "which is nothing"),
+        ({"limits.universal_moment": 1}, "idle_limit", "Give legs.joint_stiffness.universal, or leave it out"),
+        ({"suspension.stiffness": [1, 1, 1, 100, 100, 100]}, "suspension", "springs 10 m from their centre"),
+        ({"legs.loss_factor": 2}, "loss_factor", "2 % is 0.02"),
+        ({"legs.joint_stiffness.loss_factor": 1.5}, "loss_factor", "legs.joint_stiffness.loss_factor is 1.5"),
     ],
 )
 def test_what_is_hardly_meant_is_told_with_its_number(changes, code, words):
@@ -68,6 +76,10 @@ def test_what_is_hardly_meant_is_told_with_its_number(changes, code, words):
         {"gravity": [0, 0, 9.81], "home.position": [0, 0, -0.5]},  # z points downwards, and the machine stands
         {"home.position": [0, 0, -0.5]},  # it hangs, with z upwards
         {"legs.lower": None, "legs.upper": None},
+        {"legs.joint_stiffness": {"universal": 5, "spherical": 4.83, "torsion": 260}, "limits.universal_moment": 1},
+        {"legs.stiffness_N_per_um": 0.01, "legs.joint_stiffness": {"universal": 33, "spherical": 33, "torsion": 236}},
+        {"legs.series_stiffness_N_per_um": [94, 12.7], "legs.loss_factor": 0.05},
+        {"suspension.stiffness": [2e4, 2e4, 5e4, 100, 100, 200]},
     ],
 )
 def test_what_people_build_is_not_doubted(changes):

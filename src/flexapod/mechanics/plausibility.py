@@ -27,6 +27,10 @@ SAG = 0.25  # of a leg's length: by so much no leg is compressed at rest
 TOUCH = 0.01  # of a leg's length: legs are thicker
 SINGULAR_EVERYWHERE = 1e6  # condition number without units that no pose betters: joints typed with six digits
 POSES = 64  # tried for that
+STIFF_ACROSS = 1.0  # times the axial stiffness: joints that bend so little make a leg stiffer across than along it
+FREE = 1e-9  # of the axial stiffness: joints that hold so little turn freely
+SHARE_LEFT = 0.02  # of a leg's own stiffness: springs in series that leave less are the machine's stiffness
+LOSSES = 0.5  # a loss factor above is rubber's
 
 
 class Caution(NamedTuple):
@@ -44,7 +48,7 @@ def mean_radius(joints: Array) -> float:
 
 def implausible(hexapod: Hexapod) -> list[Caution]:
     """Numbers of a design that are hardly meant, whatever the pose."""
-    return [*_sizes(hexapod), *_bodies(hexapod), *_gravity(hexapod)]
+    return [*_sizes(hexapod), *_bodies(hexapod), *_gravity(hexapod), *_springs(hexapod)]
 
 
 def _sizes(hexapod: Hexapod) -> list[Caution]:
@@ -135,6 +139,84 @@ def _gravity(hexapod: Hexapod) -> list[Caution]:
         )
         return [Caution("gravity", text, {"gravity": size})]
     return []
+
+
+def _springs(hexapod: Hexapod) -> list[Caution]:
+    """Springs in series, in joints and of a suspension that fit neither the legs nor the machine's size, and losses."""
+    return [*_series(hexapod), *_joint_springs(hexapod), *_suspension(hexapod), *_losses(hexapod)]
+
+
+def _series(hexapod: Hexapod) -> list[Caution]:
+    left = 1.0 / (1.0 + hexapod.legs.stiffness * hexapod.legs.series_compliance)  # NaN where a law says the stiffness
+    worst = int(np.argmin(left))
+    if not left[worst] < SHARE_LEFT:
+        return []
+    text = (
+        f"legs.series_stiffness leaves {left[worst]:.3g} of the {hexapod.legs.stiffness[worst]:.4g} N/m of leg "
+        f"{worst + 1}. In N/um it is legs.series_stiffness_N_per_um; what legs.stiffness holds already is left out."
+    )
+    return [Caution("series_stiffness", text, {"leg": worst + 1, "share": float(left[worst])})]
+
+
+def _joint_springs(hexapod: Hexapod) -> list[Caution]:
+    """Joints that make a leg stiffer across than along it, that hold nothing, or whose moment is limited to no end."""
+    joints, found = hexapod.legs.joint_stiffness, []
+    leg = _leg_length(hexapod)
+    along = hexapod.legs.stiffness / (1.0 + hexapod.legs.stiffness * hexapod.legs.series_compliance)
+    for name, each in (("universal", joints.universal.max(axis=1)), ("spherical", joints.spherical)):
+        key = f"legs.joint_stiffness.{name}"
+        if leg and each.any():
+            share = each / leg**2 / along
+            worst = int(np.argmax(share))
+            if share[worst] > STIFF_ACROSS:
+                text = (
+                    f"{key} is {each[worst]:.4g} N m/rad: at the end of a leg of {leg:.3g} m it is {share[worst]:.3g} "
+                    f"times the leg's axial stiffness of {along[worst]:.4g} N/m. In N mm/rad it is {key}_N_mm_per_rad."
+                )
+                found.append(Caution("joint_stiffness", text, {"stiffness": float(each[worst]), "share": share[worst]}))
+            elif share[worst] < FREE:
+                text = (
+                    f"{key} is {each[worst]:.4g} N m/rad: at the end of a leg of {leg:.3g} m it is {share[worst]:.3g} "
+                    "times the leg's axial stiffness, which is nothing. Check its unit, or leave it out."
+                )
+                found.append(Caution("joint_stiffness", text, {"stiffness": float(each[worst]), "share": share[worst]}))
+        if getattr(hexapod.limits, f"{name}_moment") is not None and not each.any():
+            text = f"limits.{name}_moment limits the moment of a joint without stiffness. Give {key}, or leave it out."
+            found.append(Caution("idle_limit", text))
+    return found
+
+
+def _suspension(hexapod: Hexapod) -> list[Caution]:
+    """A suspension that turns about a point far outside the machine: numbers in other units than SI."""
+    if hexapod.suspension is None:
+        return []
+    linear, angular = np.diag(hexapod.suspension.stiffness).reshape(2, 3).max(axis=1)
+    size = max(mean_radius(hexapod.base_joints), mean_radius(hexapod.platform_joints), _leg_length(hexapod) or 0.0)
+    radius = float(np.sqrt(angular / linear)) if linear > 0 else 0.0
+    if radius < FAR * size:
+        return []
+    text = (
+        f"suspension.stiffness is {linear:.4g} N/m and {angular:.4g} N m/rad: springs {radius:.3g} m from their "
+        f"centre, {radius / size:.3g} times the machine's size of {size:.3g} m. Rows and columns are in SI units, "
+        "translations first."
+    )
+    return [Caution("suspension", text, {"radius": radius, "size": size})]
+
+
+def _losses(hexapod: Hexapod) -> list[Caution]:
+    given = {
+        "legs.loss_factor": hexapod.legs.loss_factor,
+        "legs.joint_stiffness.loss_factor": hexapod.legs.joint_stiffness.loss_factor,
+    }
+    return [
+        Caution(
+            "loss_factor",
+            f"{key} is {factor.max():.4g}; metal structures have 0.001 to 0.05, rubber up to 1. 2 % is 0.02.",
+            {"loss_factor": float(factor.max())},
+        )
+        for key, factor in given.items()
+        if factor.max() > LOSSES
+    ]
 
 
 def legs_that_cross(hexapod: Hexapod, pose: Pose) -> list[Caution]:
