@@ -71,6 +71,7 @@ def test_every_dimension_has_its_article(dimension):
         "damping": "legs.damping.prismatic",
         "angular damping": "legs.damping.universal",
         "angular stiffness": "legs.joint_stiffness.torsion",
+        "bending stiffness": "legs.lower.rod.bending_stiffness",
         "force": "legs.stiffness_law.axial_rigidity",
         "moment": "limits.universal_moment",
         "pressure": "legs.stiffness_law.bulk_modulus",

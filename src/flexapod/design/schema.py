@@ -93,6 +93,14 @@ def _part(joint: str) -> dict[str, Key]:
             open_=True,
         ),
         "rod.radius": Key("radius of the rod", "length", _LEGS, "Leave it out for a thin rod.", least=0.0),
+        "rod.bending_stiffness": Key(
+            "Young's modulus times second moment of area, for the frequency at which the leg bends",
+            "bending stiffness",
+            _LEGS,
+            "In N m2; a tube of radii R and r has pi E (R^4 - r^4) / 4.",
+            least=0.0,
+            open_=True,
+        ),
     }
 
 

@@ -63,6 +63,7 @@ UNITS: dict[str, dict[str, tuple[float, float]]] = {
         "lbf_ft_per_rad": (_LBF * 3048, 1e17),
         "lbf_in_per_deg": (_LBF * 127 * 180, 5e16 * math.pi),
     },
+    "bending stiffness": {"N_m2": (1, 1), "N_mm2": (1, 1e6), "kN_m2": (1e3, 1), "lbf_in2": (_LBF * 254**2, 1e21)},
     "force": {"N": (1, 1), "mN": (1, 1e3), "kN": (1e3, 1), "MN": (1e6, 1), "lbf": (_LBF, 1e13)},
     "moment": {
         "N_m": (1, 1),

@@ -21,6 +21,8 @@ from .kinematics import force_transformation as force_transformation
 from .kinematics import home_pose as home_pose
 from .kinematics import inverse_kinematics as inverse_kinematics
 from .kinematics import leg_rates as leg_rates
+from .leg_bending import LegBending as LegBending
+from .leg_bending import leg_bending as leg_bending
 from .linearisation import DampedModes as DampedModes
 from .linearisation import Linearisation as Linearisation
 from .linearisation import linearise as linearise

@@ -14,6 +14,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import states
 from flexapod.mechanics.joint_limits import check_limits
 from flexapod.mechanics.kinematics import condition_number
+from flexapod.mechanics.leg_bending import bending_caution, leg_bending
 from flexapod.mechanics.linearisation import DampedModes, Linearisation
 from flexapod.mechanics.mode_pairs import ModePairs
 from flexapod.mechanics.mode_shapes import ModeDescription, twist_of_center
@@ -121,6 +122,7 @@ def pose_cautions(
         *implausible(hexapod),
         *(Caution("design", text) for text in hexapod.warnings),
         *([] if tangent is None else _preload(omega, tangent)),
+        *bending_caution(leg_bending(hexapod, pose), float(omega[-1])),
         *repeats(omega),
     ]
 

@@ -14,6 +14,7 @@ from flexapod.mechanics.cautions import Caution, Tangent, platform_radius
 from flexapod.mechanics.inputs import as_hexapod, single_pose
 from flexapod.mechanics.joint_limits import JointAngles, joint_angles, leg_distance
 from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
+from flexapod.mechanics.leg_bending import LegBending, leg_bending
 from flexapod.mechanics.linearisation import DampedModes
 from flexapod.mechanics.mode_shapes import EnergyShares, ModeDescription, energy_shares
 from flexapod.mechanics.modes import advised_sampling_time, mode_clusters
@@ -48,6 +49,7 @@ class Findings:
     leg_distance: float
     rest: Equilibrium | None
     tangent: Tangent | None
+    bending: LegBending
     clusters: list[list[int]]
     influences: list[Influence] | None
     cautions: list[Caution]
@@ -92,6 +94,7 @@ class Findings:
             "descriptions": [mode.text for mode in self.descriptions],
             "strain_energy_share_legs_modes": self.shares.strain,
             "kinetic_energy_share_platform_legs_modes": self.shares.kinetic,
+            "leg_bending_rad_s": self.bending.omega,
             "condition_number": self.conditioning.metres,
             "condition_number_scaled": self.conditioning.scaled,
             "characteristic_length_m": self.conditioning.length,
@@ -187,6 +190,7 @@ def gather(
         leg_distance=float(leg_distance(hexapod, pose)),
         rest=None if state.linear is None else state.linear.rest,
         tangent=state.tangent,
+        bending=leg_bending(hexapod, pose),
         clusters=clusters,
         influences=None if state.singular else influences(hexapod, pose, joint, clusters[0]),
         cautions=state.cautions,

@@ -149,6 +149,8 @@ def _frequencies(f: Findings) -> Section:
     if tangent is None:
         note = "Eq. 5, undamped, without weight or preload. The exact tangent needs a static equilibrium; here is none."
 
+    note = f"{note} {_bending(f)}"
+
     def draw() -> Figure:
         figure = Figure(figsize=(7, 2.7))
         labels = [description.dominant for description in f.descriptions]
@@ -158,6 +160,18 @@ def _frequencies(f: Findings) -> Section:
 
     drawing = Drawing("frequencies", "Natural frequencies", draw, wide=True)
     return Section("Natural frequencies", [drawing, Table(columns, note), *_alone(f)])
+
+
+def _bending(f: Findings) -> str:
+    """What the frequencies leave out: legs that bend, with the number beside which they stand."""
+    lowest, unknown = f.bending.lowest, f.bending.unknown
+    if np.isnan(lowest):
+        return f"Legs are taken not to bend; at which frequency they do is not known: {unknown}."
+    more = f" (of all legs it is not known: {unknown})" if unknown else ""
+    return (
+        f"Legs are taken not to bend: by itself the first does at {shown(lowest, 5)} rad/s{more}; mode 6 is at "
+        f"{shown(f.omega[-1], 5)} rad/s."
+    )
 
 
 def _beside(tangent: Tangent, mode: int) -> float | str:
