@@ -46,6 +46,12 @@ def workspace() -> None:
     sweep.save(sweep.index_map(fx.sweep(machine, grid)), HERE / "map.png")
 
 
+def envelope() -> None:
+    """docs/envelope.md: a motion base along two axes at once."""
+    machine = fx.load("motion-base")
+    save(plots.envelope.pairs(fx.envelope(machine), machine.name), "envelope.png")
+
+
 def simulation() -> None:
     """docs/simulation.md: the positioner after a shock of its base."""
     machine = fx.load("precision-positioner")
@@ -94,5 +100,5 @@ def optimal_design() -> None:
 
 
 if __name__ == "__main__":
-    for draw in (modes, workspace, simulation, vibration, robustness, optimal_design):
+    for draw in (modes, workspace, envelope, simulation, vibration, robustness, optimal_design):
         draw()

@@ -42,6 +42,7 @@ from .mechanics.kinematics import home_pose as home_pose
 from .mechanics.kinematics import inverse_kinematics as inverse_kinematics
 from .mechanics.kinematics import leg_rates as leg_rates
 from .mechanics.linearisation import linearise as linearise
+from .mechanics.load_cases import load_cases as load_cases
 from .mechanics.mode_shapes import describe_modes as describe_modes
 from .mechanics.modes import natural_modes as natural_modes
 from .mechanics.modes import stability_index as stability_index
@@ -70,6 +71,7 @@ from .vibration.random_vibration import random_response as random_response
 from .vibration.stepped import stepped_sine as stepped_sine
 from .workspace.box import Box as Box
 from .workspace.box import Workspace as Workspace
+from .workspace.envelope import envelope as envelope
 from .workspace.sampling import pose_grid as pose_grid
 from .workspace.sampling import random_poses as random_poses
 from .workspace.store.store import open_sweep as open_sweep

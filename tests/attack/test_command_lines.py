@@ -26,6 +26,7 @@ RIGHT = {
     "check": ["cubic-isolator"],
     "control": ["cubic-isolator", "velocity", "--gain", "10"],
     "designs": [],
+    "envelope": ["cubic-isolator"],
     "export": ["cubic-isolator", "--to", "mjcf", "--out", "m.xml"],
     "kinematics": ["cubic-isolator", "lengths.csv"],
     "modes": ["cubic-isolator"],

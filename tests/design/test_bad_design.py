@@ -69,7 +69,7 @@ BAD = {
     "unknown key": (
         "[limits]",
         "[limits]\nwobble = 3",
-        ["limits.wobble", "Keys of [limits]: leg_distance, leg_length"],
+        ["limits.wobble", "Keys of [limits]: leg_acceleration, leg_compression, leg_distance, leg_length"],
     ),
     "rod and plain keys": (
         "[limits]\nleg_length = [0.4, 0.8]",

@@ -11,6 +11,7 @@ PLANNED = ["--from", "0", "0", "0.89", "0", "0", "0", "--to", "0", "0", "0.9", "
 WRITERS = {
     "animate": ["animate", "cubic-isolator", "--out", "mode.gif"],
     "control": ["control", "cubic-isolator", "velocity", "--gain", "10", "--out", "here"],
+    "envelope": ["envelope", "cubic-isolator", "--out", "here"],
     "export mjcf": ["export", "cubic-isolator", "--to", "mjcf", "--out", "m.xml"],
     "export urdf": ["export", "cubic-isolator", "--to", "urdf", "--nearest-physical", "--out", "m.urdf"],
     "export sdf": ["export", "cubic-isolator", "--to", "sdf", "--nearest-physical", "--out", "m.sdf"],

@@ -28,6 +28,8 @@ def flat(result) -> list[np.ndarray]:
         return [result.position, result.matrix]
     if isinstance(result, tuple | list):
         return [number for item in result for number in flat(item)]
+    if hasattr(result, "data_vars"):
+        return [variable.values for variable in result.data_vars.values()]
     if hasattr(result, "__dataclass_fields__"):
         return flat([getattr(result, name) for name in result.__dataclass_fields__])
     return [np.asarray(result)]

@@ -121,6 +121,9 @@ PROVOKED = {
     ("controlled_transmissibility", "ArgumentError"): lambda: fx.control.controlled_transmissibility(
         MACHINE, HOME, controller=TOO_MUCH, omega=[-1.0]
     ),
+    ("envelope", "ArgumentError"): lambda: fx.envelope(MACHINE, directions=5),
+    ("envelope", "PoseError"): lambda: fx.envelope(MACHINE, BATCH),
+    ("envelope", "DesignError"): lambda: fx.envelope("precision-positioner"),
     ("flat_spectrum", "ArgumentError"): lambda: fx.excitation.flat_spectrum(-1.0, 1.0, 2.0),
     ("forward_kinematics", "KinematicsError"): lambda: fx.forward_kinematics(MACHINE, LEGS * [10, 1, 1, 1, 1, 1]),
     ("condition_number", "ArgumentError"): lambda: fx.condition_number(MACHINE, HOME, characteristic_length=0.0),
@@ -142,6 +145,10 @@ PROVOKED = {
     ("half_sine_shock", "ArgumentError"): lambda: fx.half_sine_shock("z", np.nan, 1.0),
     ("harmonic", "ArgumentError"): lambda: fx.harmonic("z", 1.0, -1.0),
     ("load", "DesignError"): lambda: fx.load("no-such-machine"),
+    ("gravity_at", "ArgumentError"): lambda: fx.mechanics.gravity_at(1.0, magnitude=-1.0),
+    ("load_cases", "ArgumentError"): lambda: fx.load_cases(MACHINE, reference=1),
+    ("load_cases", "DesignError"): lambda: fx.load_cases("precision-positioner"),
+    ("load_cases", "PoseError"): lambda: fx.load_cases(MACHINE.replace({"home": None})),
     ("low_discrepancy", "ArgumentError"): lambda: fx.workspace.low_discrepancy(BOX, 2**40),
     ("lqg", "ArgumentError"): lambda: fx.control.lqg(MACHINE, HOME, measure="jerk"),
     ("lqg", "UnstableError"): lambda: fx.control.lqg(MACHINE, HOME, stroke=1e-300, effort=1e-300),

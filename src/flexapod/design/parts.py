@@ -22,6 +22,8 @@ from flexapod.design.value_checks import check_value
 from flexapod.errors import DesignError, shown, told_apart
 
 MOST_IN_SERIES = 5  #: springs with one leg
+#: Fields of `Limits` that a load or a motion can exceed, and no pose alone.
+_OF_A_LOAD = ("leg_compression", "leg_tension", "leg_rate", "leg_acceleration", "leg_power")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -281,6 +283,12 @@ class Limits(Value):
         Least distance between two leg axes, m.
     universal_moment, spherical_moment : float, optional
         Largest bending moment that the stiffness of a base joint and of a platform joint may make, N m.
+    leg_compression, leg_tension : float, optional
+        Greatest force with which a leg pushes base and platform apart, and with which it pulls them together, N.
+    leg_rate, leg_acceleration : float, optional
+        Greatest speed (m/s) and acceleration (m/s2) of a leg's extension.
+    leg_power : float, optional
+        Greatest mechanical power of a leg's actuator, force times rate, W, whether it drives or brakes.
 
     Raises
     ------
@@ -289,7 +297,9 @@ class Limits(Value):
 
     Notes
     -----
-    The paper's machines have no limits. `flexapod.check_limits` says whether a pose keeps them.
+    The paper's machines have no limits. `flexapod.check_limits` says whether a pose keeps those of lengths, angles and
+    distances. Those of forces, speeds and power are of a load or a motion: `flexapod.envelope`,
+    `flexapod.load_cases` and `flexapod.paths.path_loads` say whether they are kept.
 
     Examples
     --------
@@ -303,6 +313,11 @@ class Limits(Value):
     leg_distance: float | None = None
     universal_moment: float | None = field(default=None, metadata=ADDED)
     spherical_moment: float | None = field(default=None, metadata=ADDED)
+    leg_compression: float | None = field(default=None, metadata=ADDED)
+    leg_tension: float | None = field(default=None, metadata=ADDED)
+    leg_rate: float | None = field(default=None, metadata=ADDED)
+    leg_acceleration: float | None = field(default=None, metadata=ADDED)
+    leg_power: float | None = field(default=None, metadata=ADDED)
 
     def __post_init__(self) -> None:
         if self.leg_length is not None:
@@ -324,5 +339,10 @@ class Limits(Value):
 
     @property
     def given(self) -> bool:
-        """Whether anything is limited."""
-        return any(getattr(self, item.name) is not None for item in fields(self))
+        """Whether poses are limited: lengths, angles or distances of the legs."""
+        return any(getattr(self, item.name) is not None for item in fields(self) if item.name not in _OF_A_LOAD)
+
+    @property
+    def of_loads_given(self) -> bool:
+        """Whether loads or motions are limited: forces, speeds, accelerations or power of the legs."""
+        return any(getattr(self, name) is not None for name in _OF_A_LOAD)

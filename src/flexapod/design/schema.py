@@ -310,6 +310,26 @@ KEYS: dict[str, Key] = {
         least=0.0,
         open_=True,
     ),
+    "limits.leg_compression": Key(
+        "greatest force with which a leg pushes", "force", _ONE, "Leave it out for no limit.", least=0.0
+    ),
+    "limits.leg_tension": Key(
+        "greatest force with which a leg pulls", "force", _ONE, "Leave it out for no limit.", least=0.0
+    ),
+    "limits.leg_rate": Key(
+        "greatest speed of a leg's extension", "velocity", _ONE, "Give a speed > 0.", least=0.0, open_=True
+    ),
+    "limits.leg_acceleration": Key(
+        "greatest acceleration of a leg's extension",
+        "acceleration",
+        _ONE,
+        "Give an acceleration > 0.",
+        least=0.0,
+        open_=True,
+    ),
+    "limits.leg_power": Key(
+        "greatest mechanical power of a leg's actuator", "power", _ONE, "Give a power > 0.", least=0.0, open_=True
+    ),
     "suspension.stiffness": _suspension("stiffness"),
     "suspension.damping": _suspension("damping"),
     "suspension.point": Key("point that the suspension acts at, platform frame", "length", _VECTOR),

@@ -89,6 +89,14 @@ UNITS: dict[str, dict[str, tuple[float, float]]] = {
         "g": (980665, 1e5),
     },
     "angle": {"rad": (1, 1), "mrad": (1, 1e3), "deg": (math.pi, 180)},
+    "velocity": {
+        "m_per_s": (1, 1),
+        "mm_per_s": (1, 1e3),
+        "um_per_s": (1, 1e6),
+        "in_per_s": (254, 1e4),
+        "ft_per_s": (3048, 1e4),
+    },
+    "power": {"W": (1, 1), "mW": (1, 1e3), "kW": (1e3, 1)},
 }
 
 _LENGTHS = {**UNITS["length"], "nm": (1, 1e9)}

@@ -26,6 +26,8 @@ from .leg_bending import leg_bending as leg_bending
 from .linearisation import DampedModes as DampedModes
 from .linearisation import Linearisation as Linearisation
 from .linearisation import linearise as linearise
+from .load_cases import gravity_at as gravity_at
+from .load_cases import load_cases as load_cases
 from .mode_pairs import ModePairs as ModePairs
 from .mode_pairs import pair_modes as pair_modes
 from .mode_shapes import EnergyShares as EnergyShares

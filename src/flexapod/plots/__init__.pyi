@@ -1,9 +1,11 @@
 from . import animation as animation
 from . import control as control
+from . import envelope as envelope
 from . import optimisation as optimisation
 from . import path as path
 from . import response as response
 from . import simulation as simulation
+from . import statics as statics
 from . import style as style
 from . import sweep as sweep
 from .animation import animate_mode as animate_mode

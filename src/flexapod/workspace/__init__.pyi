@@ -1,5 +1,10 @@
 from .box import Box as Box
 from .box import Workspace as Workspace
+from .envelope import AxisTravel as AxisTravel
+from .envelope import BoxTravel as BoxTravel
+from .envelope import Envelope as Envelope
+from .envelope import PairTravel as PairTravel
+from .envelope import envelope as envelope
 from .pose_sets import PoseSet as PoseSet
 from .sampling import low_discrepancy as low_discrepancy
 from .sampling import pose_grid as pose_grid

@@ -1,0 +1,60 @@
+"""The figure of an envelope: how far the machine moves along two axes at once."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+
+from flexapod.conventions import TRANSLATIONS
+from flexapod.plots.style import BLUE, FAINT, INK, ORANGE, dress, entitle, new_figure
+from flexapod.workspace.envelope import AxisTravel, Envelope, PairTravel
+
+
+def pairs(found: Envelope, name: str = "") -> Figure:
+    """Draw the boundary of every two axes, and the part of their travels that may be combined in any way.
+
+    Parameters
+    ----------
+    found : Envelope
+        The result of `envelope`.
+    name : str, optional
+        What the machine is called, for the title.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Examples
+    --------
+    >>> fx.plots.envelope.pairs(fx.envelope(fx.load("motion-base"), directions=12)).savefig("pairs.png")
+    """
+    figure = new_figure(13.0, 8.2)
+    axes = {axis.axis: axis for axis in found.axes}
+    for ax, pair in zip(figure.subplots(3, 5).ravel(), found.pairs, strict=True):
+        _pair(ax, pair, axes[pair.axes[0]], axes[pair.axes[1]])
+    rectangle = "orange: the part of both travels that may be combined in any way"
+    entitle(figure, f"{name + ': ' if name else ''}motions along two axes from home; {rectangle}")
+    return figure
+
+
+def _pair(ax: Axes, pair: PairTravel, first: AxisTravel, second: AxisTravel) -> None:
+    scale = np.array([_shown(name)[0] for name in pair.axes])
+    x, y = (np.concatenate([pair.boundary, pair.boundary[:1]]) * scale).T
+    ax.fill(x, y, color=BLUE, alpha=0.15, lw=0)
+    ax.plot(x, y, color=BLUE, lw=1.2)
+    low = pair.share * scale * [first.least, second.least]
+    width, height = pair.share * scale * [first.most, second.most] - low
+    ax.add_patch(Rectangle((low[0], low[1]), width, height, fill=False, color=ORANGE, lw=1.2))
+    ax.plot(0, 0, "+", color=INK, ms=6)
+    ax.axhline(0, color=FAINT, lw=0.4, zorder=0)
+    ax.axvline(0, color=FAINT, lw=0.4, zorder=0)
+    ax.set(xlabel=f"{pair.axes[0]}, {_shown(pair.axes[0])[1]}", ylabel=f"{pair.axes[1]}, {_shown(pair.axes[1])[1]}")
+    dress(ax)
+
+
+def _shown(axis: str) -> tuple[float, str]:
+    """The factor and the unit of an axis as specifications give it: mm or degrees."""
+    return (1e3, "mm") if axis in TRANSLATIONS else (float(np.degrees(1.0)), "deg")

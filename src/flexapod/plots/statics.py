@@ -1,0 +1,59 @@
+"""Figures of load cases: leg forces and deflections over elevation, or case by case."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter, MaxNLocator
+
+from flexapod.conventions import Array
+from flexapod.plots.path import STYLES
+from flexapod.plots.style import FAINT, LEGEND, OUTSIDE, SIX, TRIAD, dress, entitle, new_figure
+
+
+def load_cases(found: xr.Dataset, elevation: Array | None = None) -> Figure:
+    """Draw leg forces, and the deflection and the rotation of the point, over elevation or over the cases.
+
+    Parameters
+    ----------
+    found : xarray.Dataset
+        The result of `load_cases`.
+    elevation : ndarray, optional
+        The elevation of each case, rad, (n,).
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        The figure.
+
+    Examples
+    --------
+    >>> elevation = np.radians([90, 60, 30])
+    >>> cases = fx.load_cases(fx.load("motion-base"), gravity=fx.mechanics.gravity_at(elevation), reference=0)
+    >>> fx.plots.statics.load_cases(cases, elevation).savefig("elevation.png")
+    """
+    figure = new_figure(12.0, 4.6)
+    forces, moved, turned = figure.subplots(1, 3)
+    over = found.case.values + 1 if elevation is None else np.degrees(elevation)
+    marks = {"marker": "o", "ms": 4, "lw": 0} if elevation is None else {"lw": 1.4}
+    for i in range(6):
+        forces.plot(over, found.leg_force.values[:, i], color=SIX[i], ls=STYLES[i], label=f"leg {i + 1}", **marks)  # type: ignore[arg-type]
+    for k, (axis, color) in enumerate(TRIAD):
+        moved.plot(over, found.deflection.values[:, k], color=color, label=axis, **marks)  # type: ignore[arg-type]
+        turned.plot(over, found.rotation.values[:, k], color=color, label=f"about {axis}", **marks)  # type: ignore[arg-type]
+    forces.axhline(0, color=FAINT, lw=0.8)
+    forces.set(ylabel="leg force, N (positive: compression)")
+    moved.set(ylabel="deflection, m")
+    turned.set(ylabel="rotation, rad")
+    for ax in (forces, moved, turned):
+        ax.set_xlabel("case" if elevation is None else "elevation, deg")
+        ax.yaxis.set_major_formatter(EngFormatter())
+        if elevation is None:
+            ax.xaxis.set_major_locator(MaxNLocator(integer=True))
+        dress(ax)
+    moved.legend(**LEGEND)
+    turned.legend(**LEGEND)
+    figure.legend(*forces.get_legend_handles_labels(), ncols=6, **OUTSIDE)
+    entitle(figure, f"{found.attrs['design']}: load cases at rest")
+    return figure
