@@ -77,6 +77,17 @@ class SweepQuantity(Flag):
     within_limits = 256
     omega_1_gradient = 512
 
+class CertificateKind(Enum):
+    index = 0
+    regular = 1
+    condition = 2
+    limits = 3
+
+class CertificateStatus(Enum):
+    proved = 0
+    refuted = 1
+    undecided = 2
+
 class SweepStatus(Enum):
     ok = 0
     singular = 1
@@ -290,6 +301,86 @@ SWEEP_ARRAYS: dict[str, SweepQuantity]  # array -> what to ask for
 def sweep(
     design: _A, joint: Joint, poses: _A, quantities: SweepQuantity, limits: SweepLimits, threads: int, /
 ) -> dict[str, NDArray[Any]]: ...
+
+class CertificateOptions:
+    """How a certificate is looked for; without arguments: the level itself, without limits, on one thread.
+
+    `gap` > 0: the level is a value that some pose has, and what is proved lies that share from the worst that is seen.
+    `limits`: boxes that break one are left out. `cut`: where boxes are cut, 0.3 to 0.7 of the side.
+    """
+
+    @overload
+    def __init__(self, /) -> None: ...
+    @overload
+    def __init__(
+        self,
+        *,
+        gap: float,
+        limits: SweepLimits | None,
+        seconds: float,
+        max_boxes: float,
+        threads: int,
+        cut: float,
+    ) -> None: ...
+    gap: float
+    limits: SweepLimits | None
+    seconds: float
+    max_boxes: float
+    threads: int
+    cut: float
+
+class Certification:
+    """What was proved of boxes, or of spans of a path."""
+
+    @property
+    def status(self, /) -> CertificateStatus: ...
+    @property
+    def level(self, /) -> float: ...
+    @property
+    def value(self, /) -> float: ...  # the worst of the centres seen
+    @property
+    def at(self, /) -> _A: ...  # (12,), its pose; of a refuted one the pose that refutes
+    @property
+    def broken(self, /) -> int: ...  # limits: length, universal angle, spherical angle, distance; else -1
+    @property
+    def leg(self, /) -> int: ...  # or pair of legs; -1
+    @property
+    def boxes(self, /) -> int: ...
+    @property
+    def proved(self, /) -> float: ...  # share of the volume
+    @property
+    def outside(self, /) -> float: ...
+    @property
+    def remaining(self, /) -> _A: ...  # (n, 6, 2), of paths (n, 3)
+    @property
+    def seconds(self, /) -> float: ...
+
+# Boxes: (n, 6, 2), ends of x, y, z, roll, pitch, yaw. A progress function that answers False ends the call.
+def certify(
+    design: _A,
+    joint: Joint,
+    boxes: _A,
+    kind: CertificateKind,
+    level: float,
+    options: CertificateOptions,
+    progress: Callable[[float], object] | None,
+    /,
+) -> Certification: ...
+
+# Pieces: (n, 6, powers), position and rotation vector e by powers of a parameter, R = exp(e) middle. Spans: (m, 3), the
+# number of a piece and the ends of its parameter.
+def certify_path(
+    design: _A,
+    joint: Joint,
+    pieces: _A,
+    middle: _A,
+    spans: _A,
+    kind: CertificateKind,
+    level: float,
+    options: CertificateOptions,
+    progress: Callable[[float], object] | None,
+    /,
+) -> Certification: ...
 
 compiler: str  # name and version
 

@@ -46,6 +46,7 @@ CORE_ORDER = (
     "decomposition",
     "model",
     "sweep",
+    "certify",
     "simulation",
     "kernels",
     "bench",

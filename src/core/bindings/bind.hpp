@@ -11,6 +11,8 @@ void bind_types(nanobind::module_& m);
 void bind_mechanics(nanobind::module_& m);
 /// The sweep over poses.
 void bind_sweep(nanobind::module_& m);
+/// Certificates over boxes of poses and along paths.
+void bind_certify(nanobind::module_& m);
 /// What searches over designs need: frequencies of many designs, derivatives along directions of the design.
 void bind_designs(nanobind::module_& m);
 /// Simulations, controllers in them, and the excitations that drive them.

@@ -6,6 +6,7 @@ NB_MODULE(_core, m) {
   flexapod::bind_types(m);
   flexapod::bind_mechanics(m);
   flexapod::bind_sweep(m);
+  flexapod::bind_certify(m);
   flexapod::bind_designs(m);
   flexapod::bind_simulation(m);
 }

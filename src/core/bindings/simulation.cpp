@@ -2,10 +2,10 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings/arrays.hpp"
+#include "bindings/attend.hpp"
 #include "bindings/bind.hpp"
 #include "kernels/isa.hpp"
 #include "simulation/control_batch.hpp"
-#include "threads/crew.hpp"
 
 namespace flexapod {
 namespace {
@@ -13,18 +13,6 @@ namespace {
 using simulation_task::Options;
 
 Numbers numbers(const Input& input) { return {input.data(), input.data() + input.size()}; }
-
-/// Waits for a crew while Python's interrupts are heard and progress, `done()`, is reported.
-template <class Done> void attend(Crew& crew, Done&& done, const nb::object& report) {
-  for (bool finished = false; !finished;) {
-    {
-      const nb::gil_scoped_release free;
-      finished = crew.wait_for(std::chrono::milliseconds(50));
-    }
-    if (PyErr_CheckSignals() != 0) throw nb::python_error();
-    if (!report.is_none()) report(done());
-  }
-}
 
 SimulationResult simulate(const std::vector<const SimulationSetup*>& setups, const Input& times, const Options& options,
                           const nb::object& progress) {

@@ -42,17 +42,24 @@ template <class T> T point_distance(const Vec3<T>& x, const Vec3<T>& q, const Ve
   return norm(r - clamp(dot(r, b) / dot(b, b), T(0.0), T(1.0)) * b);
 }
 
-/// Least distance between the segments p + s a (0 <= s <= 1) and q + t b (0 <= t <= 1), without branches.
+/// Where the segments p + s a (0 <= s <= 1) and q + t b (0 <= t <= 1) are closest, without branches.
+template <class T> struct ClosestPoints {
+  T s, t;
+
+  ClosestPoints(const Vec3<T>& p, const Vec3<T>& a, const Vec3<T>& q, const Vec3<T>& b) {
+    const T zero(0.0), one(1.0);
+    const Vec3<T> r = p - q;
+    const T aa = dot(a, a), bb = dot(b, b), ab = dot(a, b), ar = dot(a, r), br = dot(b, r);
+    const T determinant = aa * bb - ab * ab;
+    const T parallel = T(1e-14) * aa * bb;  // parallel segments: any s will do, the clamps below find the rest
+    const T s0 = clamp((ab * br - bb * ar) / max(determinant, parallel), zero, one);
+    t = clamp((ab * s0 + br) / bb, zero, one);
+    s = clamp((ab * t - ar) / aa, zero, one);
+  }
+};
 template <class T> T segment_distance(const Vec3<T>& p, const Vec3<T>& a, const Vec3<T>& q, const Vec3<T>& b) {
-  const T zero(0.0), one(1.0);
-  const Vec3<T> r = p - q;
-  const T aa = dot(a, a), bb = dot(b, b), ab = dot(a, b), ar = dot(a, r), br = dot(b, r);
-  const T determinant = aa * bb - ab * ab;
-  const T parallel = T(1e-14) * aa * bb;  // parallel segments: any s will do, the clamps below find the rest
-  const T s0 = clamp((ab * br - bb * ar) / max(determinant, parallel), zero, one);
-  const T t = clamp((ab * s0 + br) / bb, zero, one);
-  const T s = clamp((ab * t - ar) / aa, zero, one);
-  return norm(r + s * a - t * b);
+  const ClosestPoints<T> at(p, a, q, b);
+  return norm(p - q + at.s * a - at.t * b);
 }
 
 /// Distance of two leg axes. Legs that meet at a common joint are as far apart as the other joint of either is from the

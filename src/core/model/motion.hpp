@@ -70,14 +70,25 @@ struct Turn {
   }
 };
 
-/// The rotation exp(e) by Rodrigues' formula.
-inline Mat3<double> rotation(const Vec3<double>& e) {
-  const double angle2 = dot(e, e);
-  const auto [a, half] = Turn(angle2);
-  const double c = 1.0 - half * angle2;
+/// The rotation exp(e) by Rodrigues' formula, for |e|^2 and its coefficients.
+template <class T> Mat3<T> rotation(const Vec3<T>& e, const T& angle2, const T& a, const T& half) {
+  const T c = 1.0 - half * angle2;
   return {{{c + half * e.x * e.x, half * e.x * e.y - a * e.z, half * e.x * e.z + a * e.y},
            {half * e.x * e.y + a * e.z, c + half * e.y * e.y, half * e.y * e.z - a * e.x},
            {half * e.x * e.z - a * e.y, half * e.y * e.z + a * e.x, c + half * e.z * e.z}}};
+}
+inline Mat3<double> rotation(const Vec3<double>& e) {
+  const double angle2 = dot(e, e);
+  const auto [a, half] = Turn(angle2);
+  return rotation(e, angle2, a, half);
+}
+
+/// R_z(yaw) R_y(pitch) R_x(roll) from sines and cosines of roll, pitch, yaw.
+template <class T> Mat3<T> roll_pitch_yaw(const Vec3<T>& sine, const Vec3<T>& cosine) {
+  const T &sr = sine.x, &cr = cosine.x, &sp = sine.y, &cp = cosine.y, &sy = sine.z, &cy = cosine.z;
+  return {{{cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr},
+           {sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr},
+           {-sp, cp * sr, cp * cr}}};
 }
 
 /// The pose moved by a finite displacement: t + d, exp(e) R.

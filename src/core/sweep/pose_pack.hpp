@@ -68,13 +68,10 @@ template <class T> struct PosePack {
     const Vec3<T> t(row(0), row(1), row(2));
     if (width == 12) return {t, {{{row(3), row(4), row(5)}, {row(6), row(7), row(8)}, {row(9), row(10), row(11)}}}};
     const SinCos<T> r(row(3)), p(row(4)), y(row(5));
-    const T sr = r.sin, cr = r.cos, sp = p.sin, cp = p.cos, sy = y.sin, cy = y.cos;
-    roll_axis = {cy * cp, sy * cp, -sp};
-    pitch_axis = {-sy, cy, T(0.0)};
-    return {t,
-            {{{roll_axis.x, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr},
-              {roll_axis.y, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr},
-              {roll_axis.z, cp * sr, cp * cr}}}};
+    const Mat3<T> R = roll_pitch_yaw<T>({r.sin, p.sin, y.sin}, {r.cos, p.cos, y.cos});
+    roll_axis = {R.row[0].x, R.row[1].x, R.row[2].x};
+    pitch_axis = {-y.sin, y.cos, T(0.0)};
+    return {t, R};
   }
 };
 

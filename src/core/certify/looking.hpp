@@ -1,0 +1,217 @@
+// What can be said of the boxes in the lanes: proved, broken at a centre, outside of limits, or along what to cut.
+#pragma once
+
+#include "certify/halving.hpp"
+#include "certify/limit_models.hpp"
+#include "certify/matrix_models.hpp"
+
+namespace flexapod {
+
+using certify_task::Finding;
+using certify_task::Kind;
+using certify_task::Task;
+using certify_task::Verdict;
+
+/// The sign of det B, or 0 where it is small beyond doubt of rounding.
+inline int sign_of_determinant(Mat6<double> m) {
+  int sign = 1;
+  for (int k = 0; k < 6; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < 6; ++i)
+      if (std::abs(m[i][k]) > std::abs(m[pivot][k])) pivot = i;
+    if (!(std::abs(m[pivot][k]) > 0)) return 0;
+    if (pivot != k) std::swap(m.a[k], m.a[pivot]), sign = -sign;
+    if (m[k][k] < 0) sign = -sign;
+    for (int i = k + 1; i < 6; ++i) {
+      const double factor = m[i][k] / m[k][k];
+      for (int j = k; j < 6; ++j) m[i][j] -= factor * m[k][j];
+    }
+  }
+  return sign;
+}
+
+/// n = 6: boxes of coordinates; n = 1: spans of a path.
+template <class Lane, int n, class Rules = Sound> class Looking {
+ public:
+  using T = Taylor<Lane, n, 3, Rules>;
+  using Low = Taylor<Lane, n, 2, Rules>;  // of limits
+
+  explicit Looking(const Task& task)
+      : task_(task),
+        machine_(*reinterpret_cast<const Design<double>*>(task.design), task.joint),
+        platform_(platform_inertia(machine_.design, Mat3<double>::identity()).matrix()),
+        size_(mean_radius(machine_.design)) {}
+
+  void look(double level, const Box* boxes, int count, Finding* found) {
+    for (int l = 0; l < Lane::lanes; ++l) boxes_[l] = &boxes[std::min(l, count - 1)];
+    pose_ = [&] {
+      if constexpr (n == 1) return path_pose<T>(task_, boxes_);
+      else return box_pose<T>(boxes_);
+    }();
+    const Pose<T> base{-transposed(pose_.R, pose_.t), transpose(pose_.R)};
+    for (int l = 0; l < count; ++l) found[l] = start(l);
+    if (task_.limits == nullptr || !judge_limits(base, count, found)) judge_matrix(base, level, count, found);
+    for (int l = 0; l < count; ++l)
+      if (n == 6 && width(*boxes_[l], found[l].axis) < 0x1p-30) found[l].axis = -1;
+  }
+
+ private:
+  const Task task_;
+  const Machine<double> machine_;
+  const Mat6<double> platform_;
+  const double size_;
+  const Box* boxes_[Lane::lanes];
+  Pose<T> pose_;
+  SpringMatrix<T> directions_;
+  Mat6<T> M_;
+  MatrixModel<T> A_;
+  HalvingTest<Lane, n, Rules> test_;
+
+  Finding start(int l) const {
+    Finding f{Verdict::open, widest(*boxes_[l]), std::numeric_limits<double>::quiet_NaN(), 0, -1, -1, {}};
+    const Vec3<T>* rows[4] = {&pose_.t, &pose_.R.row[0], &pose_.R.row[1], &pose_.R.row[2]};
+    for (int r = 0; r < 4; ++r) {
+      f.pose[3 * r] = lane_of(rows[r]->x.c[0], l);
+      f.pose[3 * r + 1] = lane_of(rows[r]->y.c[0], l);
+      f.pose[3 * r + 2] = lane_of(rows[r]->z.c[0], l);
+    }
+    return f;
+  }
+  /// Where nothing better is known: the widest side.
+  int widest(const Box& box) const {
+    int axis = 0;
+    double most = -1.0;
+    for (int i = 0; i < n; ++i)
+      if (width(box, i) > most) most = width(box, i), axis = i;
+    return axis;
+  }
+  /// Of a side, with lengths by the platform's size.
+  double width(const Box& box, int i) const { return (box.high[i] - box.low[i]) / (i < 3 ? size_ : 1.0); }
+
+  /// True where limits leave nothing to be looked at.
+  bool judge_limits(const Pose<T>& base, int count, Finding* found) {
+    const Pose<Low> low = cut(base);
+    LimitModels<Low> limits(*task_.limits, machine_.design, low);
+    bool all = true;
+    for (int l = 0; l < count; ++l) {
+      limits.judge(l, task_.kind == Kind::limits, found[l]);
+      all = all && found[l].verdict == Verdict::outside;
+    }
+    return all || task_.kind == Kind::limits;
+  }
+
+  static Pose<Low> cut(const Pose<T>& pose) {
+    const auto vector = [](const Vec3<T>& v) {
+      return Vec3<Low>(v.x.template cut<2>(), v.y.template cut<2>(), v.z.template cut<2>());
+    };
+    return {vector(pose.t), {{vector(pose.R.row[0]), vector(pose.R.row[1]), vector(pose.R.row[2])}}};
+  }
+
+  void judge_matrix(const Pose<T>& base, double level, int count, Finding* found) {
+    set_matrices(Geometry<T, double>(machine_.design, base));
+    const CentreModes<Lane> modes(constant_of(M_), root_directions());
+    note_centres(modes, count, found);
+    bool proved[Lane::lanes];
+    FrameRows<Lane> C;
+    if (task_.kind == Kind::condition) {
+      const Lane c2(level * level * (1.0 - 0x1p-46)), mu = sqrt(modes.square[0] * (modes.square[5] / c2));
+      modes.frame(mu, false, C);
+      prove(C, 1.0, -mu, count, proved);
+      for (int l = 0; l < count; ++l) settle(level, l, proved[l], found[l]);
+      modes.frame(c2 * mu, true, C);
+      bool also[Lane::lanes];
+      prove(C, -1.0, c2 * mu, count, also);
+      for (int l = 0; l < count; ++l) {
+        if (!proved[l]) continue;
+        found[l].verdict = Verdict::open;
+        proved[l] = also[l];
+        settle(level, l, proved[l], found[l]);
+      }
+    } else {
+      const Lane t(task_.kind == Kind::index ? level * level * (1.0 + 0x1p-46) : 0.0);
+      modes.frame(t, false, C);
+      prove(C, 1.0, -t, count, proved);
+      for (int l = 0; l < count; ++l) settle(level, l, proved[l], found[l]);
+    }
+  }
+
+  /// The springs' directions, and what stiffness is compared with: inertia, or lengths and angles where directions alone
+  /// are asked for.
+  void set_matrices(const Geometry<T, double>& g) {
+    SpatialInertia<T> legs{};
+    for (int i = 0; i < 6; ++i) {
+      const LegAxes<T> leg(g.S[i], g.k[i], machine_.joint);
+      set_spring_directions(directions_, i, g.q_p[i], leg);
+      if (task_.kind == Kind::index) add_leg_inertia(legs, leg, machine_.inertia[i], g.q_p[i]);
+    }
+    M_ = legs.matrix();
+    const double turn = task_.kind == Kind::regular ? size_ * size_ : 1.0;
+    for (int r = 0; r < 6; ++r)
+      for (int s = 0; s < 6; ++s)
+        M_[r][s] += task_.kind == Kind::index ? platform_[r][s] : r != s ? 0.0 : r < 3 ? 1.0 : turn;
+  }
+
+  double stiffness(int j) const { return task_.kind == Kind::index ? spring_stiffness(machine_.design, j) : 1.0; }
+
+  static Mat6<Lane> constant_of(const Mat6<T>& models) {
+    Mat6<Lane> centre;
+    for (int r = 0; r < 6; ++r)
+      for (int s = 0; s < 6; ++s) centre[r][s] = models[r][s].c[0];
+    return centre;
+  }
+  SpringMatrix<Lane> root_directions() const {
+    SpringMatrix<Lane> F;
+    for (int r = 0; r < 6; ++r)
+      for (int j = 0; j < spring_count; ++j) F[r][j] = directions_[r][j].c[0] * std::sqrt(stiffness(j));
+    return F;
+  }
+
+  /// Values and signs at the centres.
+  void note_centres(const CentreModes<Lane>& modes, int count, Finding* found) const {
+    const SpringMatrix<Lane> F = root_directions();
+    for (int l = 0; l < count; ++l) {
+      const double least = lane_of(modes.square[0], l), most = lane_of(modes.square[5], l);
+      if (task_.kind == Kind::index) found[l].value = std::sqrt(least);
+      if (task_.kind == Kind::condition) found[l].value = std::sqrt(most / least);
+      Mat6<double> H;
+      for (int r = 0; r < 6; ++r)
+        for (int j = 0; j < 6; ++j) H[r][j] = lane_of(F[r][j], l);
+      found[l].sign = least > 1e-20 * most ? sign_of_determinant(H) : 0;
+    }
+  }
+
+  void settle(double level, int l, bool proved, Finding& f) const {
+    if (f.verdict == Verdict::outside) return;
+    const bool below =
+        (task_.kind == Kind::index && f.value < level) || (task_.kind == Kind::condition && f.value > level);
+    if (below && f.limit < 0) f.verdict = Verdict::broken;
+    else if (proved) f.verdict = Verdict::proved;
+    if (!proved) f.axis = cut_along(l, f.axis);
+  }
+
+  /// sign C K C^T + factor C M C^T positive definite in all of a box?
+  void prove(const FrameRows<Lane>& C, double sign, const Lane& factor, int count, bool (&proved)[Lane::lanes]) {
+    for (T& a : A_.a) a = T(0.0);
+    add_springs(A_, C, directions_, sign, [this](int j) { return stiffness(j); });
+    add_matrix(A_, C, M_, factor);
+    test_(A_, count, proved);
+  }
+
+  /// Where the polynomial bends most.
+  int cut_along(int l, int otherwise) const {
+    constexpr const auto& m = monomials<n, 3>;
+    double bend[n] = {};
+    for (const T& a : A_.a)
+      for (int k = m.first[2]; k < T::count; ++k) {
+        const double size = std::abs(lane_of(a.c[k], l)) * (m.degree[k] == 2 ? 0.03 : 1.0);
+        for (int i = 0; i < n; ++i) bend[i] += size * m.power[k][i];
+      }
+    int axis = otherwise;
+    double most = 0.0;
+    for (int i = 0; i < n; ++i)
+      if (bend[i] > most && bend[i] < 1e300) most = bend[i], axis = i;
+    return axis;
+  }
+};
+
+}  // namespace flexapod

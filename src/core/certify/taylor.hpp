@@ -1,0 +1,186 @@
+// Taylor models: a function of u in [-1, 1]^n as a polynomial and a radius, for one box in each lane.
+//
+// A model stands for every function f with |f(u) - p(u)| <= r for all u. Each operation gives a model of its exact
+// result: what the polynomial cannot hold and what rounding can have changed go into the radius. Rounding is bounded
+// beforehand (docs/theory/certificates.md): no operation here adds more than 16 numbers to a coefficient, so `unit` times
+// the sum of absolute coefficients is more than all roundings together, whatever the order of sums and with or without
+// fused multiplication. There are no comparisons: a branch of a template on a value must not compile for this scalar.
+#pragma once
+
+#include <utility>
+
+#include "certify/monomials.hpp"
+#include "simd/pack.hpp"
+
+namespace flexapod {
+
+/// What makes models sound. Tests take other rules, and look whether somebody notices.
+struct Sound {
+  static constexpr bool product_remainder = true;  // products of an order that is cut off go into the radius
+  static constexpr bool drop_squares = true;       // convex squares are not counted at vertices, where they are largest
+};
+
+/// One lane of a pack.
+template <class Lane> double lane_of(const Lane& pack, int lane) {
+  double value;
+  std::memcpy(&value, reinterpret_cast<const char*>(&pack) + lane * sizeof(double), sizeof(double));
+  return value;
+}
+template <class Lane> void set_lane(Lane& pack, int lane, double value) {
+  std::memcpy(reinterpret_cast<char*>(&pack) + lane * sizeof(double), &value, sizeof(double));
+}
+
+namespace rounding {
+inline constexpr double unit = 0x1p-48;      // of the sum of absolute values that an operation adds up
+inline constexpr double up = 1.0 + 0x1p-40;  // for bounds that are themselves rounded
+inline constexpr double least = 1e-290;      // more than all underflows
+}  // namespace rounding
+
+template <class Lane, int n, int order, class Rules = Sound> struct Taylor {
+  static constexpr int count = Monomials<n, order>::count;
+  static constexpr int variables = n, highest = order;
+  using Number = Lane;
+
+  Lane c[count];  // coefficients, in the order of Monomials
+  Lane r;         // radius
+
+  Taylor() = default;
+  Taylor(double value) : Taylor(Lane(value)) {}           // NOLINT: a constant is a model without error
+  Taylor(const Lane& value) : c{}, r{} { c[0] = value; }  // NOLINT
+
+  static Taylor variable(int i) {
+    Taylor x(0.0);
+    x.c[1 + i] = Lane(1.0);
+    return x;
+  }
+
+  Taylor& operator+=(const Taylor& b) { return *this = *this + b; }
+  Taylor& operator-=(const Taylor& b) { return *this = *this - b; }
+  Taylor& operator*=(const Taylor& b) { return *this = *this * b; }
+
+  friend FLEXAPOD_FLAT Taylor operator+(const Taylor& a, const Taylor& b) {
+    Taylor s;
+    for (int k = 0; k < count; ++k) s.c[k] = a.c[k] + b.c[k];
+    return s.rounded(a.r + b.r);
+  }
+  friend FLEXAPOD_FLAT Taylor operator-(const Taylor& a, const Taylor& b) {
+    Taylor s;
+    for (int k = 0; k < count; ++k) s.c[k] = a.c[k] - b.c[k];
+    return s.rounded(a.r + b.r);
+  }
+  friend FLEXAPOD_FLAT Taylor operator*(const Lane& a, const Taylor& b) {
+    Taylor s;
+    for (int k = 0; k < count; ++k) s.c[k] = a * b.c[k];
+    return s.rounded(abs(a) * b.r);
+  }
+  friend Taylor operator-(Taylor a) {
+    for (int k = 0; k < count; ++k) a.c[k] = -a.c[k];
+    return a;
+  }
+  friend Taylor operator+(const Lane& a, Taylor b) {
+    b.c[0] += a;
+    b.r = (b.r + rounding::unit * abs(b.c[0])) * rounding::up + rounding::least;
+    return b;
+  }
+  friend Taylor operator+(const Taylor& a, const Lane& b) { return b + a; }
+  friend Taylor operator-(const Taylor& a, const Lane& b) { return -b + a; }
+  friend Taylor operator-(const Lane& a, const Taylor& b) { return a + -b; }
+  friend Taylor operator*(const Taylor& a, const Lane& b) { return b * a; }
+  friend Taylor operator+(double a, const Taylor& b) { return Lane(a) + b; }
+  friend Taylor operator+(const Taylor& a, double b) { return Lane(b) + a; }
+  friend Taylor operator-(const Taylor& a, double b) { return Lane(-b) + a; }
+  friend Taylor operator-(double a, const Taylor& b) { return Lane(a) + -b; }
+  friend Taylor operator*(double a, const Taylor& b) { return Lane(a) * b; }
+  friend Taylor operator*(const Taylor& a, double b) { return Lane(b) * a; }
+
+  friend Taylor operator*(const Taylor& a, const Taylor& b) {
+    Taylor product;
+    const Norms na(a), nb(b);
+    multiply(product, a, b, std::make_index_sequence<count>{});
+    product.r = product_radius(a, na, b, nb);
+    return product;
+  }
+
+  /// Sums of absolute coefficients by degree.
+  struct Norms {
+    Lane of[order + 1], all;
+
+    explicit Norms(const Taylor& a) {
+      all = Lane(0.0);
+      for (int d = 0; d <= order; ++d) {
+        of[d] = a.norm(d);
+        all += of[d];
+      }
+    }
+  };
+
+  Lane norm(int degree) const {
+    constexpr const auto& m = monomials<n, order>;
+    Lane sum(0.0);
+    for (int k = m.first[degree]; k < m.first[degree + 1]; ++k) sum += abs(c[k]);
+    return sum;
+  }
+  /// The largest absolute value of all that is not constant.
+  Lane variation() const {
+    Lane sum(0.0);
+    for (int k = 1; k < count; ++k) sum += abs(c[k]);
+    return (sum + r) * rounding::up + rounding::least;
+  }
+
+  /// Adds factor a b, for constants.
+  void add_product(const Lane& factor, const Taylor& a, const Norms& na, const Taylor& b, const Norms& nb) {
+    multiply_add(*this, factor, a, b, std::make_index_sequence<count>{});
+    Lane all(0.0);
+    for (int k = 0; k < count; ++k) all += abs(c[k]);
+    r = (r + abs(factor) * product_radius(a, na, b, nb) + rounding::unit * all) * rounding::up;
+  }
+
+  /// With a radius for all errors of its operands, and for the roundings of a last operation that gave the coefficients.
+  FLEXAPOD_INLINE Taylor& rounded(const Lane& radius) {
+    Lane sum(0.0);
+    for (int k = 0; k < count; ++k) sum += abs(c[k]);
+    r = (radius + rounding::unit * sum) * rounding::up + rounding::least;
+    return *this;
+  }
+
+  /// The same with a lower order.
+  template <int lower> Taylor<Lane, n, lower, Rules> cut() const {
+    Taylor<Lane, n, lower, Rules> low;
+    for (int k = 0; k < low.count; ++k) low.c[k] = c[k];
+    Lane rest(0.0);
+    for (int k = low.count; k < count; ++k) rest += abs(c[k]);
+    low.r = (r + rest) * rounding::up;
+    return low;
+  }
+
+ private:
+  static Lane product_radius(const Taylor& a, const Norms& na, const Taylor& b, const Norms& nb) {
+    Lane cut(0.0);
+    if constexpr (Rules::product_remainder)
+      for (int i = 1; i <= order; ++i)
+        for (int j = order + 1 - i; j <= order; ++j) cut += na.of[i] * nb.of[j];
+    const Lane errors = a.r * (nb.all + b.r) + na.all * b.r;
+    return (errors + cut + rounding::unit * (na.all * nb.all)) * rounding::up + rounding::least;
+  }
+
+  template <int k> static FLEXAPOD_INLINE Lane coefficient(const Taylor& a, const Taylor& b) {
+    constexpr const auto& products = monomial_products<n, order>;
+    return [&]<std::size_t... p>(std::index_sequence<p...>) {
+      return (... + (a.c[products.left[products.first[k] + p]] * b.c[products.right[products.first[k] + p]]));
+    }(std::make_index_sequence<products.first[k + 1] - products.first[k]>{});
+  }
+  template <std::size_t... k>
+  static FLEXAPOD_FLAT void multiply(Taylor& to, const Taylor& a, const Taylor& b, std::index_sequence<k...>) {
+    ((to.c[k] = coefficient<k>(a, b)), ...);
+  }
+  template <std::size_t... k>
+  static FLEXAPOD_FLAT void multiply_add(Taylor& to, const Lane& factor, const Taylor& a, const Taylor& b,
+                                         std::index_sequence<k...>) {
+    ((to.c[k] += factor * coefficient<k>(a, b)), ...);
+  }
+};
+
+template <class Lane, int n, int order, class Rules>
+struct is_scalar<Taylor<Lane, n, order, Rules>> : std::true_type {};
+
+}  // namespace flexapod
