@@ -29,6 +29,7 @@ PICTURES = {
     "robust.png": "draw_guides.py",
     "shock.png": "draw_guides.py",
     "signs.svg": "draw_conventions.py",
+    "statics.png": "draw_guides.py",
     "tutorial-better.png": "draw_tutorial.py",
     "tutorial-map.png": "draw_tutorial.py",
     "tutorial-report.png": "draw_tutorial.py",

@@ -52,6 +52,14 @@ def envelope() -> None:
     save(plots.envelope.pairs(fx.envelope(machine), machine.name), "envelope.png")
 
 
+def statics() -> None:
+    """docs/statics.md: a motion base that tilts."""
+    elevation = np.radians(np.linspace(90, 15, 31))
+    machine, gravity = fx.load("motion-base"), fx.mechanics.gravity_at(elevation)
+    cases = fx.load_cases(machine, gravity=gravity, point=[0, 0, 0.5], reference=0)
+    save(plots.statics.load_cases(cases, elevation), "statics.png")
+
+
 def simulation() -> None:
     """docs/simulation.md: the positioner after a shock of its base."""
     machine = fx.load("precision-positioner")
@@ -100,5 +108,5 @@ def optimal_design() -> None:
 
 
 if __name__ == "__main__":
-    for draw in (modes, workspace, envelope, simulation, vibration, robustness, optimal_design):
+    for draw in (modes, workspace, envelope, statics, simulation, vibration, robustness, optimal_design):
         draw()

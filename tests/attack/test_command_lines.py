@@ -39,6 +39,7 @@ RIGHT = {
     "robust": ["cubic-isolator", "--uncertain", "legs.stiffness=10%", "--samples", "8", "--sensitivity", "0", "--poses", "4", "--out", "here"],
     "serve": ["cubic-isolator", "--port", "0"],
     "simulate": ["cubic-isolator", "--harmonic", "z", "1um", "5Hz", "--duration", "0.05", "--samples", "5"],
+    "statics": ["cubic-isolator", "--elevation", "90:80:2"],
     "sweep": ["cubic-isolator", "--around", "0.001", "1", "--points", "20"],
 }  # fmt: skip
 

@@ -26,6 +26,7 @@ WRITERS = {
     "robust": ["robust", "cubic-isolator", "--uncertain", "legs.stiffness=10%", "--samples", "16", "--sensitivity", "0", "--out", "here"],
     "simulate": ["simulate", "cubic-isolator", "--harmonic", "z", "1um", "5Hz", "--duration", "0.2", "--out", "here"],
     "simulate, animated": ["simulate", "cubic-isolator", "--harmonic", "z", "1um", "5Hz", "--duration", "0.2", "--animate", "run.gif"],
+    "statics": ["statics", "cubic-isolator", "--elevation", "90:80:2", "--out", "here"],
     "sweep csv": ["sweep", "cubic-isolator", "--around", "0.001", "1", "--points", "400", "--out", "a.csv"],
     "sweep nc": ["sweep", "cubic-isolator", "--around", "0.001", "1", "--points", "400", "--out", "a.nc"],
     "sweep parquet": ["sweep", "cubic-isolator", "--around", "0.001", "1", "--points", "400", "--out", "a.parquet"],

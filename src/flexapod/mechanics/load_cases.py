@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
@@ -200,7 +201,7 @@ def _case(hexapod: Hexapod, given: _Given, load: int, pose: int, machines: dict[
     gravity = given.gravity[load]
     machine = machines.setdefault(gravity.tobytes(), hexapod if np.array_equal(gravity, hexapod.gravity) else None)  # type: ignore[arg-type]
     if machine is None:
-        machine = machines[gravity.tobytes()] = hexapod.replace({"gravity": gravity})
+        machine = machines[gravity.tobytes()] = dataclasses.replace(hexapod, gravity=gravity)
     loads = given.force[load], given.moment[load], given.at[load]
     return Case(machine, given.pose[pose], *loads, axes == "base")
 
