@@ -1,6 +1,7 @@
 // The core without Python, for compilers and processors that the tests do not run on: reads a machine and its motions as
 // raw doubles, writes what the lanes of this build make of them. See compare.py.
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -31,6 +32,7 @@ sweep_task::Limits some_limits() {
     for (auto& direction : side) direction[2] = 1.0;
   for (auto& length : limits.length) length[1] = 1.0;
   limits.universal_angle = limits.spherical_angle = 0.5, limits.leg_distance = 0.01;
+  limits.universal_moment = limits.spherical_moment = std::numeric_limits<double>::infinity();
   return limits;
 }
 

@@ -44,6 +44,8 @@ LIMITS = _core.SweepLimits(  # as in check.cpp
     universal_angle=0.5,
     spherical_angle=0.5,
     leg_distance=0.01,
+    universal_moment=np.inf,
+    spherical_moment=np.inf,
 )
 
 

@@ -12,7 +12,8 @@ struct Case {
   Design<double> design = example::design(draw);
   Pose<double> pose = example::pose(draw), base;
   Geometry<double> g{design, pose, base};
-  SpringMatrix<double> F = RootStiffness<double>(design).scaled(spring_directions(g, Joint::universal));
+  Machine<double> machine{design, Joint::universal};
+  SpringMatrix<double> F = leg_spring_matrix(machine, g);
 
   double stiffness(int r, int c) const {
     double sum = 0;
@@ -23,7 +24,7 @@ struct Case {
 
 TEST_CASE("F F^T is H diag(k) H^T, where all springs lie along the legs") {
   const Case c;
-  const Mat6<double> H = force_transformation(c.g), found = leg_directions(spring_directions(c.g, Joint::universal));
+  const Mat6<double> H = force_transformation(c.g), found = spring_directions(c.g);
   for (int r = 0; r < 6; ++r)
     for (int s = 0; s < 6; ++s) {
       double expected = 0;
@@ -45,7 +46,7 @@ TEST_CASE("the rates of the springs are the derivatives of their elongations") {
     Vec6<double> twist;
     twist[k] = 1.0;
     double rate[spring_count];
-    spring_rates(spring_directions(c.g, Joint::universal), twist, rate);
+    spring_rates(spring_directions(c.g), twist, rate);
     for (int j = 0; j < spring_count; ++j) CHECK(rate[j] == doctest::Approx(elongation[j].d[k]).epsilon(1e-12));
   }
 }
@@ -63,7 +64,7 @@ TEST_CASE("springs push with the derivative of their energy, and stiffen by its 
       return Geometry<double>(c.design, moved(c.pose, x), c.base);
     };
     const double h = 1e-5;
-    const auto energy = [&](double by, const double (&lengths)[6]) { return elastic_energy(machine, at(by), lengths); };
+    const auto energy = [&](double by, const double (&lengths)[6]) { return axial_energy(machine, at(by), lengths); };
     CHECK(-wrench[k] == doctest::Approx((energy(h, shorter) - energy(-h, shorter)) / (2 * h)).epsilon(1e-6));
     CHECK(c.stiffness(k, k) == doctest::Approx((energy(h, L_0) + energy(-h, L_0)) / (h * h)).epsilon(1e-6));
   }
@@ -72,13 +73,14 @@ TEST_CASE("springs push with the derivative of their energy, and stiffen by its 
 TEST_CASE("modes divide the stiffness that the springs have") {
   const Case c;
   const Machine<double> machine(c.design, Joint::universal);
-  const Modes modes = natural_modes(machine, c.g, c.pose.R);
+  const Modes modes = natural_modes(machine, c.g, c.pose.R, c.base.R);
   for (int m = 0; m < 6; ++m) {
     Vec6<double> v;
     for (int i = 0; i < 6; ++i) v[i] = modes.shape[i][m];
     double rate[spring_count];
-    spring_rates(spring_directions(c.g, Joint::universal), v, rate);
-    CHECK(stiffness_product(c.design, rate, rate) == doctest::Approx(modes.omega[m] * modes.omega[m]).epsilon(1e-12));
+    spring_rates(spring_directions(c.g), v, rate);
+    CHECK(stiffness_product(c.machine.axial.constant, rate, rate) ==
+          doctest::Approx(modes.omega[m] * modes.omega[m]).epsilon(1e-12));
   }
 }
 

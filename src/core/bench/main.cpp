@@ -27,7 +27,12 @@ namespace {
 using namespace flexapod;
 
 /// A kernel that counts; each pose by itself, so that no lane is filled up.
-void count(const sweep_task::Task& task, size_t first, size_t last) { Sweep<Counted>(task).run(first, last); }
+void count(const sweep_task::Task& task, size_t first, size_t last) {
+  const Features features(*reinterpret_cast<const Design<double>*>(task.design));
+  if (features.others()) Sweep<Counted, Swept::others>(task).run(first, last);
+  else if (features.law != Law::constant) Sweep<Counted, Swept::law>(task).run(first, last);
+  else Sweep<Counted, Swept::constant>(task).run(first, last);
+}
 
 int flops(unsigned quantities) {
   std::vector<double> numbers;

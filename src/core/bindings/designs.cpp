@@ -56,7 +56,7 @@ void bind_designs(nb::module_& m) {
       .def("legs", [](const DesignDirections& self) {
         LegGradient found = self.legs();
         return nb::make_tuple(arrays(std::move(found.length)), arrays(std::move(found.distance)),
-                              arrays(std::move(found.joint_cosine)));
+                              arrays(std::move(found.joint_cosine)), arrays(std::move(found.joint_moment)));
       });
 }
 

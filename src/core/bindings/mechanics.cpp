@@ -26,6 +26,19 @@ auto joint_angles_(const Input& design, const Input& platform, const Input& base
   return numpy(batch::joint_angles(machine_of(design), states_of(platform, base), directions[0], directions[1]));
 }
 
+auto axial_stiffness_(const Input& design, const Input& lengths) {
+  const size_t n = lengths.size() / 6;
+  const auto* length = reinterpret_cast<batch::LegRows>(rows(lengths, n, 6, "lengths"));
+  return numpy(batch::axial_stiffness(machine_of(design), n, length));
+}
+
+auto unstretched_lengths_(const Input& design, const Input& lengths, const Input& forces) {
+  const size_t n = lengths.size() / 6;
+  const auto* length = reinterpret_cast<batch::LegRows>(rows(lengths, n, 6, "lengths"));
+  const auto* force = reinterpret_cast<batch::LegRows>(rows(forces, n, 6, "forces"));
+  return numpy(batch::unstretched_lengths(machine_of(design), n, length, force));
+}
+
 auto forward_kinematics_(const Input& design, const Input& lengths, const Input& start) {
   const size_t n = lengths.size() / 6;
   const auto* wanted = reinterpret_cast<batch::LegRows>(rows(lengths, n, 6, "lengths"));
@@ -118,10 +131,13 @@ void bind_mechanics(nb::module_& m) {
       .def_prop_ro("paths", &assemblies::Search::paths)
       .def("find", &all_assemblies);
   m.def("force_transformation", &of_geometry<batch::force_transformation>);
-  m.def("spring_matrix", &of_geometry<batch::spring_matrix>);
+  m.def("spring_matrix", &of_states<batch::spring_matrix>);
   nb::list legs;
-  for (int j = 0; j < spring_count; ++j) legs.append(spring_leg(j));
-  m.attr("SPRING_LEGS") = nb::tuple(legs);  // the leg of each spring
+  for (int j = 0; j < all_springs; ++j) legs.append(spring_leg(j));
+  m.attr("SPRING_LEGS") = nb::tuple(legs);  // the leg of each spring; those along the legs come first
+  m.def("axial_stiffness", &axial_stiffness_);
+  m.def("unstretched_lengths", &unstretched_lengths_);
+  m.def("joint_moments", &of_states<batch::joint_moments>);
   m.def("equations_of_motion", &of_states<batch::equations_of_motion>);
   m.def("forward_dynamics", &forward_dynamics_);
   m.def("inverse_dynamics", &inverse_dynamics_);

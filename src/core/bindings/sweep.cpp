@@ -11,12 +11,13 @@ namespace {
 using sweep_task::Limits, sweep_task::Quantity;
 
 Limits make_limits(const Input& neutral, const Input& leg_length, double universal_angle, double spherical_angle,
-                   double leg_distance) {
+                   double leg_distance, double universal_moment, double spherical_moment) {
   Limits limits{};
   std::copy_n(rows(neutral, 2, 18, "neutral"), 36, &limits.neutral[0][0][0]);
   std::copy_n(rows(leg_length, 6, 2, "leg_length"), 12, &limits.length[0][0]);
   limits.universal_angle = universal_angle, limits.spherical_angle = spherical_angle;
   limits.leg_distance = leg_distance;
+  limits.universal_moment = universal_moment, limits.spherical_moment = spherical_moment;
   return limits;
 }
 
@@ -26,13 +27,17 @@ void bind_limits(nb::module_& m) {
       .def(
           "__init__",
           [](Limits* self, const Input& neutral, const Input& leg_length, double universal_angle,
-             double spherical_angle, double leg_distance) {
-            new (self) Limits(make_limits(neutral, leg_length, universal_angle, spherical_angle, leg_distance));
+             double spherical_angle, double leg_distance, double universal_moment, double spherical_moment) {
+            new (self) Limits(make_limits(neutral, leg_length, universal_angle, spherical_angle, leg_distance,
+                                          universal_moment, spherical_moment));
           },
-          nb::kw_only(), "neutral"_a, "leg_length"_a, "universal_angle"_a, "spherical_angle"_a, "leg_distance"_a)
+          nb::kw_only(), "neutral"_a, "leg_length"_a, "universal_angle"_a, "spherical_angle"_a, "leg_distance"_a,
+          "universal_moment"_a, "spherical_moment"_a)
       .def_ro("universal_angle", &Limits::universal_angle)
       .def_ro("spherical_angle", &Limits::spherical_angle)
-      .def_ro("leg_distance", &Limits::leg_distance);
+      .def_ro("leg_distance", &Limits::leg_distance)
+      .def_ro("universal_moment", &Limits::universal_moment)
+      .def_ro("spherical_moment", &Limits::spherical_moment);
 }
 
 nb::dict sweep_(const Input& design, Joint joint, const Input& poses, Quantity quantities, const Limits& limits,

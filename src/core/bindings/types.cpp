@@ -90,7 +90,8 @@ void bind_enums(nb::module_& m) {
       .value("step_collapse", Outcome::step_collapse)
       .value("not_finite", Outcome::not_finite)
       .value("max_steps", Outcome::max_steps)
-      .value("stopped", Outcome::stopped);
+      .value("stopped", Outcome::stopped)
+      .value("outside_stiffness_law", Outcome::outside_stiffness_law);
 
   using sweep_task::Quantity, sweep_task::Status;
   nb::enum_<Quantity> quantities(m, "SweepQuantity", nb::is_flag());
@@ -101,7 +102,8 @@ void bind_enums(nb::module_& m) {
       .value("singular", Status::singular)
       .value("no_leg", Status::no_leg)
       .value("not_finite", Status::not_finite)
-      .value("no_inertia", Status::no_inertia);
+      .value("no_inertia", Status::no_inertia)
+      .value("outside_stiffness_law", Status::outside_stiffness_law);
 }
 
 nb::tuple simd_available() {

@@ -63,4 +63,41 @@ template <int m, class T> FLEXAPOD_INLINE Mat6<T> square_factor(Mat6<T, m>& B) {
 }
 template <class T> FLEXAPOD_INLINE Mat6<T>& square_factor(Mat6<T>& B) { return B; }
 
+/// The 6x12 matrix [A, C] with a lower triangular C.
+template <class T> struct Blocks {
+  Mat6<T> A, C;
+
+  /// Of all squared entries of C.
+  T square_of_C() const {
+    T sum = C[0][0] * C[0][0];
+    for (int i = 1; i < 6; ++i)
+      for (int j = 0; j <= i; ++j) sum += C[i][j] * C[i][j];
+    return sum;
+  }
+  Mat6<T, 12> joined() const {
+    Mat6<T, 12> all;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) all[i][j] = A[i][j], all[i][6 + j] = C[i][j];
+    return all;
+  }
+};
+
+template <int k, class T> FLEXAPOD_INLINE void lower_step(Blocks<T>& B, Mat6<T>& L) {
+  const auto row = [&](int i) { return [&B, i](int j) -> T& { return j == 0 ? B.C[i][k] : B.A[i][j - 1]; }; };
+  const auto reflection = Reflection<T>::template of<7>(row(k));
+  for (int i = k + 1; i < 6; ++i) reflection.template apply<7>(row(k), row(i));
+  L[k][k] = -reflection.shift;
+  for (int i = k + 1; i < 6; ++i) L[i][k] = B.C[i][k];
+  if constexpr (k < 5) lower_step<k + 1>(B, L);
+}
+
+/// As above; row k has but one entry of C when it is turned, so that seven entries are turned at a time.
+template <class T> FLEXAPOD_INLINE Mat6<T> square_factor(Blocks<T>& B) {
+  Mat6<T> L;
+  for (int i = 0; i < 5; ++i)
+    for (int j = i + 1; j < 6; ++j) L[i][j] = T(0.0);
+  lower_step<0>(B, L);
+  return L;
+}
+
 }  // namespace flexapod

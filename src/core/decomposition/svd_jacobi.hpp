@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "decomposition/reflection.hpp"
 #include "numbers/linear6.hpp"
 #include "simd/pack.hpp"
 
@@ -85,6 +86,10 @@ template <int m, class T> void squares_by_rotations(Mat6<T, m> B, T (&value)[6])
     }
 }
 
+template <class T> void squares_by_rotations(const Blocks<T>& B, T (&value)[6]) {
+  squares_by_rotations(B.joined(), value);
+}
+
 /// The least squared singular value of B in each lane, and its left singular vector.
 template <int m, class T> T lowest_direction(Mat6<T, m> B, Vec6<T>& u) {
   Mat6<T> U;
@@ -100,5 +105,6 @@ template <int m, class T> T lowest_direction(Mat6<T, m> B, Vec6<T>& u) {
   }
   return least;
 }
+template <class T> T lowest_direction(const Blocks<T>& B, Vec6<T>& u) { return lowest_direction(B.joined(), u); }
 
 }  // namespace flexapod

@@ -4,9 +4,9 @@
 #include <tuple>
 
 #include "model/energy.hpp"
+#include "model/frequency_derivatives.hpp"
 #include "model/kinematics.hpp"
 #include "model/leg_distance.hpp"
-#include "model/modes.hpp"
 #include "model/reactions.hpp"
 #include "model/statics.hpp"
 #include "numbers/array.hpp"
@@ -32,7 +32,7 @@ inline void write(double*& to, const Vec3<double>& v) {
 inline void write(double*& to, const Vec6<double>& v) {
   for (const double x : v.a) *to++ = x;
 }
-inline void write(double*& to, const Mat6<double>& m) {
+template <int columns> void write(double*& to, const Mat6<double, columns>& m) {
   for (const auto& row : m.a)
     for (const double x : row) *to++ = x;
 }
@@ -137,17 +137,40 @@ inline Rows force_transformation(const Machine<double>& machine, const States& s
   return H;
 }
 
-/// F, (n, 6, springs): K = F F^T.
+/// F, (n, 6, springs): K = F F^T. Those of joints and suspension are left out where there are none.
 inline Rows spring_matrix(const Machine<double>& machine, const States& s) {
-  const RootStiffness<double> root(machine.design);
-  Rows F({s.n, 6, std::size_t{spring_count}});
+  const bool all = machine.features.others();
+  Rows F({s.n, 6, static_cast<std::size_t>(all ? all_springs : spring_count)});
   for_each_state(
       s,
       [&](std::size_t i, double*& to) {
-        write(to, root.scaled(spring_directions(geometry(machine, s, i), machine.joint)));
+        const Geometry<double> g = geometry(machine, s, i);
+        if (all) write(to, flexapod::spring_matrix(machine, g, s.platform[i].pose.R, s.base[i].pose.R));
+        else write(to, leg_spring_matrix(machine, g));
       },
       F);
   return F;
+}
+
+/// Axial stiffness of legs of these lengths and its derivative by them, (n, 6) each.
+inline auto axial_stiffness(const Machine<double>& machine, std::size_t n, LegRows length) {
+  using D = Dual<1>;
+  Rows stiffness({n, 6}), slope({n, 6});
+  double *k = stiffness.data(), *by = slope.data();
+  for (std::size_t i = 0; i < 6 * n; ++i) {
+    const D found = machine.stiffness(static_cast<int>(i % 6), D::variable(length[i / 6][i % 6], 0));
+    *k++ = found.v, *by++ = found.d[0];
+  }
+  return std::tuple{std::move(stiffness), std::move(slope)};
+}
+
+/// Unstretched lengths (n, 6) of legs with these lengths and forces; NaN where there are none.
+inline Rows unstretched_lengths(const Machine<double>& machine, std::size_t n, LegRows length, LegRows force) {
+  Rows found({n, 6});
+  double* to = found.data();
+  for (std::size_t i = 0; i < n; ++i)
+    for (int leg = 0; leg < 6; ++leg) *to++ = unstretched_length(machine, leg, length[i][leg], force[i][leg]);
+  return found;
 }
 
 /// J_p, J_b (n, 6, 6), eta (n, 6) and H (n, 6, 6).
@@ -197,14 +220,36 @@ inline auto joint_reactions(const Machine<double>& machine, const States& s, con
   return std::tuple{std::move(legs), std::move(total)};
 }
 
-/// Kinetic, gravitational, elastic energy and dissipated power, (n, 4).
+/// Of the springs in every leg's joints: angles (n, 6, 4) and moments (n, 6, 4), about the universal joint's two axes, of
+/// the bending at the platform and of the twist.
+inline auto joint_moments(const Machine<double>& machine, const States& s) {
+  Rows angles({s.n, 6, 4}), moments({s.n, 6, 4});
+  for_each_state(
+      s,
+      [&](std::size_t n, double*& a, double*& m) {
+        const Geometry<double> g = geometry(machine, s, n);
+        for (int i = 0; i < 6; ++i) {
+          const LegSprings<double>& k = machine.design.springs[i];
+          const JointSprings<double> of(k, JointRest<double>(machine.design, i),
+                                        LegAxes<double>(g.S[i], g.k[i], machine.joint), g.k[i], s.platform[n].pose.R,
+                                        s.base[n].pose.R, machine.joint);
+          const double angle[] = {of.first, of.second, std::sqrt(of.bend_2), of.twist};
+          const double stiffness[] = {k.k_u[0], k.k_u[1], k.k_s, k.k_t};
+          for (int j = 0; j < 4; ++j) *a++ = angle[j], *m++ = stiffness[j] * angle[j];
+        }
+      },
+      angles, moments);
+  return std::tuple{std::move(angles), std::move(moments)};
+}
+
+/// Kinetic and gravitational energy, elastic energy of legs, joints and suspension, and dissipated power, (n, 6).
 inline Rows energy(const Machine<double>& machine, const States& s, LegRows unstretched) {
-  Rows energies({s.n, 4});
+  Rows energies({s.n, 6});
   for_each_state(
       s,
       [&](std::size_t i, double*& to) {
         const Energy e = flexapod::energy(machine, s.platform[i], s.base[i], unstretched[i]);
-        for (const double x : {e.kinetic, e.gravitational, e.elastic, e.dissipation}) *to++ = x;
+        for (const double x : {e.kinetic, e.gravitational, e.legs, e.joints, e.suspension, e.dissipation}) *to++ = x;
       },
       energies);
   return energies;
@@ -216,7 +261,8 @@ inline auto natural_modes(const Machine<double>& machine, const States& s) {
   for_each_state(
       s,
       [&](std::size_t i, double*& w, double*& v) {
-        const Modes modes = flexapod::natural_modes(machine, geometry(machine, s, i), s.platform[i].pose.R);
+        const Modes modes =
+            flexapod::natural_modes(machine, geometry(machine, s, i), s.platform[i].pose.R, s.base[i].pose.R);
         write(w, modes.omega), write(v, modes.shape);
       },
       omega, shape);
@@ -247,9 +293,9 @@ inline auto frequency_derivatives(const Machine<double>& machine, const States& 
   double* to = by_pose.data();
   for (std::size_t i = 0; i < s.n; ++i) {
     const Pose<double>&platform = s.platform[i].pose, &base = s.base[i].pose;
-    const Modes modes = flexapod::natural_modes(machine, geometry(machine, s, i), platform.R);
+    const Modes modes = flexapod::natural_modes(machine, geometry(machine, s, i), platform.R, base.R);
     auto* block = reinterpret_cast<double (*)[design_size]>(by_design.data() + i * 6 * design_size);
-    design_derivatives(machine.design, machine.joint, platform, base, modes, block);
+    design_derivatives(machine, platform, base, modes, block);
     write(to, pose_derivatives(machine, platform, base, modes));
   }
   return std::tuple{std::move(by_design), std::move(by_pose)};

@@ -159,15 +159,4 @@ inline double largest_radius(const Design<double>& d) {
   return largest;
 }
 
-/// A design with what is computed from it once.
-template <class T> struct Machine {
-  Design<T> design;
-  Joint joint;
-  LegInertia<T> inertia[6];
-
-  Machine(const Design<T>& d, Joint j) : design(d), joint(j) {
-    for (int i = 0; i < 6; ++i) inertia[i] = LegInertia<T>(d.leg[i]);
-  }
-};
-
 }  // namespace flexapod

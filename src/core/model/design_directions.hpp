@@ -31,6 +31,7 @@ struct LegGradient {
   ValueGradient length;        // (n, 6)
   ValueGradient distance;      // (n, 15 pairs of legs)
   ValueGradient joint_cosine;  // (n, 12: universal, spherical)
+  ValueGradient joint_moment;  // (n, 12: universal, spherical), squares of the bending moments of the joints' springs
 };
 
 /// A machine at n poses, and m directions in which its design and the poses change.
@@ -48,14 +49,19 @@ class DesignDirections {
         displacements_(displacements.begin(), displacements.end()),
         home_displacements_(home_displacements.begin(), home_displacements.end()),
         n_(platforms.size()),
-        m_(directions.size() / design_size) {}
+        m_(directions.size() / design_size),
+        features_(machine.features) {
+    for (size_t k = 0; k < m_; ++k)  // a spring that is not there yet may come with a direction
+      features_ = features_ | Features(*reinterpret_cast<const Design<double>*>(directions_.data() + k * design_size));
+  }
 
   FrequencyGradient frequencies() const {
     FrequencyGradient found{Array<double>({n_, 6}), Array<double>({n_, 6, 6, m_})};
     std::vector<Modes> modes(n_);
     for (size_t i = 0; i < n_; ++i) {
       const Pose<double>& pose = platforms_[i].pose;
-      modes[i] = natural_modes(machine_, Geometry<double>(machine_.design, pose, Pose<double>()), pose.R);
+      modes[i] = natural_modes(machine_, Geometry<double>(machine_.design, pose, Pose<double>()), pose.R,
+                               Mat3<double>::identity());
       std::copy_n(modes[i].omega, 6, found.omega.data() + 6 * i);
     }
     for_each([&](const Block& block, const Machine<Seed>& machine, const Geometry<Seed>& g, const Pose<Seed>& pose,
@@ -78,28 +84,39 @@ class DesignDirections {
     return found;
   }
 
-  /// K = F F^T by rows, (n, 36).
+  /// K of all springs by rows, (n, 36).
   ValueGradient stiffness() const {
     ValueGradient found(n_, 36, m_);
-    for_each(
-        [&](const Block& block, const Machine<Seed>& machine, const Geometry<Seed>& g, const Pose<Seed>&, size_t i) {
-          const Mat6<Seed> K = stiffness_matrix(machine.design, spring_directions(g, machine.joint));
-          for (size_t a = 0; a < 36; ++a) found.put(i, a, K[a / 6][a % 6], block.first, block.count);
-        });
+    for_each([&](const Block& block, const Machine<Seed>& machine, const Geometry<Seed>& g, const Pose<Seed>& pose,
+                 size_t i) {
+      Mat6<Seed> K =
+          with_stiffness(machine, g, [&](const auto& k) { return stiffness_matrix(k, spring_directions(g)); });
+      if (machine.features.others()) {
+        const Mat6<Seed> others = other_stiffness(machine, g, pose.R, Mat3<Seed>::identity());
+        for (size_t a = 0; a < 36; ++a) K[a / 6][a % 6] += others[a / 6][a % 6];
+      }
+      for (size_t a = 0; a < 36; ++a) found.put(i, a, K[a / 6][a % 6], block.first, block.count);
+    });
     return found;
   }
 
   LegGradient legs() const {
-    LegGradient found{{n_, 6, m_}, {n_, leg_pairs, m_}, {n_, 12, m_}};
+    LegGradient found{{n_, 6, m_}, {n_, leg_pairs, m_}, {n_, 12, m_}, {n_, 12, m_}};
     const SharedJoints shared(machine_.design);
-    for_each([&](const Block& block, const Machine<Seed>&, const Geometry<Seed>& g, const Pose<Seed>& pose, size_t i) {
+    for_each([&](const Block& block, const Machine<Seed>& machine, const Geometry<Seed>& g, const Pose<Seed>& pose,
+                 size_t i) {
       for (size_t a = 0; a < 6; ++a) found.length.put(i, a, norm(g.S[a]), block.first, block.count);
       for_leg_pairs([&](int pair, int a, int b) {
         found.distance.put(i, pair, pair_distance(g, shared, pair, a, b), block.first, block.count);
       });
       Seed angles[2][6];
       joint_cosines(block.seeded, pose, home_.empty() ? nullptr : &block.home, angles);
-      for (size_t a = 0; a < 12; ++a) found.joint_cosine.put(i, a, angles[a / 6][a % 6], block.first, block.count);
+      Seed squares[2][6];
+      if (machine.features.joints) squared_moments(machine, g, pose.R, squares);
+      for (size_t a = 0; a < 12; ++a) {
+        found.joint_cosine.put(i, a, angles[a / 6][a % 6], block.first, block.count);
+        found.joint_moment.put(i, a, squares[a / 6][a % 6], block.first, block.count);
+      }
     });
     return found;
   }
@@ -118,7 +135,7 @@ class DesignDirections {
     for (size_t first = 0; first < m_; first += gradient_lanes) {
       const int count = static_cast<int>(std::min<size_t>(gradient_lanes, m_ - first));
       Block block{first, count, {machine_.design, directions_.data() + first * design_size, count}, {}};
-      const Machine<Seed> machine(block.seeded.design, machine_.joint);
+      const Machine<Seed> machine(block.seeded.design, machine_.joint, features_);
       if (!home_.empty()) block.home = block.seeded.pose(home_[0].pose, home_displacements_.data() + first * 6);
       for (size_t i = 0; i < n_; ++i) {
         const Pose<Seed> pose = block.seeded.pose(platforms_[i].pose, displacements_.data() + (i * m_ + first) * 6);
@@ -131,6 +148,7 @@ class DesignDirections {
   std::vector<Motion<double>> platforms_, home_;
   std::vector<double> directions_, displacements_, home_displacements_;
   size_t n_, m_;
+  Features features_;
 };
 
 }  // namespace flexapod

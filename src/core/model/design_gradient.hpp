@@ -38,21 +38,43 @@ struct SeededDesign {
 inline void rayleigh_matrix(const Machine<Seed>& machine, const Geometry<Seed>& g, const Mat3<Seed>& R,
                             const Modes& modes, Seed (&out)[6][6]) {
   const Mat6<Seed> J = inertia(machine, g, R);
-  const SpringMatrix<Seed> directions = spring_directions(g, machine.joint);
+  const bool others = machine.features.others();
+  Mat6<Seed> K;
+  if (others) K = other_stiffness(machine, g, R, Mat3<Seed>::identity());
+  const SpringMatrix<Seed> directions = spring_directions(g);
   Seed stretch[6][spring_count];
   for (int a = 0; a < 6; ++a) {
     Vec6<double> shape;
     for (int r = 0; r < 6; ++r) shape[r] = modes.shape[r][a];
     spring_rates(directions, shape, stretch[a]);
-    Vec6<Seed> momentum;
+    Vec6<Seed> momentum, force;
     for (int i = 0; i < 6; ++i)
       for (int r = 0; r < 6; ++r) momentum[i] += shape[r] * J[i][r];
+    if (others)
+      for (int i = 0; i < 6; ++i)
+        for (int r = 0; r < 6; ++r) force[i] += shape[r] * K[i][r];
     for (int b = 0; b <= a; ++b) {
       const double lambda = 0.5 * (modes.omega[a] * modes.omega[a] + modes.omega[b] * modes.omega[b]);
-      Seed sum = stiffness_product(machine.design, stretch[a], stretch[b]);
+      Seed sum =
+          with_stiffness(machine, g, [&](const auto& k) { return stiffness_product(k, stretch[a], stretch[b]); });
+      if (others)
+        for (int i = 0; i < 6; ++i) sum += modes.shape[i][b] * force[i];
       for (int i = 0; i < 6; ++i) sum -= (lambda * modes.shape[i][b]) * momentum[i];
       out[a][b] = out[b][a] = sum;
     }
+  }
+}
+
+/// Squares of the bending moments of universal and spherical joints, for a base in the inertial frame.
+inline void squared_moments(const Machine<Seed>& machine, const Geometry<Seed>& g, const Mat3<Seed>& R,
+                            Seed (&out)[2][6]) {
+  for (int i = 0; i < 6; ++i) {
+    const LegSprings<Seed>& k = machine.design.springs[i];
+    const JointSprings<Seed> of(k, machine.rest[i], LegAxes<Seed>(g.S[i], g.k[i], machine.joint), g.k[i], R,
+                                Mat3<Seed>::identity(), machine.joint);
+    const Seed first = k.k_u[0] * of.first, second = k.k_u[1] * of.second;
+    out[0][i] = first * first + second * second;
+    out[1][i] = k.k_s * k.k_s * of.bend_2;
   }
 }
 

@@ -2,7 +2,9 @@
 //     J_p [a; alpha] - J_b [a_b; alpha_b] + eta = H F + [R F_ext; R M_ext].
 #pragma once
 
-#include "model/leg.hpp"
+#include "model/joint_springs.hpp"
+#include "model/machine.hpp"
+#include "model/suspension.hpp"
 
 namespace flexapod {
 
@@ -50,37 +52,6 @@ template <class T> Mat6<T> force_transformation(const Geometry<T>& g) {
   }
   return H;
 }
-
-/// A symmetric 6x6 inertia [top, bottom_left^T; bottom_left, bottom]: of a velocity and an angular velocity.
-template <class T> struct SpatialInertia {
-  Sym3<T> top;
-  Mat3<T> bottom_left;
-  Sym3<T> bottom;
-
-  /// Adds [Q, -Q q~; q~ Q, -q~ Q q~] with Q symmetric: the inertia Q at the point q.
-  template <class P> void add(const Vec3<P>& q, const Sym3<T>& Q) {
-    const Mat3<T> right{{cross(q, Vec3<T>(Q.xx, Q.xy, Q.xz)), cross(q, Vec3<T>(Q.xy, Q.yy, Q.yz)),
-                         cross(q, Vec3<T>(Q.xz, Q.yz, Q.zz))}};
-    const Mat3<T> left = transpose(right);
-    const Vec3<T> x = cross(q, left.row[0]), y = cross(q, left.row[1]), z = cross(q, left.row[2]);
-    top = top + Q;
-    for (int i = 0; i < 3; ++i) bottom_left.row[i] += left.row[i];
-    bottom = bottom + Sym3<T>{x.x, y.y, z.z, y.x, z.x, z.y};
-  }
-  Mat6<T> matrix() const {
-    const Mat3<T> right = transpose(bottom_left);
-    const Mat3<T> A = full(top), D = full(bottom);
-    Mat6<T> J;
-    for (int i = 0; i < 3; ++i) {
-      const Vec6<T> upper = Vec6<T>::of(A.row[i], right.row[i]), lower = Vec6<T>::of(bottom_left.row[i], D.row[i]);
-      for (int j = 0; j < 6; ++j) J[i][j] = upper[j], J[3 + i][j] = lower[j];
-    }
-    return J;
-  }
-
- private:
-  static Mat3<T> full(const Sym3<T>& m) { return {{{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.zz}}}; }
-};
 
 /// J_plat of Eq. 34, in the axes of R.
 template <class T, class D> SpatialInertia<T> platform_inertia(const Design<D>& d, const Mat3<T>& R) {
@@ -158,8 +129,8 @@ template <class T, class D> Vec6<T> platform_wrench(const Design<D>& d, const Mo
   return Vec6<T>::of(f, cross(R_p, f) + I * platform.alpha + cross(platform.w, I * platform.w));
 }
 
-/// Inertia, weight and friction of platform and legs as a wrench at the reference point, for the motions given:
-/// J_p [a; alpha] - J_b [a_b; alpha_b] + eta. With all accelerations zero it is eta.
+/// Inertia, weight and friction of platform and legs, springs of joints and a suspension as a wrench at the reference
+/// point, for the motions given: J_p [a; alpha] - J_b [a_b; alpha_b] + eta. With all accelerations zero it is eta.
 template <class T, class D>
 Vec6<T> inverse_wrench(const Machine<D>& machine, const Geometry<T>& g, const Motion<T>& platform,
                        const Motion<T>& base) {
@@ -167,11 +138,15 @@ Vec6<T> inverse_wrench(const Machine<D>& machine, const Geometry<T>& g, const Mo
   for (int i = 0; i < 6; ++i) {
     const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
     const LegEnds<T> end = leg_ends(machine, g, leg, i, platform, base);
-    const SphericalLoad<T> load =
+    SphericalLoad<T> load =
         spherical_load(leg, machine.inertia[i], machine.design.leg[i], end, LegMotion<T>(leg, end, machine.joint));
+    if (machine.features.joints)
+      add_joint_springs(load, machine.design.springs[i], machine.rest[i], leg, g.k[i], platform.pose.R, base.pose.R,
+                        machine.joint);
     const Vec3<T> force = transposed(leg.axes, load.force), moment = transposed(leg.axes, load.moment);
     add(wrench, force, cross(g.q_p[i], force) - moment);
   }
+  if (machine.features.suspension) add_suspension_load(wrench, machine.design, platform, base);
   return wrench;
 }
 

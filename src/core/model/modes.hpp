@@ -1,4 +1,4 @@
-// Free vibration about a pose (Eq. 5), and how the frequencies depend on the pose and on the design.
+// Free vibration about a pose (Eq. 5), and what the derivatives of its frequencies are taken of.
 #pragma once
 
 #include "decomposition/svd_jacobi.hpp"
@@ -14,11 +14,8 @@ struct Modes {
   Mat6<double> shape;
 };
 
-/// Eq. 5 as singular values of B = L^-1 F with J_p = L L^T and K = F F^T: near a singular pose the eigenvalues of
-/// J_p^-1 K would lose half the digits of the lowest frequency.
-inline Modes natural_modes(const Machine<double>& machine, const Geometry<double>& g, const Mat3<double>& R) {
-  const Cholesky<double> L(inertia(machine, g, R));
-  SpringMatrix<double> B = RootStiffness<double>(machine.design).scaled(spring_directions(g, machine.joint));
+/// Modes of B = L^-1 F with J_p = L L^T and K = F F^T.
+template <int m> Modes modes_of(const Cholesky<double>& L, Mat6<double, m> B) {
   L.forward_all(B);
   const SingularValues values(B);
   Modes modes;
@@ -32,65 +29,59 @@ inline Modes natural_modes(const Machine<double>& machine, const Geometry<double
   return modes;
 }
 
-/// v^T K v - lambda v^T J_p v for a mode's v and lambda = omega^2. Its derivative by anything, at fixed v and
-/// lambda, is that of lambda (for a mode that is not repeated), since v^T J_p v = 1.
-template <class T, class D, class U>
-T rayleigh_residual(const Machine<D>& machine, const Mat6<T>& J, const SpringMatrix<T>& directions,
+/// Eq. 5 by singular values: near a singular pose the eigenvalues of J_p^-1 K would lose half the digits of the lowest
+/// frequency. R_p, R_b: of platform and base.
+inline Modes natural_modes(const Machine<double>& machine, const Geometry<double>& g, const Mat3<double>& R_p,
+                           const Mat3<double>& R_b) {
+  const Cholesky<double> L(inertia(machine, g, R_p));
+  if (machine.features.others()) return modes_of(L, spring_matrix(machine, g, R_p, R_b));
+  return modes_of(L, leg_spring_matrix(machine, g));
+}
+
+/// v^T K v - lambda v^T J_p v for a mode's v and lambda = omega^2, of the springs along the legs with stiffnesses k. Its
+/// derivative by anything, at fixed v and lambda, is that of lambda (for a mode that is not repeated), since
+/// v^T J_p v = 1.
+template <class T, class K, class U>
+T rayleigh_residual(const K (&k)[spring_count], const Mat6<T>& J, const SpringMatrix<T>& directions,
                     const Vec6<U>& shape, const U& lambda) {
   Vec6<T> v;
   for (int i = 0; i < 6; ++i) v[i] = T(shape[i]);
   T stretch[spring_count];
   spring_rates(directions, v, stretch);
-  return stiffness_product(machine.design, stretch, stretch) - T(lambda) * dot(v, J * v);
+  return stiffness_product(k, stretch, stretch) - T(lambda) * dot(v, J * v);
 }
 
-/// The residuals of all modes.
+/// v^T K v of springs that do not lie along the legs.
+template <class T, class U> T other_product(const Mat6<T>& K, const Vec6<U>& shape) {
+  Vec6<T> v;
+  for (int i = 0; i < 6; ++i) v[i] = T(shape[i]);
+  return dot(v, K * v);
+}
 template <class T, class D>
-Vec6<product_t<T, D>> rayleigh_residuals(const Machine<D>& machine, const Geometry<T>& g, const Mat3<T>& R,
-                                         const Modes& modes) {
-  const Mat6<T> J = inertia(machine, g, R);
-  const SpringMatrix<T> directions = spring_directions(g, machine.joint);
+Mat6<T> other_stiffness(const Machine<D>& machine, const Geometry<T>& g, const Mat3<T>& R_p, const Mat3<T>& R_b) {
+  SpatialInertia<T> K{};
+  add_other_stiffness(K, machine, g, R_p, R_b);
+  return K.matrix();
+}
+
+/// The residuals of all modes, with all springs.
+template <class T, class D>
+Vec6<product_t<T, D>> rayleigh_residuals(const Machine<D>& machine, const Geometry<T>& g, const Mat3<T>& R_p,
+                                         const Mat3<T>& R_b, const Modes& modes) {
+  const Mat6<T> J = inertia(machine, g, R_p);
+  const SpringMatrix<T> directions = spring_directions(g);
+  Mat6<T> others;
+  if (machine.features.others()) others = other_stiffness(machine, g, R_p, R_b);
   Vec6<T> residual;
   for (int m = 0; m < 6; ++m) {
     Vec6<double> v;
     for (int i = 0; i < 6; ++i) v[i] = modes.shape[i][m];
-    residual[m] = rayleigh_residual(machine, J, directions, v, modes.omega[m] * modes.omega[m]);
+    const double lambda = modes.omega[m] * modes.omega[m];
+    residual[m] =
+        with_stiffness(machine, g, [&](const auto& k) { return rayleigh_residual(k, J, directions, v, lambda); });
+    if (machine.features.others()) residual[m] += other_product(others, v);
   }
   return residual;
-}
-
-/// Derivatives of the six omega^2 by the numbers of the design, exact: row m, one column a number.
-inline void design_derivatives(const Design<double>& design, Joint joint, const Pose<double>& platform,
-                               const Pose<double>& base, const Modes& modes, double (*out)[design_size]) {
-  constexpr int lanes = 8;
-  using D = Dual<lanes>;
-  const double* value = &design.gravity.x;
-  const int used = used_size(design);
-  for (int m = 0; m < 6; ++m) std::fill(out[m] + used, out[m] + design_size, 0.0);
-  for (int first = 0; first < used; first += lanes) {
-    Design<D> seeded;
-    D* number = &seeded.gravity.x;
-    for (int i = 0; i < used; ++i) number[i] = value[i];
-    const int count = std::min(lanes, used - first);
-    for (int i = 0; i < count; ++i) number[first + i].d[i] = 1.0;
-    const Machine<D> machine(seeded, joint);
-    const Pose<D> p = constant<D>(platform), b = constant<D>(base);
-    const Vec6<D> residual = rayleigh_residuals(machine, Geometry<D>(seeded, p, b), p.R, modes);
-    for (int m = 0; m < 6; ++m)
-      for (int i = 0; i < count; ++i) out[m][first + i] = residual[m].d[i];
-  }
-}
-
-/// Derivatives of the six omega^2 by the platform's displacement (translation, rotation vector), exact: row m.
-inline Mat6<double> pose_derivatives(const Machine<double>& machine, const Pose<double>& platform,
-                                     const Pose<double>& base, const Modes& modes) {
-  using D = Dual<6>;
-  const Pose<D> p = displaceable<D>(platform, 0), b = constant<D>(base);
-  const Vec6<D> residual = rayleigh_residuals(machine, Geometry<D>(machine.design, p, b), p.R, modes);
-  Mat6<double> out;
-  for (int m = 0; m < 6; ++m)
-    for (int i = 0; i < 6; ++i) out[m][i] = residual[m].d[i];
-  return out;
 }
 
 }  // namespace flexapod

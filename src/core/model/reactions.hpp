@@ -12,12 +12,13 @@ template <class T> struct LegReactions {
   Vec3<T> universal_force, universal_moment;  // on the base by the leg, at the base joint
 };
 
-/// For the accelerations in `end` and the actuator force F that goes with them. `section`: where along the leg the
-/// prismatic pair's moment is taken, as a fraction of the leg's length from the base joint.
+/// For the accelerations in `end`, what the spherical joint carries with them, and the actuator force F that goes with
+/// them. `section`: where along the leg the prismatic pair's moment is taken, as a fraction of the leg's length from the
+/// base joint.
 template <class T>
 LegReactions<T> leg_reactions(const Leg<T>& parts, const LegInertia<T>& in, const LegAxes<T>& leg,
-                              const LegEnds<T>& end, const LegMotion<T>& motion, const T& F, double section) {
-  SphericalLoad<T> load = spherical_load(leg, in, parts, end, motion);
+                              const LegEnds<T>& end, const LegMotion<T>& motion, SphericalLoad<T> load, const T& F,
+                              double section) {
   load.force.x -= F;
   const auto &A = motion.A, &w = motion.omega;
   const T m_d = parts.lower.mass;
@@ -54,10 +55,20 @@ inline Reactions reactions(const Machine<double>& machine, const Motion<double>&
     const LegAxes<double> leg(g.S[i], g.k[i], machine.joint);
     const LegEnds<double> end = leg_ends(machine, g, leg, i, platform, base);
     const LegMotion<double> motion(leg, end, machine.joint);
-    result.leg[i] = leg_reactions(machine.design.leg[i], machine.inertia[i], leg, end, motion, leg_force[i], section);
+    const Leg<double>& parts = machine.design.leg[i];
+    SphericalLoad<double> load = spherical_load(leg, machine.inertia[i], parts, end, motion);
+    if (machine.features.joints)
+      add_joint_springs(load, machine.design.springs[i], machine.rest[i], leg, g.k[i], platform.pose.R, base.pose.R,
+                        machine.joint);
+    result.leg[i] = leg_reactions(parts, machine.inertia[i], leg, end, motion, load, leg_force[i], section);
     const LegReactions<double>& r = result.leg[i];
     result.base_force += r.universal_force;
     result.base_moment += cross(g.q_b[i], r.universal_force) + r.universal_moment;
+  }
+  if (machine.features.suspension) {
+    const Vec6<double> load = suspension_load(machine.design, platform, base);
+    result.base_force += load.top();
+    result.base_moment += cross(platform.pose.t - base.pose.t, load.top()) + load.bottom();
   }
   return result;
 }

@@ -69,7 +69,7 @@ enum class Rest { found, singular, not_found };
 inline Rest settle(const Machine<double>& machine, const Pose<double>& base, const RestLoad& load, Pose<double>& pose) {
   const double size = mean_radius(machine.design);  // with `force`: to compare rows and to limit steps
   double force = 0;
-  for (int i = 0; i < 6; ++i) force = std::max(force, axial_force(machine.design.leg[i], std::abs(load.L_0[i])));
+  for (int i = 0; i < 6; ++i) force = std::max(force, machine.stiffness(i, load.L_0[i]) * std::abs(load.L_0[i]));
   const auto merit = [&](const Vec6<double>& r) {
     double sum = 0;
     for (int i = 0; i < 6; ++i) sum += std::pow(r[i] / (i < 3 ? force : force * size), 2);

@@ -62,6 +62,10 @@ template <int N, class T> Dual<N, T> rsqrt(const Dual<N, T>& a) {
 template <int N, class T> Dual<N, T> abs(const Dual<N, T>& a) {
   return Dual<N, T>::chain(abs(a.v), select(a.v < T(0.0), T(-1.0), T(1.0)), a);
 }
+template <int N, class T> Dual<N, T> upper_angle(const Dual<N, T>& y, const Dual<N, T>& x) {
+  const T inverse = T(1.0) / (x.v * x.v + y.v * y.v);
+  return Dual<N, T>::chain(upper_angle(y.v, x.v), x.v * inverse, y, -y.v * inverse, x);
+}
 template <int N, class T, class M> Dual<N, T> select(M take_a, const Dual<N, T>& a, const Dual<N, T>& b) {
   Dual<N, T> r(select(take_a, a.v, b.v));
   for (int i = 0; i < N; ++i) r.d[i] = select(take_a, a.d[i], b.d[i]);

@@ -76,6 +76,14 @@ template <class T> struct Cholesky {
         B[i][j] = sum * l[i][i];
       }
   }
+  void forward_lower(Mat6<T>& C) const {  // L X = C for a lower triangular C, in place
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j <= i; ++j) {
+        T sum = C[i][j];
+        for (int k = j; k < i; ++k) sum = sum - l[i][k] * C[k][j];
+        C[i][j] = sum * l[i][i];
+      }
+  }
   Vec6<T> backward(Vec6<T> b) const {  // L^T x = b
     for (int i = 5; i >= 0; --i) {
       for (int k = i + 1; k < 6; ++k) b[i] = b[i] - l[k][i] * b[k];
@@ -85,6 +93,29 @@ template <class T> struct Cholesky {
   }
   Vec6<T> solve(const Vec6<T>& b) const { return backward(forward(b)); }
 };
+
+/// A lower triangular C with C C^T = m for a positive semidefinite m (its lower triangle is read), without a branch: a
+/// pivot is at least a rounding of the diagonal's three entries of its unit, and C C^T differs from m by that much.
+template <class T> Mat6<T> semidefinite_root(const Mat6<T>& m) {
+  Mat6<T> C;
+  for (int r = 0; r < 6; ++r)
+    for (int j = r + 1; j < 6; ++j) C[r][j] = T(0.0);
+  for (int j = 0; j < 6; ++j) {
+    const int first = j < 3 ? 0 : 3;
+    const T least = 1e-16 * (m[first][first] + m[first + 1][first + 1] + m[first + 2][first + 2]) + 1e-300;
+    T pivot = m[j][j];
+    for (int k = 0; k < j; ++k) pivot = pivot - C[j][k] * C[j][k];
+    pivot = max(pivot, least);
+    const T inverse = rsqrt(pivot);
+    C[j][j] = pivot * inverse;
+    for (int i = j + 1; i < 6; ++i) {
+      T sum = m[i][j];
+      for (int k = 0; k < j; ++k) sum = sum - C[i][k] * C[j][k];
+      C[i][j] = sum * inverse;
+    }
+  }
+  return C;
+}
 
 /// Solves m x = b for a symmetric positive definite m (its lower triangle is read) by m = L D L^T: no square root waits
 /// for another, as those of a Cholesky factor do. NaN where m is not positive definite.

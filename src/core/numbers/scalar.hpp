@@ -10,14 +10,17 @@
 #define FLEXAPOD_INLINE inline
 #define FLEXAPOD_FLAT
 #define FLEXAPOD_COLD
+#define FLEXAPOD_APART
 #elif defined(__GNUC__) || defined(__clang__)  // clang-cl is the second only
 #define FLEXAPOD_INLINE inline __attribute__((always_inline))
 #define FLEXAPOD_FLAT __attribute__((flatten, noinline))  // with all that it calls inlined
 #define FLEXAPOD_COLD __attribute__((noinline, cold))
+#define FLEXAPOD_APART __attribute__((noinline))  // kept out of the functions that seldom need it
 #else
 #define FLEXAPOD_INLINE __forceinline
 #define FLEXAPOD_FLAT
 #define FLEXAPOD_COLD
+#define FLEXAPOD_APART
 #endif
 
 #if (defined(__GNUC__) || defined(__clang__)) && !defined(FLEXAPOD_SANITIZE)
@@ -43,6 +46,8 @@ inline double rsqrt(double x) { return 1.0 / std::sqrt(x); }
 inline double abs(double x) { return std::abs(x); }
 inline double acos(double x) { return std::acos(x); }
 inline double atan2(double y, double x) { return std::atan2(y, x); }
+/// The angle, 0 to pi, of a vector with the parts x and y >= 0.
+inline double upper_angle(double y, double x) { return std::atan2(y, x); }
 inline double select(bool take_a, double a, double b) { return take_a ? a : b; }
 
 inline bool any(bool condition) { return condition; }  // whether any lane is true

@@ -42,14 +42,16 @@ class MachineOnBase {
                 const Excitation& command)
       : in_(input),
         machine_(without_gravity(input.design), input.joint),
-        legs_(machine_),
+        L_0_(unstretched_lengths()),
+        legs_(at_rest_stiffness()),
         base_(base),
         wrench_(wrench),
         command_(command),
         rotates_(base.uses(3, 6)) {
     const Mat3<double> to_base = transpose(in_.base.R);
     rest_ = {to_base * (in_.platform.t - in_.base.t), to_base * in_.platform.R};
-    friction_ = has_friction(in_.design);
+    friction_ = has_friction(in_.design) || machine_.features.suspension;
+    law_ = machine_.features.law != Law::constant && !command_.empty();
     for (int g = 0; g < leg_groups; ++g) places_.group[g].q_b = legs_.group[g].b, places_.group[g].k = legs_.group[g].k;
     set_chart(Quaternion());
     force_ = PerLeg(in_.leg_force);
@@ -144,6 +146,15 @@ class MachineOnBase {
   /// Where the legs are: base axes.
   Geometry<double> geometry(const State& y) const { return {machine_.design, pose(y), Pose<double>()}; }
   Pose<double> rest() const { return rest_; }
+  /// Whether a leg's unstretched length has left the range of its stiffness law.
+  bool outside_law(double t) {
+    if (!law_) return false;
+    Jet command[6];
+    command_.at(t, inside, command);
+    for (int i = 0; i < 6; ++i)
+      if (std::isnan(machine_.stiffness(i, L_0_[i] + command[i].x))) return true;
+    return false;
+  }
   const Machine<double>& machine() const { return machine_; }
 
  private:
@@ -157,11 +168,25 @@ class MachineOnBase {
     PerLeg leg_force;
     Vec6<double> wrench;  // platform axes
     Jet command[6];
+    Vec6<double> stiffening;  // energy in a leg by its commanded length at the same compression, N
   };
 
   static Design<double> without_gravity(Design<double> d) {
     d.gravity = Vec3<double>();
     return d;
+  }
+  /// Unstretched lengths of the legs with no command.
+  Vec6<double> unstretched_lengths() const {
+    const Geometry<double> g(machine_.design, in_.platform, in_.base);
+    Vec6<double> L_0;
+    for (int i = 0; i < 6; ++i) L_0[i] = unstretched_length(machine_, i, norm(g.S[i]), in_.leg_force[i]);
+    return L_0;
+  }
+  /// The machine with the stiffness along its legs that goes with these lengths.
+  Machine<double> at_rest_stiffness() const {
+    Machine<double> machine = machine_;
+    for (int i = 0; i < 6; ++i) machine.design.leg[i].stiffness = machine_.stiffness(i, L_0_[i]);
+    return machine;
   }
   static Vec3<double> get(const State& y, int i) { return {y[i], y[i + 1], y[i + 2]}; }
   static void put(double* to, const Vec3<double>& v, const Vec3<double>& w) {
@@ -177,7 +202,7 @@ class MachineOnBase {
   Pose<double> pose(const State& y) const { return {rest_.t + get(y, 0), rotation(get(y, 3)) * R_chart_}; }
 
   Instant instant(double t, const State& y) {
-    Instant now{base_at(t), {}, {}, get(y, 6), get(y, 9), places_, {}, in_.wrench, {}};
+    Instant now{base_at(t), {}, {}, get(y, 6), get(y, 9), places_, {}, in_.wrench, {}, {}};
     const Motion<double>& b = now.base.motion;
     now.frame.a = transposed(b.pose.R, b.a - in_.design.gravity);
     now.frame.w = transposed(b.pose.R, b.w), now.frame.alpha = transposed(b.pose.R, b.alpha);
@@ -218,6 +243,21 @@ class MachineOnBase {
       now.leg_force.group[g] =
           force_.group[g] + held.group[g] + axial_force(legs_.group[g].leg, command.group[g] - stretch);
     }
+    if (law_) follow_law(now);
+  }
+
+  /// Leg forces whose stiffness goes with the commanded length: k times what they are longer than the pose leaves them.
+  void follow_law(Instant& now) const {
+    using D = Dual<1>;
+    Vec6<double> force = now.leg_force.six();
+    const Vec6<double> beside = held.six();
+    for (int i = 0; i < 6; ++i) {
+      const double compression = (force[i] - beside[i]) / legs_.design.leg[i].stiffness;
+      const D k = machine_.stiffness(i, D::variable(L_0_[i] + now.command[i].x, 0));
+      force[i] = beside[i] + k.v * compression;
+      now.stiffening[i] = 0.5 * k.d[0] * compression * compression;
+    }
+    now.leg_force = PerLeg(force);
   }
 
   /// Charts the orientation about `turn` from rest, and measures legs from there.
@@ -244,14 +284,15 @@ class MachineOnBase {
     const Vec6<double> wrench = external_wrench(p.pose.R, now.wrench);
     rate[of_wrench] = dot(wrench.top(), v_b + p.v) + dot(wrench.bottom(), p.w);
     const Vec6<double> force = now.leg_force.six();
-    for (int i = 0; i < 6; ++i) rate[of_command] += force[i] * now.command[i].v;
+    for (int i = 0; i < 6; ++i) rate[of_command] += (force[i] + now.stiffening[i]) * now.command[i].v;
   }
 
   MachineOnBaseInput in_;
   Machine<double> machine_;  // without gravity, which goes with the base's acceleration
+  Vec6<double> L_0_;         // unstretched lengths with no command
   SixLegs legs_;
   Excitation base_, wrench_, command_;
-  bool rotates_, friction_ = false;
+  bool rotates_, friction_ = false, law_ = false;
   Pose<double> rest_;  // of the platform, base axes
   LegPlaces places_;   // what of them does not change
   Quaternion chart_;

@@ -44,7 +44,8 @@ class Simulation {
   Simulation(const MachineOnBaseInput& input, const Excitation& base, const Excitation& wrench,
              const Excitation& command, const Options& options)
       : machine_(input, base, wrench, command), options_(options), size_(largest_radius(input.design)) {
-    const Modes modes = natural_modes(machine_.machine(), machine_.geometry(State{}), machine_.rest().R);
+    const Modes modes =
+        natural_modes(machine_.machine(), machine_.geometry(State{}), machine_.rest().R, Mat3<double>::identity());
     slowest_ = modes.omega[0], fastest_ = modes.omega[5];
     double spacing = std::numeric_limits<double>::infinity();
     for (const Excitation* e : {&base, &wrench, &command}) e->notes(corners_, spacing);
@@ -241,6 +242,7 @@ class Simulation {
       if (L < 10.0 * collapsed * size_) return Outcome::leg_collapsed;
       if (norm(cross(g.k[i], g.S[i])) < 1e-2 * L) return Outcome::joint_locked;
     }
+    if (machine_.outside_law(rk_.t + 100.0 * next_step_)) return Outcome::outside_stiffness_law;
     const bool finite = std::all_of(rate.begin(), rate.end(), [](double x) { return std::isfinite(x); });
     return finite ? Outcome::step_collapse : Outcome::not_finite;
   }

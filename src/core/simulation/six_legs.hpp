@@ -60,16 +60,31 @@ struct SixLegs {
     LegInertia<Lanes> inertia;
     Vec3<Lanes> b, k, p;
   };
+  struct Joints {  // set where they have springs
+    LegSprings<Lanes> springs;
+    JointRest<Lanes> rest;
+  };
   Design<double> design;
   Joint joint;
+  Features features;
   Group group[leg_groups];
+  Joints joints[leg_groups];
 
-  explicit SixLegs(const Machine<double>& m) : design(m.design), joint(m.joint) {
+  explicit SixLegs(const Machine<double>& m) : design(m.design), joint(m.joint), features(m.features) {
     for (int g = 0; g < leg_groups; ++g)
       group[g] = {packed<Leg<Lanes>>(g, m.design.leg, Leg<double>{}),
                   packed<LegInertia<Lanes>>(g, m.inertia, LegInertia<double>{}),
                   packed<Vec3<Lanes>>(g, m.design.b, m.design.b[0]), packed<Vec3<Lanes>>(g, m.design.k, m.design.k[0]),
                   packed<Vec3<Lanes>>(g, m.design.p, m.design.p[0])};
+    if (features.joints)
+      for (int g = 0; g < leg_groups; ++g)
+        joints[g] = {packed<LegSprings<Lanes>>(g, m.design.springs, LegSprings<double>{}),
+                     packed<JointRest<Lanes>>(g, m.rest, m.rest[0])};
+  }
+  /// Adds the moments of the joints' springs to what a group's spherical joints carry.
+  void add_springs(SphericalLoad<Lanes>& load, int g, const LegAxes<Lanes>& leg, const Vec3<Lanes>& axis,
+                   const Mat3<double>& R_p, const Mat3<double>& R_b) const {
+    add_joint_springs(load, joints[g].springs, joints[g].rest, leg, axis, R_p, R_b, joint);
   }
 };
 
@@ -100,15 +115,37 @@ struct LegSums {
     moment += cross(at.q_p, F_s) - transposed(leg.axes, load.moment);
     add_leg_inertia(J, leg, group.inertia, at.q_p);
   }
+  /// The part of the springs in the joints; apart, so that a machine without them goes through nothing new.
+  FLEXAPOD_APART void add_springs(const SixLegs& legs, int g, const LegPlaces::Group& at,
+                                  const Motion<double>& platform, const Motion<double>& base) {
+    const LegAxes<Lanes> leg(at.S, at.k, legs.joint);
+    SphericalLoad<Lanes> load{};
+    const Lanes zero(0.0);
+    load.force = load.moment = Vec3<Lanes>(zero, zero, zero);
+    legs.add_springs(load, g, leg, at.k, platform.pose.R, base.pose.R);
+    const Vec3<Lanes> F_s = transposed(leg.axes, load.force);
+    force += F_s;
+    moment += cross(at.q_p, F_s) - transposed(leg.axes, load.moment);
+  }
 };
+
+/// Takes the wrench against the suspension from that on the platform.
+FLEXAPOD_APART inline void subtract_suspension_load(Vec6<double>& wrench, const Design<double>& d,
+                                                    const Motion<double>& platform, const Motion<double>& base) {
+  const Vec6<double> load = suspension_load(d, platform, base);
+  for (int i = 0; i < 6; ++i) wrench[i] -= load[i];
+}
 
 /// Eq. 35's accelerations of the platform: J_p^-1 (H F + wrench - eta + J_b [a_b; alpha_b]).
 FLEXAPOD_FLAT inline Vec6<double> forward_dynamics(const SixLegs& legs, const LegPlaces& at, Motion<double> platform,
                                                    const Motion<double>& base, const PerLeg& leg_force,
-                                                   const Vec6<double>& wrench) {
+                                                   Vec6<double> wrench) {
   platform = unaccelerated(platform);
+  if (legs.features.suspension) subtract_suspension_load(wrench, legs.design, platform, base);
   LegSums sums{};
   for (int g = 0; g < leg_groups; ++g) sums.add(legs, g, at.group[g], platform, base, leg_force.group[g]);
+  if (legs.features.joints)
+    for (int g = 0; g < leg_groups; ++g) sums.add_springs(legs, g, at.group[g], platform, base);
   Vec6<double> load = platform_wrench(legs.design, platform);
   add(load, sum(sums.force), sum(sums.moment));
   SpatialInertia<double> J = platform_inertia(legs.design, platform.pose.R);
@@ -142,9 +179,15 @@ struct BaseLoad {
     Lanes lost(0.0);
     for (int g = 0; g < leg_groups; ++g) add(legs, g, at.group[g], platform, base, leg_force.group[g], f, m, lost);
     force = sum(f), moment = sum(m), dissipation = sum(lost);
+    if (legs.features.suspension) add_suspension(legs.design, platform, base);
   }
 
  private:
+  void add_suspension(const Design<double>& design, const Motion<double>& platform, const Motion<double>& base) {
+    const Vec6<double> load = suspension_load(design, platform, base);
+    force += load.top(), moment += cross(platform.pose.t - base.pose.t, load.top()) + load.bottom();
+    dissipation += suspension_loss(design, platform, base);
+  }
   FLEXAPOD_FLAT static void add(const SixLegs& legs, int g, const LegPlaces::Group& at, const Motion<double>& platform,
                                 const Motion<double>& base, const Lanes& leg_force, Vec3<Lanes>& force,
                                 Vec3<Lanes>& moment, Lanes& dissipation) {
@@ -152,7 +195,9 @@ struct BaseLoad {
     const LegAxes<Lanes> leg(at.S, at.k, legs.joint);
     const LegEnds<Lanes> end = leg_ends(leg, at.q_p, at.q_b, platform, base, legs.design.gravity);
     const LegMotion<Lanes> motion(leg, end, legs.joint);
-    const LegReactions<Lanes> r = leg_reactions(group.leg, group.inertia, leg, end, motion, leg_force, 0.5);
+    SphericalLoad<Lanes> load = spherical_load(leg, group.inertia, group.leg, end, motion);
+    if (legs.features.joints) legs.add_springs(load, g, leg, at.k, platform.pose.R, base.pose.R);
+    const LegReactions<Lanes> r = leg_reactions(group.leg, group.inertia, leg, end, motion, load, leg_force, 0.5);
     force += r.universal_force;
     moment += cross(at.q_b, r.universal_force) + r.universal_moment;
     dissipation += friction_power(group.leg, joint_rates(end, motion));

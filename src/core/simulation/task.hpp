@@ -12,7 +12,17 @@ namespace simulation_task {
 inline constexpr std::size_t pose_size = 12, motion_size = 24;
 
 /// How a simulation ended.
-enum class Outcome { complete, singular, leg_collapsed, joint_locked, step_collapse, not_finite, max_steps, stopped };
+enum class Outcome {
+  complete,
+  singular,
+  leg_collapsed,
+  joint_locked,
+  step_collapse,
+  not_finite,
+  max_steps,
+  stopped,
+  outside_stiffness_law
+};
 
 /// What sensors show, six numbers each, as changes from rest: leg lengths, their rates, leg forces, displacement of the
 /// platform as seen from the base and its rate, absolute acceleration.

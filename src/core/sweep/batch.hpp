@@ -4,10 +4,11 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include "model/design.hpp"
+#include "model/features.hpp"
 #include "numbers/array.hpp"
 #include "sweep/task.hpp"
 #include "threads/parallel_for.hpp"
@@ -34,6 +35,7 @@ inline sweep_task::Limits no_limits() {
   sweep_task::Limits limits{};
   for (auto& length : limits.length) length[0] = -infinity, length[1] = infinity;
   limits.universal_angle = limits.spherical_angle = infinity, limits.leg_distance = -infinity;
+  limits.universal_moment = limits.spherical_moment = infinity;
   return limits;
 }
 
@@ -60,11 +62,25 @@ inline SweepRows sweep(const sweep_task::Kernel& kernel, sweep_task::Task task, 
   return found;
 }
 
+/// Which springs any of n designs has; throws std::invalid_argument where their stiffness laws are of several kinds.
+inline Features features_of(const double* designs, std::size_t n) {
+  Features all;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Features one(*reinterpret_cast<const Design<double>*>(designs + i * design_size));
+    if (i > 0 && one.law != all.law) throw std::invalid_argument("designs must have stiffness laws of one kind");
+    all = all | one;
+  }
+  return all;
+}
+
 /// Frequencies of n designs: (designs, poses, modes), or (designs, 1, modes) where each has a pose of its own.
 inline Array<double> sweep_designs(const sweep_task::Kernel& kernel, sweep_task::DesignTask task, std::size_t n,
                                    int threads) {
   Array<double> omega({n, task.paired ? 1 : task.poses_count, static_cast<std::size_t>(task.modes)});
   task.omega = omega.data();
+  const Features features = features_of(task.designs, n);
+  task.law = features.law, task.series = features.series;
+  task.joints = features.joints, task.suspension = features.suspension;
   in_blocks(n, 256, threads, [&](std::size_t first, std::size_t last) { kernel.sweep_designs(task, first, last); });
   return omega;
 }

@@ -4,59 +4,81 @@
 
 #include "decomposition/singular_lanes.hpp"
 #include "model/modes.hpp"
-#include "sweep/task.hpp"
+#include "sweep/pose_pack.hpp"
 
 namespace flexapod {
 
 using sweep_task::DesignTask;
 
-/// B = L^-1 F in the platform's axes; `legs`: lanes where every leg has a length and lies across its axis.
-template <class T> SpringMatrix<T> scaled_springs(const Machine<T>& machine, const Pose<T>& pose, mask_t<T>& legs) {
-  const Geometry<T> g(machine.design, Pose<T>(), Pose<T>{-transposed(pose.R, pose.t), transpose(pose.R)});
+/// B = L^-1 F in the platform's axes; `legs`: lanes where every leg has a length within its stiffness law and lies across
+/// its axis.
+template <Swept kind, class T> auto scaled_springs(const Machine<T>& machine, const Pose<T>& pose, mask_t<T>& legs) {
+  const Pose<T> base{-transposed(pose.R, pose.t), transpose(pose.R)};
+  const Geometry<T> g(machine.design, Pose<T>(), base);
   SpatialInertia<T> J = platform_inertia(machine.design, Mat3<T>::identity());
   SpringMatrix<T> directions;
+  T k[spring_count];
   legs = T(0.0) < T(1.0);
   for (int i = 0; i < 6; ++i) {
     const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
     add_leg_inertia(J, leg, machine.inertia[i], g.q_p[i]);
     set_spring_directions(directions, i, g.q_p[i], leg);
-    legs = legs & (leg.cosecant < 1e7) & (leg.L > 0.0);
+    k[i] = kind == Swept::constant ? machine.design.leg[i].stiffness : machine.stiffness(i, leg.L);
+    legs = legs & (leg.cosecant < 1e7) & (leg.L > 0.0) & (k[i] >= 0.0);
   }
-  SpringMatrix<T> B = RootStiffness<T>(machine.design).scaled(directions);
-  Cholesky<T>(J.matrix()).forward_all(B);
-  return B;
+  const Cholesky<T> L(J.matrix());
+  SpringMatrix<T> B = RootStiffness<T>(k).scaled(directions);
+  L.forward_all(B);
+  if constexpr (kind != Swept::others) {
+    return B;
+  } else {
+    const T zero(0.0);
+    const Vec3<T> none(zero, zero, zero);
+    const Sym3<T> nothing{zero, zero, zero, zero, zero, zero};
+    SpatialInertia<T> K{nothing, {{none, none, none}}, nothing};
+    add_other_stiffness(K, machine, g, Mat3<T>::identity(), base.R);
+    Blocks<T> blocks{B, semidefinite_root(K.matrix())};
+    L.forward_lower(blocks.C);
+    return blocks;
+  }
 }
 
 /// Designs first to last of a task, at all its poses or each at its own.
-template <class T> class DesignSweep {
+template <class T, Swept kind> class DesignSweep {
   const DesignTask& task;
 
  public:
   DesignSweep(const DesignTask& t, size_t first, size_t last) : task(t) {
+    features_.law = task.law, features_.series = task.series;
+    features_.joints = task.joints, features_.suspension = task.suspension;
     for (size_t i = first; i < last; i += T::lanes)
       pack(i, last - i < size_t{T::lanes} ? static_cast<int>(last - i) : T::lanes);
   }
 
  private:
-  /// `numbers` columns of rows first to first + count - 1 of a table, the last row repeated to fill the lanes.
-  static void read(const double* table, int numbers, size_t first, int count, T* to) {
+  Features features_;
+
+  /// `numbers` columns of rows first to first + count - 1 of a table that is `width` wide, the last row repeated to fill
+  /// the lanes.
+  static void read(const double* table, int width, int numbers, size_t first, int count, T* to) {
     double lanes[T::lanes];
     for (int c = 0; c < numbers; ++c) {
-      for (int l = 0; l < T::lanes; ++l) lanes[l] = table[(first + (l < count ? l : count - 1)) * numbers + c];
+      for (int l = 0; l < T::lanes; ++l) lanes[l] = table[(first + (l < count ? l : count - 1)) * width + c];
       to[c] = T::load(lanes);
     }
   }
 
   void pack(size_t first, int count) const {
-    Design<T> design;
-    read(task.designs, design_size, first, count, &design.gravity.x);
-    const Machine<T> machine(design, task.joint);
+    Machine<T> machine(task.joint, features_);
+    read(task.designs, design_size, kind == Swept::constant ? plain_size : design_size, first, count,
+         &machine.design.gravity.x);
+    machine.refresh();
     const size_t poses = task.paired ? 1 : task.poses_count;
     for (size_t k = 0; k < poses; ++k) {
       Pose<T> pose;
       static_assert(sizeof(pose) == 12 * sizeof(T));
       if (task.paired) {
-        read(task.poses, 12, first, count, &pose.t.x);
+        read(task.poses, 12, 12, first, count, &pose.t.x);
       } else {
         T* number = &pose.t.x;
         for (int c = 0; c < 12; ++c) number[c] = T(task.poses[12 * k + c]);
@@ -67,7 +89,7 @@ template <class T> class DesignSweep {
 
   template <class Place> void solve(const Machine<T>& machine, const Pose<T>& pose, Place place, int count) const {
     mask_t<T> legs;
-    const auto B = [&] { return scaled_springs(machine, pose, legs); };
+    const auto B = [&] { return scaled_springs<kind>(machine, pose, legs); };
     const int modes = task.modes;
     const auto [share, sum] = modes == 6 ? singular_squares<Wanted::all, T>(B) : singular_squares<Wanted::lowest, T>(B);
     const auto bad = !(legs & (sum < 1e300));

@@ -6,16 +6,35 @@
 
 namespace flexapod {
 
+/// Angles of very many turns to within one.
+template <int lanes> FLEXAPOD_COLD void wind_down(double (&angles)[lanes]) {
+  for (double& a : angles)
+    if (std::abs(a) > 1e6) a = std::atan2(std::sin(a), std::cos(a));
+}
+
+/// A task's poses from `first` on, in lanes; those beyond `count` are filled up with the last of them.
+template <class T> void load_poses(const Task& task, size_t first, size_t count, double (&rows)[12][T::lanes]) {
+  for (int l = 0; l < T::lanes; ++l) {
+    const double* pose = task.poses + (first + (static_cast<size_t>(l) < count ? l : count - 1)) * task.width;
+    for (int c = 0; c < task.width; ++c) rows[c][l] = pose[c];
+  }
+  if (task.width == 6)
+    for (int c = 3; c < 6; ++c)
+      if (any(abs(T::load(rows[c])) > 1e6)) [[unlikely]]
+        wind_down(rows[c]);
+}
+
 /// Frequencies and the condition of H, for the joined packs of several parts.
-template <class T> struct SweepModes {
+template <class T, Swept kind> struct SweepModes {
   const SweptMachine& machine;
   const Task& task;
   const Rows rows;
-  const MassAndForceMap<T>& dynamics;
+  const MassAndForceMap<T, kind>& dynamics;
 
   template <bool all> FLEXAPOD_FLAT T frequencies() const {
     const auto B = [this] { return dynamics.B(machine, Cholesky<T>(dynamics.J.matrix())); };
-    const auto squares = singular_squares<all ? Wanted::all : Wanted::lowest, T>(B);
+    auto squares = singular_squares<all ? Wanted::all : Wanted::lowest, T>(B);
+    if constexpr (kind == Swept::others) replace_rounded(B().square_of_C(), squares);
     const T fault = worse(!(squares.sum < 1e300), sweep_task::no_inertia, dynamics.fault);
     const auto bad = fault > T(sweep_task::singular);
     for (int i = 0; i < (all ? 6 : 1); ++i) {
@@ -41,6 +60,22 @@ template <class T> struct SweepModes {
   }
 
  private:
+  /// The square root of the other springs' sum is right to a rounding of its own size, which may be more than a rounding
+  /// of omega_1 omega_6: there all columns are taken instead. `others`: the sum of the squares that they give alone.
+  void replace_rounded(const T& others, SingularSquares<T>& found) const {
+    const T part = others / found.sum;
+    const auto rounded = (part * part > 16.0 * found.share[0]) & (found.sum < 1e300);
+    if (any(rounded)) [[unlikely]]
+      by_all_columns(rounded, found);
+  }
+  FLEXAPOD_COLD void by_all_columns(const mask_t<T>& where, SingularSquares<T>& found) const {
+    double numbers[12][T::lanes];
+    load_poses<T>(task, rows.first, static_cast<size_t>(rows.count), numbers);
+    const PosePack<T> at(machine, numbers, task.width);
+    T exact[6];
+    squares_by_rotations(all_columns(machine, at, dynamics.J, dynamics.springs.along), exact);
+    for (int i = 0; i < 6; ++i) found.share[i] = select(where, exact[i] / found.sum, found.share[i]);
+  }
   static T singular(const mask_t<T>& bad, const T& fault) {
     return select(bad & (fault <= 0.0), T(sweep_task::singular), fault);
   }
@@ -49,13 +84,13 @@ template <class T> struct SweepModes {
 /// Poses of a task, in packs of T::parts parts: part by part where the work is wide and many numbers are held, joined
 /// where it is one long chain. A batch of packs goes through one piece of the work after the other, so that the
 /// processor keeps the piece's instructions at hand.
-template <class T> class Sweep {
+template <class T, Swept kind> class Sweep {
   using Part = typename T::Part;
   static constexpr int batch = 8;
   const Task& task;
   const SweptMachine machine;
-  MassAndForceMap<Part> part;
-  MassAndForceMap<T> joined[batch];
+  MassAndForceMap<Part, kind> part;
+  MassAndForceMap<T, kind> joined[batch];
   double rows[12][Part::lanes];
 
  public:
@@ -81,59 +116,50 @@ template <class T> class Sweep {
     const unsigned asked = task.quantities;
     const auto each = [&](auto&& piece) {
       for (size_t done = 0; done < count; done += T::lanes) {
-        MassAndForceMap<T>& dynamics = joined[done / T::lanes];
+        MassAndForceMap<T, kind>& dynamics = joined[done / T::lanes];
         const size_t left = count - done;
         const Rows rows{first + done, static_cast<int>(left < T::lanes ? left : T::lanes)};
-        dynamics.fault = piece(SweepModes<T>{machine, task, rows, dynamics});
+        dynamics.fault = piece(SweepModes<T, kind>{machine, task, rows, dynamics});
       }
     };
-    if (asked & Quantity::cond_H) each([](const SweepModes<T>& modes) { return modes.condition(); });
-    if (asked & Quantity::omega) each([](const SweepModes<T>& modes) { return modes.template frequencies<true>(); });
+    if (asked & Quantity::cond_H) each([](const SweepModes<T, kind>& modes) { return modes.condition(); });
+    if (asked & Quantity::omega)
+      each([](const SweepModes<T, kind>& modes) { return modes.template frequencies<true>(); });
     else if (asked & Quantity::omega_1)
-      each([](const SweepModes<T>& modes) { return modes.template frequencies<false>(); });
-    each([](const SweepModes<T>& modes) { return modes.status(); });
+      each([](const SweepModes<T, kind>& modes) { return modes.template frequencies<false>(); });
+    each([](const SweepModes<T, kind>& modes) { return modes.status(); });
   }
 
   void one_part(size_t first, size_t count) {
-    load(first, count);
+    load_poses<Part>(task, first, count, rows);
     const PosePack<Part> at = pose_pack();
     const unsigned asked = task.quantities;
     if (asked & modal) assemble(at);
-    else if (asked & Quantity::cond_H) part.set_legs(machine, at);
+    else if (asked & Quantity::cond_H) part.set_legs(at);
     else part.fault = at.fault;
-    const SweepQuantities<Part> quantities{machine, task, {first, static_cast<int>(count)}, at};
+    const SweepQuantities<Part, kind> quantities{machine, task, {first, static_cast<int>(count)}, at};
     quantities.evaluate(part.fault);
   }
   FLEXAPOD_FLAT PosePack<Part> pose_pack() const { return PosePack<Part>(machine, rows, task.width); }
   FLEXAPOD_FLAT void assemble(const PosePack<Part>& at) { part.set(machine, at); }
 
-  /// A short last part is filled up with its last pose.
-  void load(size_t first, size_t count) {
-    for (int l = 0; l < Part::lanes; ++l) {
-      const double* pose = task.poses + (first + (static_cast<size_t>(l) < count ? l : count - 1)) * task.width;
-      for (int c = 0; c < task.width; ++c) rows[c][l] = pose[c];
-    }
-    if (task.width == 6)
-      for (int c = 3; c < 6; ++c)
-        if (any(abs(Part::load(rows[c])) > 1e6)) [[unlikely]]
-          wind_down(rows[c]);
-  }
-  /// Angles of very many turns to within one.
-  static FLEXAPOD_COLD void wind_down(double (&angles)[Part::lanes]) {
-    for (double& a : angles)
-      if (std::abs(a) > 1e6) a = std::atan2(std::sin(a), std::cos(a));
-  }
-  void join(MassAndForceMap<T>& joined, int i) const {
+  void join(MassAndForceMap<T, kind>& joined, int i) const {
     joined.fault.set_part(i, part.fault);
     if (!(task.quantities & (modal | Quantity::cond_H))) return;
     for (int r = 0; r < 6; ++r)
       for (int c = 0; c < spring_count; ++c) joined.directions[r][c].set_part(i, part.directions[r][c]);
     if (!(task.quantities & modal)) return;
-    join(joined.J.top, part.J.top, i), join(joined.J.bottom, part.J.bottom, i);
+    join(joined.J, part.J, i);
+    if constexpr (kind != Swept::constant)
+      for (int j = 0; j < spring_count; ++j) joined.springs.along.root[j].set_part(i, part.springs.along.root[j]);
+    if constexpr (kind == Swept::others) join(joined.springs.others, part.springs.others, i);
+  }
+  static void join(SpatialInertia<T>& to, const SpatialInertia<Part>& from, int i) {
+    join(to.top, from.top, i), join(to.bottom, from.bottom, i);
     for (int r = 0; r < 3; ++r) {
-      joined.J.bottom_left.row[r].x.set_part(i, part.J.bottom_left.row[r].x);
-      joined.J.bottom_left.row[r].y.set_part(i, part.J.bottom_left.row[r].y);
-      joined.J.bottom_left.row[r].z.set_part(i, part.J.bottom_left.row[r].z);
+      to.bottom_left.row[r].x.set_part(i, from.bottom_left.row[r].x);
+      to.bottom_left.row[r].y.set_part(i, from.bottom_left.row[r].y);
+      to.bottom_left.row[r].z.set_part(i, from.bottom_left.row[r].z);
     }
   }
   static void join(Sym3<T>& to, const Sym3<Part>& from, int i) {

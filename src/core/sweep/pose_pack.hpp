@@ -12,9 +12,9 @@ namespace flexapod {
 /// What of a machine is the same at all poses.
 struct SweptMachine {
   Machine<double> machine;
-  Machine<double> weightless;         // gravity enters as an acceleration of platform and base
-  SpatialInertia<double> J_platform;  // platform axes
-  RootStiffness<double> root_stiffness;
+  Machine<double> weightless;            // gravity enters as an acceleration of platform and base
+  SpatialInertia<double> J_platform;     // platform axes
+  RootStiffness<double> root_stiffness;  // where it is the same at all poses
   SharedJoints shared;
   double size;  // of the platform: makes rows of forces and of moments comparable
 
@@ -22,7 +22,7 @@ struct SweptMachine {
       : machine(*reinterpret_cast<const Design<double>*>(task.design), task.joint),
         weightless(machine),
         J_platform(platform_inertia(machine.design, Mat3<double>::identity())),
-        root_stiffness(machine.design),
+        root_stiffness(machine.axial.constant),
         shared(machine.design),
         size(mean_radius(machine.design)) {
     weightless.design.gravity = Vec3<double>();
@@ -75,17 +75,32 @@ template <class T> struct PosePack {
   }
 };
 
+/// Which springs a sweep's machine has: constant ones along the legs, some that go with the legs' lengths, or others
+/// too. Each is a kernel of its own.
+enum class Swept { constant, law, others };
+
+/// What of the springs goes with the pose.
+template <class T, Swept springs> struct PoseSprings {};
+template <class T> struct PoseSprings<T, Swept::law> {
+  RootStiffness<T> along;
+};
+template <class T> struct PoseSprings<T, Swept::others> {
+  RootStiffness<T> along;
+  SpatialInertia<T> others;  // sum k d d^T of joints and suspension, platform axes
+};
+
 /// What vibrates: J_p and the directions of the springs, in the platform's axes.
-template <class T> struct MassAndForceMap {
+template <class T, Swept kind> struct MassAndForceMap {
   SpatialInertia<T> J;
   SpringMatrix<T> directions;
   T fault;
+  PoseSprings<T, kind> springs;
 
-  Mat6<T> H() const { return leg_directions(directions); }
+  const Mat6<T>& H() const { return directions; }
   /// With lengths and directions only: J is left.
-  void set_legs(const SweptMachine& m, const PosePack<T>& at) {
+  void set_legs(const PosePack<T>& at) {
     fault = at.fault;
-    for (int i = 0; i < 6; ++i) set_spring_directions(directions, i, at.g, m.machine.joint);
+    for (int i = 0; i < 6; ++i) set_spring_directions(directions, i, at.g);
   }
   void set(const SweptMachine& m, const PosePack<T>& at) {
     const auto axes = [&](int i) { return LegAxes<T>(at.g.S[i], at.g.k[i], m.machine.joint); };
@@ -97,20 +112,77 @@ template <class T> struct MassAndForceMap {
       set_spring_directions(directions, i, at.g.q_p[i], legs[i]);
       fault = worse(!(legs[i].cosecant < 1e7), sweep_task::no_leg, fault);
     }
+    set_springs(m, at, legs);
+  }
+  /// What of the springs goes with the pose.
+  void set_springs(const SweptMachine& m, const PosePack<T>& at, const LegAxes<T> (&legs)[6]) {
+    if constexpr (kind != Swept::constant) {
+      for (int i = 0; i < 6; ++i) {
+        if (m.machine.features.law == Law::constant) {
+          springs.along.root[i] = T(m.root_stiffness.root[i]);
+          continue;
+        }
+        const T k = m.machine.axial.at(m.machine.design, m.machine.features, i, legs[i].L);
+        springs.along.root[i] = sqrt(k);
+        fault = worse(!(k > 0.0), sweep_task::outside_stiffness_law, fault);
+      }
+    }
+    if constexpr (kind == Swept::others) {
+      springs.others = SpatialInertia<T>{zero(), {{none(), none(), none()}}, zero()};
+      if (m.machine.features.joints)
+        for (int i = 0; i < 6; ++i)
+          add_joint_stiffness(springs.others, legs[i], m.machine.design.springs[i], at.g.q_p[i], m.machine.joint);
+      if (m.machine.features.suspension)
+        add_suspension(springs.others, m.machine.design, Mat3<T>::identity(), at.base().R);
+    }
+  }
+  /// F: six columns, or those along the legs and a square root of all others.
+  auto F(const SweptMachine& m) const {
+    if constexpr (kind == Swept::constant) return m.root_stiffness.scaled(directions);
+    else if constexpr (kind == Swept::law) return springs.along.scaled(directions);
+    else return Blocks<T>{springs.along.scaled(directions), semidefinite_root(springs.others.matrix())};
   }
   /// B = L^-1 F.
-  SpringMatrix<T> B(const SweptMachine& m, const Cholesky<T>& L) const {
-    SpringMatrix<T> B = m.root_stiffness.scaled(directions);
-    L.forward_all(B);
+  auto B(const SweptMachine& m, const Cholesky<T>& L) const {
+    auto B = F(m);
+    if constexpr (kind == Swept::others) L.forward_all(B.A), L.forward_lower(B.C);
+    else L.forward_all(B);
     return B;
   }
 
  private:
+  static Sym3<T> zero() { return {T(0.0), T(0.0), T(0.0), T(0.0), T(0.0), T(0.0)}; }
+  static Vec3<T> none() { return {T(0.0), T(0.0), T(0.0)}; }
   static SpatialInertia<T> pack(const SpatialInertia<double>& J) {
     const auto sym = [](const Sym3<double>& m) { return Sym3<T>{m.xx, m.yy, m.zz, m.xy, m.xz, m.yz}; };
     return {sym(J.top), {{J.bottom_left.row[0], J.bottom_left.row[1], J.bottom_left.row[2]}}, sym(J.bottom)};
   }
 };
+
+/// L^-1 F with a column for each spring, where a square root of their sum would not be accurate enough.
+template <class T>
+FLEXAPOD_COLD Mat6<T, all_springs> all_columns(const SweptMachine& m, const PosePack<T>& at, const SpatialInertia<T>& J,
+                                               const RootStiffness<T>& along) {
+  Mat6<T, all_springs> B;
+  const Mat6<double> C = suspension_root(m.machine.design);
+  const Mat3<T> R_b = at.base().R;
+  for (int i = 0; i < 6; ++i) {
+    const LegAxes<T> leg(at.g.S[i], at.g.k[i], m.machine.joint);
+    const Vec6<T> h = leg_wrench(at.g.q_p[i], leg.s());
+    const JointDirections<T> joint(leg, at.g.q_p[i], m.machine.joint);
+    Vec6<T> column;
+    for (int r = 0; r < 6; ++r) column[r] = T(C[r][i]);
+    column = suspension_wrench_at(R_b, Vec3<T>(m.machine.design.suspension_point), column);
+    for (int r = 0; r < 6; ++r) {
+      B[r][i] = along.root[i] * h[r], B[r][spring_count + joint_spring_count + i] = column[r];
+      for (int j = 0; j < springs_of_joints; ++j)
+        B[r][spring_count + springs_of_joints * i + j] =
+            std::sqrt(joint_stiffness(m.machine.design.springs[i], j)) * joint.d[j][r];
+    }
+  }
+  Cholesky<T>(J.matrix()).forward_all(B);
+  return B;
+}
 
 /// Writes results of a pack of poses: rows `first` on, `count` of them.
 struct Rows {

@@ -11,7 +11,7 @@ using sweep_task::Quantity;
 using sweep_task::Task;
 
 /// Quantities that need no modes.
-template <class T> struct SweepQuantities {
+template <class T, Swept kind> struct SweepQuantities {
   const SweptMachine& machine;
   const Task& task;
   const Rows rows;
@@ -19,8 +19,8 @@ template <class T> struct SweepQuantities {
 
   /// Everything that is asked for. A fault that is found is noted where there was none.
   void evaluate(T& fault) const {
-    constexpr unsigned geometric =
-        Quantity::leg_length | Quantity::joint_angle | Quantity::leg_distance | Quantity::within_limits;
+    constexpr unsigned geometric = Quantity::leg_length | Quantity::joint_angle | Quantity::joint_moment |
+                                   Quantity::leg_distance | Quantity::within_limits;
     const unsigned asked = task.quantities;
     const auto note = [&](const T& found) { fault = select(fault > 0.0, fault, found); };
     if (asked & geometric) geometry();
@@ -54,6 +54,7 @@ template <class T> struct SweepQuantities {
         if (check) bound(universal, -1.0, limits.universal_angle), bound(spherical, -1.0, limits.spherical_angle);
       }
     }
+    moments(bad, bound);
     if ((asked & Quantity::leg_distance) || (check && limits.leg_distance > -1e300)) {
       const T distance = least_leg_distance(at.g, machine.shared);
       if (asked & Quantity::leg_distance) rows.put(task.leg_distance_, unless(bad, distance));
@@ -64,6 +65,31 @@ template <class T> struct SweepQuantities {
       select(within, T(1.0), T(0.0)).store(yes);
       for (int l = 0; l < rows.count; ++l) task.within_limits_[rows.first + l] = yes[l] != 0.0;
     }
+  }
+
+  /// Of the joints' springs: about the two axes of a universal joint together, and where the leg bends at the platform.
+  template <class Bound> FLEXAPOD_INLINE void moments(const mask_t<T>& bad, const Bound& bound) const {
+    const sweep_task::Limits& limits = *task.limits;
+    const bool asked = task.quantities & Quantity::joint_moment;
+    const bool check = task.quantities & Quantity::within_limits &&
+                       (limits.universal_moment < 1e300 || limits.spherical_moment < 1e300);
+    if (!asked && !check) return;
+    for (int i = 0; i < 6; ++i) {
+      T universal(0.0), spherical(0.0);
+      if constexpr (kind == Swept::others)
+        if (machine.machine.features.joints) joint_moments(i, universal, spherical);
+      if (asked) rows.put(task.universal_moment_, unless(bad, universal), i, 6);
+      if (asked) rows.put(task.spherical_moment_, unless(bad, spherical), i, 6);
+      if (check) bound(universal, -1.0, limits.universal_moment), bound(spherical, -1.0, limits.spherical_moment);
+    }
+  }
+  FLEXAPOD_APART void joint_moments(int i, T& universal, T& spherical) const {
+    const Machine<double>& m = machine.machine;
+    const LegAxes<T> leg(at.g.S[i], at.g.k[i], m.joint);
+    const JointSprings<T> springs(m.design.springs[i], m.rest[i], leg, at.g.k[i], Mat3<T>::identity(), at.base().R,
+                                  m.joint);
+    universal = springs.universal_moment(m.design.springs[i]);
+    spherical = springs.spherical_moment(m.design.springs[i]);
   }
 
   /// The largest leg force at rest: weight is the same as no gravity and an acceleration of everything against it.
@@ -78,7 +104,7 @@ template <class T> struct SweepQuantities {
     const T weak = solve(H, load);
     T most = abs(load[0][0]);
     for (int i = 1; i < 6; ++i) most = max(most, abs(load[0][i]));
-    return finish(task.leg_force_, most, weak);
+    return finish(task.leg_force_, most, weak, at.fault);
   }
 
   /// The least translational stiffness: 1 / largest eigenvalue of the block of translations of K^-1, which is Y^T Y with
@@ -86,7 +112,10 @@ template <class T> struct SweepQuantities {
   FLEXAPOD_FLAT T stiffness() const {
     Vec6<T> side[3];
     for (int i = 0; i < 3; ++i) side[i][i] = T(1.0);
-    SpringMatrix<T> F = machine.root_stiffness.scaled(legs().directions);
+    MassAndForceMap<T, kind> dynamics;
+    if constexpr (kind == Swept::constant) dynamics = legs();
+    else dynamics.set(machine, at);
+    auto F = dynamics.F(machine);
     auto&& square = square_factor(F);
     const T weak = solve(square, side);
     T Y[3][6];
@@ -94,13 +123,13 @@ template <class T> struct SweepQuantities {
       for (int j = 0; j < 6; ++j) Y[i][j] = side[i][j];
     orthogonalise_rows<3, 6, T>(Y, nullptr);
     const T most = max(max(row_square(Y[0]), row_square(Y[1])), row_square(Y[2]));
-    return finish(task.lowest_stiffness_, 1.0 / most, weak);
+    return finish(task.lowest_stiffness_, 1.0 / most, weak, dynamics.fault);
   }
 
   /// Derivatives of the lowest frequency by the pose: those of omega^2 are v^T (dK - omega^2 dJ) v for its mode v.
   T gradient() const {
     using D = Dual<6, T>;
-    MassAndForceMap<T> dynamics;
+    MassAndForceMap<T, kind> dynamics;
     dynamics.set(machine, at);
     const Cholesky<T> L(dynamics.J.matrix());
     Vec6<T> v;
@@ -109,8 +138,13 @@ template <class T> struct SweepQuantities {
     v = Vec6<T>::of(at.pose.R * v.top(), at.pose.R * v.bottom());
     const Pose<D> moved = displaced(at.pose, variables<D>(0), variables<D>(3));
     const Geometry<D> g(machine.machine.design, moved, Pose<D>());
-    const D residual = rayleigh_residual(machine.machine, inertia(machine.machine, g, moved.R),
-                                         spring_directions(g, machine.machine.joint), v, lambda);
+    const Mat6<D> J = inertia(machine.machine, g, moved.R);
+    const auto along = [&](const auto& k) { return rayleigh_residual(k, J, spring_directions(g), v, lambda); };
+    D residual;
+    if constexpr (kind == Swept::constant) residual = along(machine.machine.axial.constant);
+    else residual = with_stiffness(machine.machine, g, along);
+    if constexpr (kind == Swept::others)
+      residual += other_product(other_stiffness(machine.machine, g, moved.R, Mat3<D>::identity()), v);
     const T half = 0.5 * rsqrt(lambda);
     T by[6];
     for (int i = 0; i < 6; ++i) by[i] = half * residual.d[i];
@@ -129,9 +163,9 @@ template <class T> struct SweepQuantities {
     const Vec3<T>& S = at.g.S[i];
     return upper_angle(norm(cross(n, S)), dot(n, S));
   }
-  MassAndForceMap<T> legs() const {
-    MassAndForceMap<T> legs;
-    legs.set_legs(machine, at);
+  MassAndForceMap<T, kind> legs() const {
+    MassAndForceMap<T, kind> legs;
+    legs.set_legs(at);
     return legs;
   }
   /// Solves A x = b with rows of moments divided by the platform's size; how near A is to singular.
@@ -142,10 +176,10 @@ template <class T> struct SweepQuantities {
     solve_orthogonal(A, b, weak);
     return weak;
   }
-  T finish(double* to, const T& value, const T& weak) const {
+  T finish(double* to, const T& value, const T& weak, const T& fault) const {
     const auto hopeless = weak < 1e-13;
-    rows.put(to, unless(hopeless | (at.fault > 0.0), value));
-    return worse(hopeless, sweep_task::singular, at.fault);
+    rows.put(to, unless(hopeless | (fault > 0.0), value));
+    return worse(hopeless, sweep_task::singular, fault);
   }
 };
 

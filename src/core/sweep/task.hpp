@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "model/joint.hpp"
+#include "model/stiffness_law.hpp"
 
 namespace sweep_task {
 
@@ -20,7 +21,8 @@ namespace sweep_task {
   QUANTITY(lowest_stiffness)                \
   QUANTITY(joint_angle)                     \
   QUANTITY(within_limits)                   \
-  QUANTITY(omega_1_gradient)
+  QUANTITY(omega_1_gradient)                \
+  QUANTITY(joint_moment)
 
 // ARRAY(name, quantity, columns): the arrays of numbers that come back, and what to ask for to get them.
 #define FLEXAPOD_SWEEP_ARRAYS(ARRAY)           \
@@ -33,6 +35,8 @@ namespace sweep_task {
   ARRAY(lowest_stiffness, lowest_stiffness, 1) \
   ARRAY(universal_angle, joint_angle, 6)       \
   ARRAY(spherical_angle, joint_angle, 6)       \
+  ARRAY(universal_moment, joint_moment, 6)     \
+  ARRAY(spherical_moment, joint_moment, 6)     \
   ARRAY(omega_1_gradient, omega_1_gradient, 6)
 
 #define FLEXAPOD_NUMBERED(name) name,
@@ -42,17 +46,19 @@ enum Quantity : unsigned { FLEXAPOD_SWEEP_QUANTITIES(FLEXAPOD_BIT) };
 
 enum Status : std::uint8_t {
   ok = 0,
-  singular = 1,    // beyond what float64 tells from a singular pose
-  no_leg = 2,      // a leg without length, or along its universal axis
-  not_finite = 3,  // the pose holds NaN or infinity
-  no_inertia = 4   // the inertia matrix is not positive definite
+  singular = 1,              // beyond what float64 tells from a singular pose
+  no_leg = 2,                // a leg without length, or along its universal axis
+  not_finite = 3,            // the pose holds NaN or infinity
+  no_inertia = 4,            // the inertia matrix is not positive definite
+  outside_stiffness_law = 5  // a leg has a length at which its stiffness law says nothing
 };
 
 struct Limits {
-  double neutral[2][6][3];                  // leg directions in the middle of their joints: base axes, platform axes
-  double length[6][2];                      // m
-  double universal_angle, spherical_angle;  // rad
-  double leg_distance;                      // m
+  double neutral[2][6][3];                    // leg directions in the middle of their joints: base axes, platform axes
+  double length[6][2];                        // m
+  double universal_angle, spherical_angle;    // rad
+  double universal_moment, spherical_moment;  // of springs that bend, N m
+  double leg_distance;                        // m
 };
 
 struct Task {
@@ -73,7 +79,9 @@ struct Task {
 struct DesignTask {
   const double* designs;  // rows of such numbers
   core_enums::Joint joint;
-  const double* poses;  // rows of 12: position; rotation matrix by rows
+  core_enums::Law law;              // of all of them
+  bool series, joints, suspension;  // springs that any of them has
+  const double* poses;              // rows of 12: position; rotation matrix by rows
   std::size_t poses_count;
   bool paired;
   int modes;      // 1: the lowest, 6: all
