@@ -10,6 +10,8 @@ from .dynamics import forward_dynamics as forward_dynamics
 from .dynamics import inverse_dynamics as inverse_dynamics
 from .energies import Energy as Energy
 from .energies import energy as energy
+from .flexures import JointMoments as JointMoments
+from .flexures import joint_moments as joint_moments
 from .joint_limits import JointAngles as JointAngles
 from .joint_limits import LimitsCheck as LimitsCheck
 from .joint_limits import check_limits as check_limits

@@ -23,15 +23,19 @@ class Energy(NamedTuple):
     gravitational : ndarray or float
         Potential energy of gravity, zero at the inertial origin, J, (...).
     elastic : ndarray or float
-        Energy of the leg springs, J, (...).
+        Energy of all springs, J, (...).
     dissipation : ndarray or float
-        Power lost to friction in the joints, W, (...).
+        Power lost to friction in the joints and in the suspension's damper, W, (...).
+    joints, suspension : ndarray or float
+        Parts of `elastic` in the springs of the joints and in the suspension, J, (...).
     """
 
     kinetic: Array | float
     gravitational: Array | float
     elastic: Array | float
     dissipation: Array | float
+    joints: Array | float
+    suspension: Array | float
 
 
 def energy(
@@ -54,14 +58,14 @@ def energy(
     base : Pose, Motion or array_like, optional
         The same of the base, in the inertial frame. Left out, the base is at rest at the inertial frame's origin.
     unstretched_length : array_like, optional
-        Lengths of the unloaded legs, m, (..., 6). Left out, the elastic energy is zero.
+        Lengths of the unloaded legs, m, (..., 6). Left out, the energy of the legs' springs is not counted.
     joint : {"universal", "spin_free"}
         Model of the base joints: exact universal joints, or the paper's legs that do not spin.
 
     Returns
     -------
     Energy
-        `kinetic`, `gravitational` and `elastic`, J, and `dissipation`, W, (...) each.
+        `kinetic`, `gravitational` and `elastic`, J, `dissipation`, W, and `joints` and `suspension`, J, (...) each.
 
     Raises
     ------
@@ -72,7 +76,9 @@ def energy(
 
     Notes
     -----
-    Energies of the rigid bodies of the platform and of both parts of the legs, and of the leg springs.
+    Energies of the rigid bodies of the platform and of both parts of the legs, and of all springs. That of a leg is
+    k (L - L_0)^2 / 2 with the stiffness k of the unstretched length L_0; joints and suspension have theirs from the
+    rest pose.
 
     Examples
     --------
@@ -83,6 +89,7 @@ def energy(
     s = states(hexapod, pose, base)
     L_0 = per_leg(NO_LEGS if unstretched_length is None else unstretched_length, "unstretched_length", s.shape)
     rows = _core.energy(hexapod.packed, as_joint(joint), s.platform, s.base, L_0)
-    if unstretched_length is None:
-        rows[:, 2] = 0.0
-    return Energy(*(column.reshape(s.shape)[()] for column in rows.T))
+    kinetic, gravitational, legs, joints, suspension, lost = (column.reshape(s.shape)[()] for column in rows.T)
+    elastic = joints + suspension + (0.0 if unstretched_length is None else legs)
+    nothing = 0.0 * kinetic  # NaN where there is no pose
+    return Energy(kinetic, gravitational, elastic, lost, joints + nothing, suspension + nothing)

@@ -10,6 +10,7 @@ from flexapod import _core
 from flexapod.conventions import LEG_PAIRS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError, told_apart
+from flexapod.mechanics.flexures import joint_moments
 from flexapod.mechanics.inputs import States, pose_or_home, states
 from flexapod.mechanics.kinematics import force_transformation, home_pose, inverse_kinematics
 from flexapod.pose import PoseLike, as_pose
@@ -150,7 +151,7 @@ def leg_distances(hexapod: Hexapod, at: States) -> Array:
 
 
 def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None) -> LimitsCheck:
-    """Check leg lengths, joint angles and the distance between legs against the design's limits.
+    """Check leg lengths, joint angles, moments of flexures and the distance between legs against the design's limits.
 
     Parameters
     ----------
@@ -178,7 +179,9 @@ def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLi
 
     Notes
     -----
-    Joint angles are those of `joint_angles`, the distance is that of `flexapod.mechanics.leg_distance`.
+    Joint angles are those of `joint_angles`, the distance is that of `flexapod.mechanics.leg_distance`. The moments are
+    those of `joint_moments` in the exact joint model: of a base joint about both axes together, and of a platform joint
+    across the leg. Joints without springs have none.
 
     Examples
     --------
@@ -191,7 +194,7 @@ def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLi
     ok = np.ones(shape, dtype=bool)
     words: list[str] = []
     for quantity in limit_excess(hexapod, pose, base=base):
-        _, value, least, most = quantity
+        _, _, value, least, most = quantity
         kept = np.asarray((value >= least) & (value <= most))
         ok &= kept.all(axis=-1) if kept.ndim > len(shape) else kept  # of each leg, or of all of them
         if not shape:
@@ -202,7 +205,8 @@ def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLi
 class LimitedQuantity(NamedTuple):
     """A limited quantity: its name and unit, its values and its bounds."""
 
-    what: str
+    name: str
+    unit: str
     value: Array
     least: Array | float
     most: Array | float
@@ -217,23 +221,46 @@ def limit_excess(
     if limits.leg_length is not None:
         bounds = np.asarray(limits.leg_length)
         lengths = inverse_kinematics(hexapod, pose, base=base)
-        result.append(LimitedQuantity("length m", lengths, bounds[..., 0], bounds[..., 1]))
+        result.append(LimitedQuantity("length", "m", lengths, bounds[..., 0], bounds[..., 1]))
+    law = hexapod.legs.stiffness_law
+    if law is not None:
+        lengths = inverse_kinematics(hexapod, pose, base=base)
+        least, most = law.range.T
+        result.append(LimitedQuantity("length for its stiffness law", "m", lengths, least, most))
     if limits.universal_angle is not None or limits.spherical_angle is not None:
         angles = joint_angles(hexapod, pose, base=base)
         for name, most in (("universal", limits.universal_angle), ("spherical", limits.spherical_angle)):
             if most is not None:
                 value = np.degrees(getattr(angles, name))
-                result.append(LimitedQuantity(f"{name} joint angle deg", value, -np.inf, float(np.degrees(most))))
+                result.append(LimitedQuantity(f"{name} joint angle", "deg", value, -np.inf, float(np.degrees(most))))
+    if limits.universal_moment is not None or limits.spherical_moment is not None:
+        result += _moments(hexapod, pose, base)
     if limits.leg_distance is not None:
         distance = np.asarray(leg_distance(hexapod, pose, base=base))
-        result.append(LimitedQuantity("least distance between legs m", distance, limits.leg_distance, np.inf))
+        result.append(LimitedQuantity("least distance between legs", "m", distance, limits.leg_distance, np.inf))
     return result
+
+
+def _moments(hexapod: Hexapod, pose: PoseLike | None, base: PoseLike | None) -> list[LimitedQuantity]:
+    limits = hexapod.limits
+    if hexapod.rest is None:  # then there are no springs in the joints
+        shape = states(hexapod, pose, base).shape
+        bends = {"universal": np.zeros((*shape, 6)), "spherical": np.zeros((*shape, 6))}
+    else:
+        found = joint_moments(hexapod, pose, base=base)
+        bends = {"universal": np.linalg.norm(found.universal_moment, axis=-1), "spherical": found.bending_moment}
+    most = {"universal": limits.universal_moment, "spherical": limits.spherical_moment}
+    return [
+        LimitedQuantity(f"{name} joint moment", "N m", bends[name], -np.inf, bound)
+        for name, bound in most.items()
+        if bound is not None
+    ]
 
 
 def in_words(quantity: LimitedQuantity) -> list[str]:
     """What a quantity of one pose exceeds, leg by leg."""
     value = np.atleast_1d(quantity.value)
-    name, unit = quantity.what.rsplit(" ", 1)
+    name, unit = quantity.name, quantity.unit
     low, high = np.broadcast_to(quantity.least, value.shape), np.broadcast_to(quantity.most, value.shape)
     words = []
     for i, v in enumerate(value):

@@ -16,7 +16,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
 from flexapod.mechanics.inputs import ZERO, as_joint, single_base, single_pose, states, wrench
 from flexapod.mechanics.modes import MODE_WORDS
-from flexapod.mechanics.springs import spring_matrix
+from flexapod.mechanics.springs import axial_stiffness, spring_losses, spring_matrix
 from flexapod.mechanics.state_space import StateSpace, state_space_of
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.optional import needed
@@ -75,19 +75,20 @@ class Linearisation:
     All matrices are (6, 6), SI, in inertial axes. x and x_b are small displacements of platform and base: translation
     of the reference point (m) and rotation vector (rad). f is the change of the leg forces (N) beside their springs, w
     the change of the wrench on the platform (N, N m), which, like the static one, turns with the platform. A command
-    that lengthens leg i's unstretched length by d acts as f = K_i d.
+    that lengthens leg i's unstretched length by d acts as f = command_stiffness_i d.
 
     Attributes
     ----------
     M, C, K : ndarray
-        Mass, damping and stiffness of the platform on its legs. K holds leg stiffness, the geometric stiffness of
-        loaded legs, gravity and the turning external wrench; with an external wrench it need not be symmetric.
+        Mass, damping and stiffness of the platform on its legs. K holds the stiffness of legs, joints and suspension,
+        the geometric stiffness of loaded legs and joints, gravity and the turning external wrench; with an external
+        wrench it need not be symmetric.
     M_b, C_b, K_b : ndarray
         Coupling to the motion of the base.
     H : ndarray
         Force transformation.
     leg_stiffness : ndarray
-        Axial stiffness of the legs, N/m, (6,).
+        Axial stiffness of the legs at their unstretched lengths, with springs in series, N/m, (6,).
     rest : Equilibrium
         The equilibrium about which the dynamics are linear.
     carry : ndarray
@@ -96,6 +97,11 @@ class Linearisation:
         Gravity, m/s2, (3,).
     springs : ndarray
         F, (6, m), a column for each spring: without load, gravity and damping K is F F^T.
+    command_stiffness : ndarray
+        Change of a leg's force by its unstretched length, N/m, (6,): `leg_stiffness`, and by a stiffness law what the
+        preload changes with it.
+    losses : ndarray
+        Structural loss factor that the design gives each column of `springs`, (m,).
     """
 
     M: Array
@@ -110,6 +116,8 @@ class Linearisation:
     carry: Array
     gravity: Array
     springs: Array
+    command_stiffness: Array
+    losses: Array
 
     def modes(self) -> DampedModes:
         """Compute the complex modes with the base fixed; of a pair of real poles, the slower or growing one."""
@@ -245,7 +253,10 @@ def linearise(
             "no leg forces of finite size hold this pose: it is singular but for rounding. Move the platform away."
         )
     r = unpack(s.platform[0])["position"] - unpack(s.base[0])["position"]
-    F = spring_matrix(hexapod, pose, base=base)
+    F = spring_matrix(hexapod, pose, base=base, joint=joint)
+    stiffness, slope = axial_stiffness(hexapod, rest.unstretched_length)
+    command = stiffness + slope * (rest.unstretched_length - rest.leg_length)
     carry = np.eye(6)
     carry[:3, 3:] = skew(r).T
-    return Linearisation(M, C, K, M_b, C_b, K_b, H, hexapod.legs.stiffness, rest, carry, hexapod.gravity, F)
+    losses = spring_losses(hexapod, F.shape[1])
+    return Linearisation(M, C, K, M_b, C_b, K_b, H, stiffness, rest, carry, hexapod.gravity, F, command, losses)

@@ -11,25 +11,31 @@ from flexapod.conventions import AXES, Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import as_joint, single_base, single_pose, states
 from flexapod.mechanics.modes import natural_modes
-from flexapod.mechanics.springs import BY_LEG, spring_matrix
+from flexapod.mechanics.springs import SPRING_LEG, law_states, spring_matrix
 from flexapod.pose import Pose, PoseLike
 from flexapod.rotations import skew
 
 
 class EnergyShares(NamedTuple):
-    """Parts of each mode's energy, that sum to 1 over legs or bodies.
+    """Parts of each mode's energy, that sum to 1 over springs or bodies.
 
     Attributes
     ----------
     strain : ndarray
-        Strain energy of each leg, (..., 6 legs, 6 modes).
+        Strain energy along each leg, (..., 6 legs, 6 modes).
     kinetic : ndarray
         Kinetic energy of the platform, then of the legs, (..., 7, 6 modes). A leg whose inertia no rigid body can have
         may have a negative part.
+    joints : ndarray
+        Strain energy of the springs in each leg's joints, (..., 6 legs, 6 modes).
+    suspension : ndarray
+        Strain energy of the suspension, (..., 6 modes).
     """
 
     strain: Array
     kinetic: Array
+    joints: Array
+    suspension: Array
 
 
 class ModeDescription(NamedTuple):
@@ -66,7 +72,7 @@ def energy_shares(
     base: PoseLike | None = None,
     joint: JointModel = "universal",
 ) -> EnergyShares:
-    """Compute which legs store each mode's strain energy and which bodies carry its kinetic energy.
+    """Compute which springs store each mode's strain energy and which bodies carry its kinetic energy.
 
     Parameters
     ----------
@@ -83,8 +89,8 @@ def energy_shares(
     Returns
     -------
     EnergyShares
-        `strain`, (..., 6 legs, 6 modes), and `kinetic`, (..., 7, 6 modes): the platform, then the legs. Each sums to 1;
-        NaN at frequency zero.
+        `strain` and `joints`, (..., 6 legs, 6 modes), and `suspension`, (..., 6 modes), that sum to 1 together, NaN at
+        frequency zero; `kinetic`, (..., 7, 6 modes), the platform's, then the legs', that sums to 1.
 
     Raises
     ------
@@ -95,8 +101,8 @@ def energy_shares(
 
     Notes
     -----
-    Strain energy from the stretch of each leg, H^T times the mode shape; kinetic energy from each body's part of the
-    mass matrix.
+    Strain energy from the columns of F, one for each spring, times the mode shape; kinetic energy from each body's part
+    of the mass matrix.
 
     Examples
     --------
@@ -104,15 +110,19 @@ def energy_shares(
     >>> shares.kinetic[0].round(2).tolist()  # the platform's, mode by mode
     [0.96, 0.96, 0.93, 0.94, 0.91, 0.89]
     """
-    s = states(hexapod, pose, base)
+    s = law_states(hexapod, pose, base)
     shape = natural_modes(hexapod, pose, base=base, joint=joint).shape
-    strain = BY_LEG @ (np.swapaxes(spring_matrix(hexapod, pose, base=base), -1, -2) @ shape) ** 2
+    F = spring_matrix(hexapod, pose, base=base, joint=joint)
+    stored = (np.swapaxes(F, -1, -2) @ shape) ** 2
     with np.errstate(invalid="ignore"):
-        strain = strain / strain.sum(axis=-2, keepdims=True)
+        stored = stored / stored.sum(axis=-2, keepdims=True)
+    strain, leg, others = stored[..., :6, :], SPRING_LEG[6 : F.shape[-1]], stored[..., 6:, :]
+    joints = (np.arange(6)[:, None] == leg).astype(np.float64) @ others + 0.0 * strain  # NaN where the legs' are
+    suspension = others[..., leg < 0, :].sum(axis=-2) + 0.0 * strain[..., 0, :]
     platform, legs = _core.inertia_parts(hexapod.packed, as_joint(joint), s.platform, s.base)
     parts = np.concatenate([platform[:, None], legs], axis=1).reshape(*s.shape, 7, 6, 6)
     kinetic = np.einsum("...im,...bij,...jm->...bm", shape, parts, shape)
-    return EnergyShares(strain, kinetic)
+    return EnergyShares(strain, kinetic, joints, suspension)
 
 
 def describe_modes(

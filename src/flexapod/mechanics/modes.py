@@ -11,7 +11,8 @@ from flexapod._suggestions import suggests
 from flexapod.checks import not_negative, numbers
 from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.mechanics.inputs import as_joint, states
+from flexapod.mechanics.inputs import as_joint
+from flexapod.mechanics.springs import law_states
 from flexapod.pose import PoseLike
 
 #: Words for what modes have.
@@ -79,7 +80,8 @@ def natural_modes(
     Raises
     ------
     PoseError
-        At a single pose that no leg can take; in a batch such a pose gives NaN.
+        At a single pose that no leg can take, or outside the range of the design's stiffness law; in a batch such a
+        pose gives NaN.
     ArgumentError
         For an unknown joint model.
 
@@ -90,8 +92,9 @@ def natural_modes(
 
     Notes
     -----
-    Eq. 5 of the paper. The frequencies are singular values of L^-1 H K^1/2 with J_p = L L^T, which keeps the low ones
-    accurate near a singular pose; at one, the lowest is zero to rounding.
+    Eq. 5 of the paper. The frequencies are singular values of L^-1 F with J_p = L L^T and the stiffness F F^T of all
+    springs at the platform (H K^1/2 of the legs, and columns of joints and suspension, taken as unstressed at the
+    pose), which keeps the low ones accurate near a singular pose; at one, the lowest is zero to rounding.
 
     Examples
     --------
@@ -99,7 +102,7 @@ def natural_modes(
     >>> modes.frequency.round(2).tolist()  # Hz
     [4.46, 4.48, 8.84, 14.97, 15.88, 17.28]
     """
-    s = states(hexapod, pose, base)
+    s = law_states(hexapod, pose, base)
     omega, shape = _core.natural_modes(hexapod.packed, as_joint(joint), s.platform, s.base)
     return NaturalModes(omega.reshape(*s.shape, 6), shape.reshape(*s.shape, 6, 6))
 

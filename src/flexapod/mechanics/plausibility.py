@@ -242,12 +242,13 @@ def soft_legs(hexapod: Hexapod, pose: Pose) -> list[Caution]:
         rest = hold(hexapod, pose)
     except FlexapodError:  # nothing holds this pose, which another caution says
         return []
-    change = np.abs(rest.leg_force) / hexapod.legs.stiffness
+    change = np.abs(rest.unstretched_length - rest.leg_length)
     share = change / inverse_kinematics(hexapod, pose)
     worst = int(np.argmax(share))
     if share[worst] < SAG:
         return []
-    force, stiffness = rest.leg_force[worst], hexapod.legs.stiffness[worst]
+    force = rest.leg_force[worst]
+    stiffness = abs(force) / change[worst]
     text = (
         f"At rest leg {worst + 1} is {'shortened' if force > 0 else 'stretched'} by {change[worst]:.3g} m, "
         f"{share[worst]:.3g} times its length, under {abs(force):.4g} N. Check legs.stiffness, {stiffness:.4g} N/m "

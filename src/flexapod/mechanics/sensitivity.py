@@ -14,9 +14,13 @@ from flexapod.design import layout
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.packing import PLACES, compliance_slope
 from flexapod.design.stiffness_laws import TableLaw
-from flexapod.mechanics.inputs import as_joint, single_base, single_pose, states
+from flexapod.mechanics.inputs import as_joint, single_base, single_pose
 from flexapod.mechanics.modes import natural_modes
+from flexapod.mechanics.springs import law_states
 from flexapod.pose import PoseLike
+
+#: Keys of stiffnesses whose derivatives are given where they are zero as well.
+ALWAYS = (*(f"legs.joint_stiffness.{name}" for name in ("universal", "spherical", "torsion")), "suspension.stiffness")
 
 
 class Sensitivity(NamedTuple):
@@ -39,8 +43,9 @@ class Sensitivity(NamedTuple):
     pose : ndarray
         By translation (m) and rotation vector (rad) of the platform, (6, 6).
     springs : mapping of str to ndarray
-        By the numbers of the springs that the design has beside constant ones along the legs, by key of the design
-        file: springs in series, joints, stiffness law, suspension (off its diagonal by a change of both equal entries).
+        By the numbers of the springs beside constant ones along the legs, by key of the design file: springs in series,
+        joints, stiffness law, suspension (off its diagonal by a change of both equal entries). Those by the stiffness
+        of joints and suspension are there for a design that has none, too.
     """
 
     platform_mass: Array
@@ -93,9 +98,9 @@ def frequency_sensitivity(
 
     Notes
     -----
-    R. L. Fox and M. P. Kapoor, AIAA Journal 6 (1968): v^T (dK - omega^2 dJ) v, with exact derivatives of J_p and
-    H K H^T. The universal axes are held. Modes that are exactly repeated have only directional derivatives, which
-    single entries do not give.
+    R. L. Fox and M. P. Kapoor, AIAA Journal 6 (1968): v^T (dK - omega^2 dJ) v, with exact derivatives of J_p and of the
+    stiffness of all springs. The universal axes are held. Modes that are exactly repeated have only directional
+    derivatives, which single entries do not give.
 
     Examples
     --------
@@ -104,7 +109,7 @@ def frequency_sensitivity(
     -0.00322
     """
     pose, base = single_pose(hexapod, pose), single_base(hexapod, base)
-    s = states(hexapod, pose, base)
+    s = law_states(hexapod, pose, base)
     omega = natural_modes(hexapod, pose, base=base, joint=joint).omega
     by_design, by_pose = _core.frequency_derivatives(hexapod.packed, as_joint(joint), s.platform, s.base)
     half = np.where(omega > 0, 0.5 / np.where(omega > 0, omega, 1.0), np.nan)[:, None]
@@ -112,7 +117,7 @@ def frequency_sensitivity(
     by = {key: derivatives[:, place] for key, place in PLACES.items()}
     series = hexapod.legs.series_stiffness
     by["legs.series_stiffness"] = by["legs.series_compliance"][..., None] * compliance_slope(series)
-    springs = {key: by[key] for key in layout.springs(hexapod) if key != "suspension.damping"}
+    springs = {key: by[key] for key in (*ALWAYS, *layout.springs(hexapod)) if key != "suspension.damping"}
     if isinstance(hexapod.legs.stiffness_law, TableLaw):
         for key in ("legs.stiffness_law.lengths", "legs.stiffness_law.stiffnesses"):
             springs[key] = springs[key][:, : len(hexapod.legs.stiffness_law.lengths)]

@@ -40,15 +40,15 @@ def state_space_of(tangent: Linearisation) -> StateSpace:
     """The state space of a linearisation; `Linearisation.state_space` says what it holds."""
     M_inv = np.linalg.inv(tangent.M)
     zero, one = np.zeros((6, 6)), np.eye(6)
-    K_legs = np.diag(tangent.leg_stiffness)
-    force_inputs = [tangent.H, one, tangent.H @ K_legs]
+    K_legs, K_commands = np.diag(tangent.leg_stiffness), np.diag(tangent.command_stiffness)
+    force_inputs = [tangent.H, one, tangent.H @ K_commands]
     drive = M_inv @ np.hstack([-tangent.M_b - tangent.M @ tangent.carry, *force_inputs])
     A = np.block([[zero, one], [-M_inv @ tangent.K, -M_inv @ tangent.C]])
     B = np.vstack([np.zeros((6, 24)), drive])
     rate = tangent.H.T  # leg rates from relative twist
     C = np.block([[one, zero], [rate, zero], [-K_legs @ rate, zero], [A[6:]]])
     absolute = drive + np.hstack([tangent.carry, np.zeros((6, 18))])
-    legs = np.hstack([zero, one, zero, K_legs])
+    legs = np.hstack([zero, one, zero, K_commands])
     D = np.vstack([np.zeros((12, 24)), legs, absolute])
     return StateSpace(A, B, C, D, _labels(STATES), _labels(INPUTS), _labels(OUTPUTS))
 

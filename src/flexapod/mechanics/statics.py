@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod.checks import numbers
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import KinematicsError, SingularPoseError
+from flexapod.errors import KinematicsError, PoseError, SingularPoseError
 from flexapod.mechanics.assembly import forward_kinematics
 from flexapod.mechanics.dynamics import inverse_dynamics
 from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, pose_or_home, single_base, single_pose, states, wrench
 from flexapod.mechanics.kinematics import inverse_kinematics
+from flexapod.mechanics.springs import axial_stiffness, refuse_outside_law
 from flexapod.pose import Pose, PoseLike, unpack
 from flexapod.rotations import orthonormal
 
@@ -73,7 +75,8 @@ def hold(
     Raises
     ------
     PoseError
-        At a single pose that no leg can take; in a batch such a pose gives NaN.
+        At a single pose that no leg can take, or outside the range of the design's stiffness law; in a batch such a
+        pose gives NaN.
     SingularPoseError
         At a single pose that no leg forces hold; in a batch such a pose gives NaN.
     ArgumentError
@@ -96,7 +99,25 @@ def hold(
     pose = pose_or_home(hexapod, pose)
     leg_force = inverse_dynamics(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
     length = inverse_kinematics(hexapod, pose, base=base)
-    return Equilibrium(pose, leg_force, length, length + leg_force / hexapod.legs.stiffness)
+    return Equilibrium(pose, leg_force, length, unstretched_lengths(hexapod, length, leg_force))
+
+
+def unstretched_lengths(hexapod: Hexapod, length: Array, leg_force: Array) -> Array:
+    """Lengths without load, m, of legs that have these lengths and forces, (..., 6).
+
+    Raises PoseError for six of them that the design's stiffness law does not reach; in a batch they are NaN.
+    """
+    rows = [np.ascontiguousarray(part) for part in np.broadcast_arrays(length, leg_force)]
+    found: Array = _core.unstretched_lengths(hexapod.packed, *rows).reshape(rows[0].shape)
+    lost = np.isnan(found) & np.isfinite(rows[0]) & np.isfinite(rows[1])
+    if found.ndim == 1 and lost.any():
+        refuse_outside_law(hexapod, rows[0], "length")
+        i = int(np.argmax(lost))
+        raise PoseError(
+            f"leg {i + 1} of length {rows[0][i]:.6g} m has no unstretched length within legs.stiffness_law at which it "
+            f"pushes with {rows[1][i]:.6g} N. Move the platform, or reduce the load."
+        )
+    return found
 
 
 def static_equilibrium(
@@ -134,7 +155,7 @@ def static_equilibrium(
     Raises
     ------
     PoseError
-        For a start or a base that is not one pose.
+        For a start or a base that is not one pose, and for lengths outside the range of the design's stiffness law.
     KinematicsError
         Where no equilibrium is found, and for lengths that are not > 0.
     SingularPoseError
@@ -164,6 +185,7 @@ def static_equilibrium(
     L_0 = numbers(unstretched_length, "unstretched_length", (6,))
     if (L_0 <= 0).any():
         raise KinematicsError(f"unstretched_length has {L_0.min():.6g} m; every leg length must be > 0 m")
+    refuse_outside_law(hexapod, L_0, "unstretched_length")
     base = single_base(hexapod, base)
     if start is not None:
         start = single_pose(hexapod, start, "start")
@@ -186,4 +208,4 @@ def static_equilibrium(
             "before they collapse: start nearer, reduce the load, or stiffen the legs."
         )
     length = inverse_kinematics(hexapod, pose, base=base)
-    return Equilibrium(pose, hexapod.legs.stiffness * (L_0 - length), length, L_0)
+    return Equilibrium(pose, axial_stiffness(hexapod, L_0)[0] * (L_0 - length), length, L_0)

@@ -173,7 +173,10 @@ def gather(
         length,
     )
     if state.singular:
-        shares = EnergyShares(np.where(omega > 0, shares.strain, np.nan), shares.kinetic)
+        strain, joints, suspension = (
+            np.where(omega > 0, part, np.nan) for part in (shares.strain, shares.joints, shares.suspension)
+        )
+        shares = EnergyShares(strain, shares.kinetic, joints, suspension)
     clusters = mode_clusters(omega)
     return Findings(
         hexapod=hexapod,

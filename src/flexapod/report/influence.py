@@ -83,7 +83,7 @@ def _stiffness(hexapod: Hexapod, relative: Sensitivity) -> list[Influence]:
         found = {f"stiffness of leg {i + 1}": each[i] for i in range(6)} | {"stiffness of all legs": each.sum()}
     values = hexapod.values()
     for key, name in _SPRINGS.items():
-        if key in relative.springs:
+        if key in relative.springs and key in values:
             products = values[key] * relative.springs[key]
             found[name] = np.triu(products).sum() if key == "suspension.stiffness" else products.sum()
     return [Influence(f"{name} + 1 %", 0.01 * float(value), None, "stiffness") for name, value in found.items()]

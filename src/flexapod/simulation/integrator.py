@@ -16,6 +16,7 @@ from flexapod.errors import ArgumentError, PoseError, shown
 from flexapod.excitation.excitation import Excitation, check_use
 from flexapod.mechanics.inputs import as_joint, single_base, single_pose
 from flexapod.mechanics.kinematics import inverse_kinematics
+from flexapod.mechanics.springs import axial_stiffness, refuse_outside_law
 from flexapod.mechanics.statics import hold
 from flexapod.pose import Motion, Pose, as_pose
 from flexapod.simulation.run import Load, SimulationRun, Start
@@ -148,7 +149,9 @@ def prepare(run: SimulationRun, until: float, joint: JointModel) -> Prepared:
         leg_force, lengths = rest.leg_force, rest.unstretched_length
     else:
         lengths = numbers(run.unstretched_length, "unstretched_length", (6,))
-        leg_force = run.hexapod.legs.stiffness * (lengths - inverse_kinematics(run.hexapod, pose, base=base))
+        refuse_outside_law(run.hexapod, lengths, "unstretched_length")
+        stiffness, _ = axial_stiffness(run.hexapod, lengths)
+        leg_force = stiffness * (lengths - inverse_kinematics(run.hexapod, pose, base=base))
     base_motion, command = run.base_motion or Excitation(), run.leg_command or Excitation()
     for use, history in run.histories().items():
         check_use(history, use)

@@ -78,7 +78,7 @@ def _of_limits(run: SimulationRun, result: xr.Dataset) -> list[str]:
 
 def _exceeded(quantity: LimitedQuantity, times: Array) -> Iterator[str]:
     """What a quantity exceeds below and above: in which legs, from when on, and by how much at most."""
-    name, unit = quantity.what.rsplit(" ", 1)
+    name, unit = quantity.name, quantity.unit
     values = quantity.value.reshape(times.size, -1)
     for word, sign, bound in (("below", -1.0, quantity.least), ("above", 1.0, quantity.most)):
         bounds = np.broadcast_to(np.asarray(bound, dtype=float), values.shape[1:])

@@ -26,6 +26,8 @@ REASONS = {
     "step_collapse": "no step was small enough for the accuracy asked for. Look at the motion so far, loosen rtol, or "
     "smooth what drives the machine",
     "not_finite": "the accelerations are not finite there. Look at the motion so far and at what drives the machine",
+    "outside_stiffness_law": "a leg's commanded length leaves the range of legs.stiffness_law there. Command less, or "
+    "give a law for such lengths",
     "max_steps": "the steps allowed were used up. Raise max_steps, loosen rtol, or shorten the duration",
 }
 

@@ -12,7 +12,6 @@ from flexapod.checks import floats
 from flexapod.conventions import Array, Complex
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import Linearisation
-from flexapod.mechanics.springs import SPRING_LEG
 
 MOST_LOSS = 1e30  #: of a loss factor
 _BLOCK = 4096  # frequencies solved at a time: bounds the memory
@@ -75,7 +74,8 @@ class _Modes:
         self.square = square
         self.skew = left @ (0.5 * (linear.K - linear.K.T)) @ self.shape  # only a wrench that turns makes K unsymmetric
         F = linear.springs
-        self.loss = left @ (F * eta[SPRING_LEG]) @ F.T @ self.shape
+        losses = np.concatenate([eta, linear.losses[6:]])  # of the legs as asked for, of the joints as designed
+        self.loss = left @ (F * losses) @ F.T @ self.shape
         self.friction = left @ linear.C @ self.shape
         # Rigid motion with the base meets no spring, and a turned base turns gravity: K carry + K_b is known without
         # the cancellation, which would drown slow motion. It meets no friction either, but in the model "spin_free".
@@ -90,7 +90,7 @@ class _Modes:
             left @ linear.C_b,
             left @ linear.K_b - 1j * self.loss @ left @ linear.M @ linear.carry,
         )
-        command = linear.H * (linear.leg_stiffness * (1 + 1j * eta))  # wrench of unit commands
+        command = linear.H * (linear.command_stiffness * (1 + 1j * eta))  # wrench of unit commands
         self.given = np.hstack([left, left @ command])
 
     def solve(self, omega: Array, absolute: NDArray[np.bool_]) -> Complex:

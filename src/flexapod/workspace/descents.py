@@ -122,7 +122,9 @@ class BoxSearch:
 
     def _inside(self, rows: Array) -> np.ndarray:
         index = self.index
-        return evaluate(index.hexapod, rows, ("within_limits",), index.joint_name, self.threads)["within_limits"]
+        kernel = self.limits.kernel if self.limits is not None else None
+        found = evaluate(index.hexapod, rows, ("within_limits",), index.joint_name, self.threads, kernel)
+        return found["within_limits"]
 
     def _within(self, even: Array) -> tuple[Array, float]:
         """Those of an even sample that are within the limits, and of more where they are few; which part that is."""

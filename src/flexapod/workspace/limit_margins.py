@@ -14,6 +14,7 @@ from flexapod.design.layout import HOME, numbers
 from flexapod.errors import PoseError
 from flexapod.pose import Motion, Pose
 from flexapod.workspace.coordinates import twist_of_coordinates
+from flexapod.workspace.quantities import kernel_limits
 
 _TINY = np.finfo(float).eps
 
@@ -30,17 +31,20 @@ class LimitMargins:
     """Margins of every limit of a design at x, y, z, roll, pitch, yaw (6,), with exact derivatives.
 
     A margin is a share of what it is taken from: of the greatest leg length, of 1 - cos of the largest angle, of the
-    least distance between legs. Those >= 0 are kept. Each is a smooth function of the pose: the least distance between
-    legs is that of every two of them. `names` says what each margin limits.
+    least distance between legs, of the square of the largest moment. Those >= 0 are kept. Each is a smooth function of
+    the pose: the least distance between legs is that of every two of them. `names` says what each margin limits,
+    `kernel` is the same for sweeps. The range of a stiffness law limits the legs' lengths as well; with `only_law`
+    nothing else does.
     """
 
-    def __init__(self, hexapod: Hexapod) -> None:
+    def __init__(self, hexapod: Hexapod, only_law: bool = False) -> None:
         own = numbers(hexapod)
         self._design, self._still = own[: HOME.start], np.zeros((len(AXES), HOME.start))
         self._home = np.zeros((0, _core.motion_size))
         if hexapod.home is not None:
             self._home = Motion(Pose.from_rpy(*own[HOME])).packed[None]
-        bounds = list(_bounds(hexapod))
+        bounds = [*_law_bounds(hexapod), *([] if only_law else _bounds(hexapod))]
+        self.kernel = kernel_limits(hexapod, only_law)
         self.names = tuple(bound.name for bound in bounds)
         self._columns = np.array([bound.column for bound in bounds], dtype=int)
         self._bounds = np.array([bound.value for bound in bounds])
@@ -64,18 +68,38 @@ class LimitMargins:
 
 
 def margins_to_keep(hexapod: Hexapod, all_poses: bool) -> LimitMargins | None:
-    """The margins that a pose must keep to count; None where all poses do."""
-    return None if all_poses or not hexapod.limits.given else LimitMargins(hexapod)
+    """The margins that a pose must keep to count; None where all poses do.
+
+    Where all poses are asked for, those outside the range of a stiffness law still have no frequencies.
+    """
+    limited = hexapod.limits.given and not all_poses
+    if not limited and hexapod.legs.stiffness_law is None:
+        return None
+    return LimitMargins(hexapod, only_law=not limited)
 
 
 class _Bound(NamedTuple):
-    """sign (value of the column - value) / scale >= 0. Columns: 6 lengths, 15 distances, 12 cosines of angles."""
+    """sign (value of the column - value) / scale >= 0.
+
+    Columns: 6 lengths, 15 distances, 12 cosines of angles, 12 squares of moments.
+    """
 
     name: str
     column: int
     sign: int
     value: float
     scale: float
+
+
+def _law_bounds(hexapod: Hexapod) -> Iterator[_Bound]:
+    """The range of a design's stiffness law as bounds of the legs' lengths."""
+    law = hexapod.legs.stiffness_law
+    if law is not None:
+        for i, (leg, (least, most)) in enumerate(zip(LEGS, law.range, strict=True)):
+            scale = float(most if np.isfinite(most) else least)
+            yield _Bound(f"least length of the stiffness law of leg {leg}", i, 1, float(least), scale)
+            if np.isfinite(most):
+                yield _Bound(f"greatest length of the stiffness law of leg {leg}", i, -1, float(most), scale)
 
 
 def _bounds(hexapod: Hexapod) -> Iterator[_Bound]:
@@ -93,3 +117,7 @@ def _bounds(hexapod: Hexapod) -> Iterator[_Bound]:
         if most is not None and most < np.pi:
             for i, leg in enumerate(LEGS):
                 yield _Bound(f"{kind} joint of leg {leg}", first + i, 1, np.cos(most), max(1 - np.cos(most), _TINY))
+    for kind, first, moment in (("universal", 33, limits.universal_moment), ("spherical", 39, limits.spherical_moment)):
+        if moment is not None:
+            for i, leg in enumerate(LEGS):
+                yield _Bound(f"moment of the {kind} joint of leg {leg}", first + i, -1, moment**2, moment**2)

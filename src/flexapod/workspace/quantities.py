@@ -13,6 +13,7 @@ from flexapod import _core
 from flexapod.checks import one_of
 from flexapod.conventions import AXES, Array, JointModel, Unit, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.parts import Limits
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.mechanics.joint_limits import neutral_directions
@@ -35,6 +36,8 @@ QUANTITIES: dict[str, Quantity] = {
     "leg_length": Quantity("m", "leg length", "leg"),
     "universal_angle": Quantity("rad", "universal joint angle from neutral", "leg"),
     "spherical_angle": Quantity("rad", "spherical joint angle from neutral", "leg"),
+    "universal_moment": Quantity("N m", "bending moment of the universal joint's springs", "leg"),
+    "spherical_moment": Quantity("N m", "bending moment of the spherical joint's springs", "leg"),
     "leg_distance": Quantity("m", "least distance between two leg axes"),
     "leg_force": Quantity("N", "largest static leg force under gravity"),
     "lowest_stiffness": Quantity("N/m", "lowest stiffness against displacement of the reference point"),
@@ -65,6 +68,7 @@ _MEANINGS = {
     "no_leg": "a leg has no length or lies along its universal joint's axis: values are NaN",
     "not_finite": "the pose holds NaN or infinity: values are NaN",
     "no_inertia": "the inertia matrix is not positive definite: frequencies are NaN",
+    "outside_stiffness_law": "a leg's length is outside its stiffness law: frequencies and stiffnesses are NaN",
     "pending": "not computed yet",
 }
 
@@ -129,15 +133,20 @@ def index_and_gradient(hexapod: Hexapod, joint: JointModel) -> Callable[[Array],
     return found
 
 
-def kernel_limits(hexapod: Hexapod) -> _core.SweepLimits:
-    """The design's limits as the kernel takes them."""
-    limits = hexapod.limits
-    lengths = (-np.inf, np.inf) if limits.leg_length is None else limits.leg_length
+def kernel_limits(hexapod: Hexapod, only_law: bool = False) -> _core.SweepLimits:
+    """The design's limits as the kernel takes them, within the range of a stiffness law; or that range alone."""
+    limits = Limits() if only_law else hexapod.limits
+    lengths = np.array(np.broadcast_to((-np.inf, np.inf) if limits.leg_length is None else limits.leg_length, (6, 2)))
+    law = hexapod.legs.stiffness_law
+    if law is not None:
+        lengths = np.stack([np.maximum(lengths[:, 0], law.range[:, 0]), np.minimum(lengths[:, 1], law.range[:, 1])], 1)
     return _core.SweepLimits(
         neutral=neutral_directions(hexapod),
-        leg_length=np.ascontiguousarray(np.broadcast_to(lengths, (6, 2))),
+        leg_length=np.ascontiguousarray(lengths),
         universal_angle=np.inf if limits.universal_angle is None else limits.universal_angle,
         spherical_angle=np.inf if limits.spherical_angle is None else limits.spherical_angle,
+        universal_moment=np.inf if limits.universal_moment is None else limits.universal_moment,
+        spherical_moment=np.inf if limits.spherical_moment is None else limits.spherical_moment,
         leg_distance=-np.inf if limits.leg_distance is None else limits.leg_distance,
     )
 

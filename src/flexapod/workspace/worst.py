@@ -169,7 +169,8 @@ def worst_pose(
 def _worst_of(index: SquaredFrequency, limits: LimitMargins | None, rows: Array, threads: int) -> WorstPose:
     """The worst of some poses."""
     wanted = ("omega_1", "within_limits") if limits is not None else ("omega_1",)
-    found = evaluate(index.hexapod, rows, wanted, index.joint_name, threads)
+    kernel = limits.kernel if limits is not None else None
+    found = evaluate(index.hexapod, rows, wanted, index.joint_name, threads, kernel)
     omega, share = found["omega_1"], 1.0
     if not np.isfinite(omega).any():
         raise PoseError(f"none of the {len(rows)} poses can be computed. Look at the status of a sweep of them.")

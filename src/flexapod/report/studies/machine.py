@@ -227,7 +227,9 @@ def _legs(f: Findings) -> Section:
     beyond = {}
     for quantity in limit_excess(f.hexapod, f.pose):
         if np.size(quantity.value) == 6:
-            beyond[quantity.what] = (quantity.value < quantity.least) | (quantity.value > quantity.most)
+            beyond[f"{quantity.name} {quantity.unit}"] = (quantity.value < quantity.least) | (
+                quantity.value > quantity.most
+            )
     columns = [Column("leg", LEGS), Column("length", 1e3 * f.leg_length, "mm", 6, beyond.get("length m"))]
     if f.rest is not None:
         columns += [
