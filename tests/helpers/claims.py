@@ -48,6 +48,14 @@ CLAIMS: dict[str, Claim] = {
     "motion/eta": Claim(MOTION, "eta (gravity, velocity terms, friction) of the same", PINOCCHIO),
     "motion/reactions": Claim(MOTION, "forces and moments in all joints and on the base, 20 machines", PINOCCHIO),
     "motion/energies": Claim(MOTION, "kinetic energy and power lost to friction, 30 machines", PINOCCHIO),
+    "springs/engine": Claim(
+        MOTION, "accelerations of 200 random machines with springs in joints, in series and a suspension", PINOCCHIO
+    ),
+    "springs/frequencies": Claim(MOTION, "frequencies of 200 random machines with springs in their joints", PINOCCHIO),
+    "springs/angles": Claim(MOTION, "angles of bending and twist in the joints of 200 random machines", PINOCCHIO),
+    "springs/reactions": Claim(
+        MOTION, "forces and moments in all joints and on the base of 20 machines with such springs", PINOCCHIO
+    ),
     "motion/stored-engine": Claim(
         MOTION, "the engine itself: its accelerations at the stored states", STORED + " (not this library)"
     ),

@@ -67,6 +67,34 @@ def _machine(rng, size, mass, height, ratio) -> fx.Hexapod:
     return fx.Hexapod.from_values(values)
 
 
+def sprung(hexapod: fx.Hexapod, rng: np.random.Generator, suspension: bool = True) -> fx.Hexapod:
+    """The same machine with springs in series, in its joints and beside its legs, at rest a little away from home.
+
+    Those of the joints are as stiff as the legs at a tenth of the machine's size or so.
+    """
+    legs = hexapod.legs.stiffness.mean()
+    length = float(np.linalg.norm(hexapod.base_joints, axis=1).mean())
+    joint, square = 0.01 * legs * length**2, rng.normal(size=(2, 6, 6))
+    units = np.diag([1.0] * 3 + [length] * 3)
+    at_rest = hexapod.home.displaced([*(0.02 * length * rng.normal(size=3)), *(0.05 * rng.normal(size=3))])
+    changes = {
+        "legs.series_stiffness": legs * rng.uniform(1, 5, (6, 2)),
+        "legs.joint_stiffness.universal": joint * rng.uniform(0.1, 1, (6, 2)),
+        "legs.joint_stiffness.spherical": joint * rng.uniform(0.1, 1, 6),
+        "legs.joint_stiffness.torsion": joint * rng.uniform(0.1, 1, 6),
+        "legs.joint_rest.position": at_rest.position,
+        "legs.joint_rest.orientation": at_rest.rpy,
+    }
+    if suspension:
+        stiffness, damping = (units @ (s @ s.T) @ units for s in square)
+        changes |= {
+            "suspension.stiffness": 0.1 * legs * (stiffness + stiffness.T) / 2,
+            "suspension.damping": 1e-3 * legs * (damping + damping.T) / 2,
+            "suspension.point": 0.3 * length * rng.normal(size=3),
+        }
+    return hexapod.replace(changes)
+
+
 def with_round_legs(hexapod: fx.Hexapod) -> fx.Hexapod:
     """The same machine with legs that look the same when they turn about themselves."""
     changes = {}

@@ -7,7 +7,8 @@ prescribed, so its six accelerations are known and its six rows of the equations
 
 The tree is built anew for every state with all its joints at zero and the placements taken from the geometry:
 no angle has to be solved for, and the closure holds to rounding. Arguments are duck-typed: `hexapod` needs the
-attributes of `flexapod.design.hexapod.Hexapod`, `platform` and `base` those of `flexapod.Motion`.
+attributes of `flexapod.design.hexapod.Hexapod`, `platform` and `base` those of `flexapod.Motion`. Springs of joints and a
+suspension act where the design has them (`sprung`, `suspension`).
 """
 
 from collections.abc import Callable
@@ -17,6 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
+from tests.oracles import chain_springs
 
 WORLD_AXES = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
 # The platform comes before the base: Pinocchio's algorithms take a joint's descendants to follow it without a gap.
@@ -30,13 +32,13 @@ class JointForces(NamedTuple):
     """What the joints carry, in inertial axes. Forces are in N, moments in N m."""
 
     spherical_force: np.ndarray  # (6, 3) on each leg at its spherical joint
-    spherical_moment: np.ndarray  # (6, 3) on each leg: friction only
+    spherical_moment: np.ndarray  # (6, 3) on each leg: friction and springs
     prismatic_force: np.ndarray  # (6, 3) of the lower on the upper part, leg force and friction included
     prismatic_moment: np.ndarray  # (6, 3) of the lower on the upper part about the platform joint
     universal_force: np.ndarray  # (6, 3) of the base on each leg
     universal_moment: np.ndarray  # (6, 3) of the base on each leg about its base joint, friction included
-    base_force: np.ndarray  # (3,) of all legs on the base
-    base_moment: np.ndarray  # (3,) of all legs on the base about the base's reference point
+    base_force: np.ndarray  # (3,) of all legs and of a suspension on the base
+    base_moment: np.ndarray  # (3,) of them on the base about the base's reference point
 
 
 class ClosedChain:
@@ -96,6 +98,11 @@ class ClosedChain:
         """Power lost in the eighteen joints' friction, W."""
         tree = _Tree(self.hexapod, platform, base)
         return -float(tree.v @ tree.friction())
+
+    def stiffness_matrix(self, platform, base, axial) -> np.ndarray:
+        """K (6, 6) of all springs, unstressed at the pose, with the legs' axial stiffness (6,)."""
+        tree = _Tree(self.hexapod, platform, base)
+        return tree.stiffness(axial)
 
 
 class _Leg(NamedTuple):
@@ -169,8 +176,8 @@ class _Tree:
         return motions
 
     def applied_force(self, leg_force, force, moment) -> np.ndarray:
-        """Generalised forces of the legs, the external load and friction, (30,)."""
-        tau = self.friction()
+        """Generalised forces of the legs, the external load, friction and springs, (30,)."""
+        tau = self.friction() + self.springs()
         tau[PLATFORM] += np.concatenate([force, moment])
         if leg_force is not None:
             tau[LEGS][2::3] += leg_force
@@ -185,6 +192,50 @@ class _Tree:
         for spin, c in zip(self.relative_spin, damping.spherical, strict=True):
             tau -= c * spin.T @ (spin @ self.v)
         return tau
+
+    @property
+    def sprung(self) -> bool:
+        return getattr(self.hexapod, "sprung", False)
+
+    @cached_property
+    def spring_moments(self) -> np.ndarray:
+        """Of the springs in the platform's joints on the platform, inertial axes, (6, 3)."""
+        if not self.sprung:
+            return np.zeros((6, 3))
+        return chain_springs.platform_moments(self.hexapod, self.platform.pose, self.base.pose)
+
+    def springs(self) -> np.ndarray:
+        """Generalised forces of the springs in the joints and of a suspension, (30,)."""
+        tau = np.zeros(30)
+        if not self.sprung:
+            return tau
+        angles = chain_springs.universal_angles(self.hexapod, self.platform.pose, self.base.pose)
+        moments = -self.hexapod.legs.joint_stiffness.universal * angles
+        tau[LEGS] = np.column_stack([moments, np.zeros(6)]).ravel()
+        for spin, moment in zip(self.relative_spin, self.spring_moments, strict=True):
+            tau -= spin.T @ moment
+        if self.hexapod.suspension is not None:
+            tau[PLATFORM] += _in_body(self.platform, *self._suspension())
+        return tau
+
+    def _suspension(self) -> tuple[np.ndarray, np.ndarray]:
+        if getattr(self.hexapod, "suspension", None) is None:
+            return ZERO, ZERO
+        return chain_springs.suspension_load(self.hexapod, self.platform, self.base)
+
+    def stiffness(self, axial) -> np.ndarray:
+        """Of the joints' coordinates, projected on the motions that the loops allow."""
+        springs = self.hexapod.legs.joint_stiffness
+        along = np.column_stack([springs.universal, axial]).ravel()
+        rates = self.allowed_platform[LEGS]
+        K = rates.T @ (along[:, None] * rates)
+        for i, spin in enumerate(self.relative_spin):
+            s = chain_springs.leg_axes(self.hexapod, i, self.platform.pose, self.base.pose)[:, 0]
+            turn = spin @ self.allowed_platform
+            twist = s @ turn
+            bend = turn - np.outer(s, twist)
+            K += springs.spherical[i] * bend.T @ bend + springs.torsion[i] * np.outer(twist, twist)
+        return K
 
     def forward_dynamics(self, leg_force, force, moment) -> tuple[np.ndarray, np.ndarray]:
         """Joint accelerations (30,) and the constraint forces on the legs' ends (18,), the base's motion given."""
@@ -208,7 +259,11 @@ class _Tree:
         spherical_force = constraint_force.reshape(6, 3)
         damping = self.hexapod.legs.damping.spherical
         spherical_moment = np.array([-c * spin @ self.v for c, spin in zip(damping, self.relative_spin, strict=True)])
-        self._recursive_newton_euler(qdd, force, moment, spherical_force, spherical_moment)
+        spherical_moment -= self.spring_moments
+        suspension = self._suspension()
+        in_platform = np.split(_in_body(self.platform, *suspension), 2)
+        loads = force + in_platform[0], moment + in_platform[1]
+        self._recursive_newton_euler(qdd, *loads, spherical_force, spherical_moment)
         prismatic = [self._transmitted(leg.upper) for leg in self.legs]
         universal = [self._transmitted(leg.lower) for leg in self.legs]
         base = self._transmitted(BASE_JOINT)
@@ -217,8 +272,8 @@ class _Tree:
             spherical_moment,
             *(np.array(part) for part in zip(*prismatic, strict=True)),
             *(np.array(part) for part in zip(*universal, strict=True)),
-            -base[0],  # the base is massless: what holds it passes all to the legs
-            -base[1],
+            -base[0] - suspension[0],  # the base is massless: what holds it passes all to the legs and the suspension
+            -base[1] - suspension[1] - np.cross(self.platform.pose.position - self.base.pose.position, suspension[0]),
         )
 
     def _recursive_newton_euler(self, qdd, force, moment, spherical_force, spherical_moment) -> None:

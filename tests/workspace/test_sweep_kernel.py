@@ -20,7 +20,7 @@ from flexapod.mechanics.joint_limits import limit_excess, neutral_directions
 
 EPS = np.finfo(float).eps
 ALL = reduce(or_, _core.SweepQuantity)
-OK, SINGULAR, NO_LEG, NOT_FINITE, NO_INERTIA = (status.value for status in _core.SweepStatus)
+OK, SINGULAR, NO_LEG, NOT_FINITE, NO_INERTIA, OUTSIDE = (status.value for status in _core.SweepStatus)
 
 # An instruction set is chosen at import, so each has a process of its own that computes what it is sent.
 WORKER = """
@@ -73,6 +73,7 @@ def limits_of(hexapod) -> dict:
     limits = hexapod.limits
     length = np.tile([-np.inf, np.inf], (6, 1)) if limits.leg_length is None else limits.leg_length
     bounds = {"universal_angle": np.inf, "spherical_angle": np.inf, "leg_distance": -np.inf}
+    bounds |= {"universal_moment": np.inf, "spherical_moment": np.inf}
     bounds |= {name: getattr(limits, name) for name in bounds if getattr(limits, name) is not None}
     return {"neutral": neutral_directions(hexapod), "leg_length": np.broadcast_to(length, (6, 2)).copy(), **bounds}
 
@@ -197,7 +198,7 @@ def test_limits_hold_somewhere_and_not_elsewhere(kernel):
     within = kernel(hexapod, poses, _core.SweepQuantity.within_limits)["within_limits"]
     assert np.array_equal(within, fx.check_limits(hexapod, pose).ok)
     assert 20 < within.sum() < 380
-    for what, value, least, most in limit_excess(hexapod, pose):  # each limit is met by some pose
+    for what, _, value, least, most in limit_excess(hexapod, pose):  # each limit is met by some pose
         assert not ((value >= least) & (value <= most)).all(), what
 
 

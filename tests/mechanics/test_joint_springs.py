@@ -1,0 +1,239 @@
+"""Springs in the joints, a suspension and springs in series: against Pinocchio, energies and limits."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from hypothesis import given
+from scipy.spatial.transform import Rotation
+from tests.helpers.drawn import machine, machines, seeds, sprung
+from tests.helpers.states import State, draw_state, perturbed
+from tests.helpers.support import JOINTS, away, difference, displaced, relative, size
+from tests.oracles import chain_springs
+from tests.oracles.closed_chain import ClosedChain
+
+import flexapod as fx
+from flexapod.mechanics.springs import axial_stiffness, spring_matrix
+
+
+def drawn_machine(seed: int) -> fx.Hexapod:
+    return sprung(machine(seed), np.random.default_rng([seed, 14]))
+
+
+def twenty(block: int, suspension: bool = True, moving_base: bool = True) -> Iterator[tuple[fx.Hexapod, State]]:
+    """Sprung machines, each with a state; those that stand near a singular pose at home are passed over."""
+    found, seed = 0, 100 * block
+    while found < 20:
+        hexapod = sprung(machine(seed), np.random.default_rng([seed, 14]), suspension)
+        seed += 1
+        try:
+            state = draw_state(hexapod, np.random.default_rng([seed, 15]), moving_base)
+        except AssertionError:
+            continue
+        found += 1
+        yield hexapod, state
+
+
+def free(hexapod: fx.Hexapod) -> fx.Hexapod:
+    return hexapod.replace({"gravity": [0.0, 0.0, 0.0]})
+
+
+# --- against the closed chain of Pinocchio --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("block", range(10))
+def test_two_hundred_machines_move_as_the_engine_says(block, measured):
+    for hexapod, state in twenty(block):
+        expected = ClosedChain(hexapod).acceleration(state.platform, state.base, **state.loads)
+        found = fx.forward_dynamics(hexapod, state.platform, base=state.base, joint="universal", **state.loads)
+        measured("springs/engine", [relative(f, e) for f, e in zip(found, expected, strict=True)], 1e-10)
+
+
+@pytest.mark.parametrize("block", range(10))
+def test_two_hundred_machines_vibrate_as_the_engine_says(block, measured):
+    for hexapod, state in twenty(block, suspension=False, moving_base=False):
+        chain = ClosedChain(hexapod)
+        axial = 1 / (1 / hexapod.legs.stiffness + hexapod.legs.series_compliance)
+        K = chain.stiffness_matrix(state.platform, state.base, axial)
+        M = chain.mass_matrix(state.platform, state.base)
+        root = np.linalg.inv(np.linalg.cholesky(M))
+        expected = np.sqrt(np.linalg.eigvalsh(root @ K @ root.T))
+        measured(
+            "springs/frequencies", np.abs(fx.natural_modes(hexapod, state.platform.pose).omega / expected - 1), 1e-10
+        )
+
+
+@pytest.mark.parametrize("block", range(10))
+def test_two_hundred_machines_have_the_engines_joint_moments(block, measured):
+    for hexapod, state in twenty(block):
+        pose, base = state.platform.pose, state.base.pose
+        found = fx.joint_moments(hexapod, pose, base=base)
+        turn, tilt = chain_springs.universal_angles(hexapod, pose, base).T
+        bends = [chain_springs.bend_and_twist(chain_springs.platform_turn(hexapod, i, pose, base)) for i in range(6)]
+        bend, twist = np.array(bends).T
+        # the tilt out of the plane normal to k is a turn against y
+        expected = [np.stack([turn, -tilt], axis=1), bend, twist]
+        angles = [found.universal_angle, found.bending_angle, found.torsion_angle]
+        measured("springs/angles", [relative(f, e) for f, e in zip(angles, expected, strict=True)], 1e-10)
+        springs = hexapod.legs.joint_stiffness
+        np.testing.assert_allclose(found.universal_moment, springs.universal * found.universal_angle, rtol=1e-15)
+        np.testing.assert_allclose(found.bending_moment, springs.spherical * found.bending_angle, rtol=1e-15)
+        np.testing.assert_allclose(found.torsion_moment, springs.torsion * found.torsion_angle, rtol=1e-15)
+
+
+@pytest.mark.parametrize("name", ["mukherjee-i", "motion-base"])
+def test_joints_carry_what_the_engine_says(name, measured):
+    rng = np.random.default_rng(12)
+    for _ in range(10):
+        hexapod = perturbed(fx.load(name), rng)
+        home = draw_state(hexapod, rng, moving_base=False).platform.pose
+        hexapod = sprung(hexapod.replace({"home.position": home.position, "home.orientation": home.rpy}), rng)
+        state, chain = draw_state(hexapod, rng), ClosedChain(hexapod)
+        expected = chain.joint_forces(state.platform, state.base, **state.loads)
+        linear, angular = chain.acceleration(state.platform, state.base, **state.loads)
+        motion = fx.Motion(
+            state.platform.pose, state.platform.velocity, state.platform.angular_velocity, linear, angular
+        )
+        found = fx.joint_reactions(hexapod, motion, base=state.base, leg_force=state.leg_force, section=1.0)
+        for field in expected._fields:
+            sign = -1.0 if field.startswith(("spherical", "universal")) else 1.0
+            measured("springs/reactions", relative(getattr(found, field), sign * getattr(expected, field)), 1e-10)
+
+
+# --- energies and their derivatives ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("joint", JOINTS)
+@given(hexapod=machines(), seed=seeds)
+def test_forces_are_the_derivatives_of_the_energy_at_any_rotation(joint, hexapod, seed):
+    rng = np.random.default_rng(seed)
+    hexapod = free(sprung(hexapod, rng))
+    turn = Rotation.from_rotvec(rng.normal(size=3))
+    base = fx.Pose(rng.normal(size=3), turn)
+    seen = displaced(away(hexapod, 0.1), np.concatenate([np.zeros(3), 0.7 * rng.normal(size=3)]))
+    pose = fx.Pose(base.position + turn.as_matrix() @ seen.position, base.matrix @ seen.matrix)
+    try:
+        L_0 = fx.inverse_kinematics(hexapod, pose, base=base) * rng.uniform(0.97, 1.03, 6)
+    except fx.errors.PoseError:  # a leg along its axis
+        return
+
+    def energy(x, of_base: bool) -> float:
+        moved = displaced(base if of_base else pose, x)
+        p, b = (pose, moved) if of_base else (moved, base)
+        return float(fx.energy(hexapod, p, base=b, unstretched_length=L_0, joint=joint).elastic)
+
+    length = size(hexapod)
+    unit = np.array([length] * 3 + [1.0] * 3)  # in which energies change by their own size
+    slopes = [
+        np.array([difference(lambda h, x=x, of=of_base: energy(h * unit * x, of), 1e-4) for x in np.eye(6)])
+        for of_base in (False, True)
+    ]
+    force = axial_stiffness(hexapod, L_0)[0] * (L_0 - fx.inverse_kinematics(hexapod, pose, base=base))
+    equations = fx.equations_of_motion(hexapod, pose, base=base, joint=joint)
+    on_platform = equations.H @ force - equations.eta
+    found = fx.joint_reactions(hexapod, pose, base=base, leg_force=force, joint=joint)
+    on_base = np.concatenate([found.base_force, found.base_moment])
+    scale = energy(np.zeros(6), False)
+    assert np.abs(slopes[0] + unit * on_platform).max() < 1e-8 * (scale + np.abs(slopes[0]).max())
+    assert np.abs(slopes[1] + unit * on_base).max() < 1e-8 * (scale + np.abs(slopes[1]).max())
+    rest = np.cross(pose.position - base.position, on_platform[:3])
+    total = np.concatenate([on_platform[:3] + on_base[:3], on_platform[3:] + rest + on_base[3:]])
+    assert np.abs(unit * total).max() < 1e-10 * (scale + np.abs(slopes[0]).max())  # the springs are inside the machine
+
+
+@pytest.mark.parametrize("joint", JOINTS)
+@given(hexapod=machines(), seed=seeds)
+def test_the_tangent_where_nothing_is_stressed_is_the_stiffness_of_eq_5(joint, hexapod, seed):
+    hexapod = free(sprung(hexapod, np.random.default_rng(seed)))
+    linear = fx.linearise(hexapod, hexapod.rest, joint=joint)
+    assert relative(linear.K, linear.springs @ linear.springs.T) < 1e-12
+    assert relative(linear.K @ linear.carry, -linear.K_b) < 1e-9  # a rigid motion of all strains nothing
+
+
+@pytest.mark.parametrize("joint", JOINTS)
+@given(hexapod=machines(), seed=seeds)
+def test_the_tangent_is_symmetric_under_preload_and_its_derivative_is_that_of_the_force(joint, hexapod, seed):
+    hexapod = sprung(hexapod, np.random.default_rng(seed))
+    pose = away(hexapod)
+    linear = fx.linearise(hexapod, pose, joint=joint)
+    scale = np.sqrt(np.outer(np.diag(linear.K), np.diag(linear.K)).clip(0))
+    if joint == "universal":  # in the other model legs whose mass is off their axis weigh without a potential
+        assert np.abs((linear.K - linear.K.T) / scale.max()).max() < 1e-12
+
+
+@given(hexapod=machines(), seed=seeds)
+def test_shares_of_energy_are_those_of_the_springs(hexapod, seed):
+    hexapod = sprung(hexapod, np.random.default_rng(seed))
+    pose = away(hexapod)
+    shares, modes = fx.mechanics.energy_shares(hexapod, pose), fx.natural_modes(hexapod, pose)
+    total = shares.strain.sum(axis=0) + shares.joints.sum(axis=0) + shares.suspension
+    np.testing.assert_allclose(total, 1.0, rtol=1e-12)
+    by = fx.frequency_sensitivity(hexapod, pose).springs
+    springs = hexapod.legs.joint_stiffness
+    of_joints = (
+        2
+        / modes.omega[:, None]
+        * (
+            (by["legs.joint_stiffness.universal"] * springs.universal).sum(axis=2)
+            + by["legs.joint_stiffness.spherical"] * springs.spherical
+            + by["legs.joint_stiffness.torsion"] * springs.torsion
+        )
+    )  # omega^2 is the sum of stiffnesses times its derivatives
+    np.testing.assert_allclose(of_joints, shares.joints.T, rtol=1e-9, atol=1e-13)
+    lower = np.tril(np.ones((6, 6)))
+    of_suspension = (
+        2 / modes.omega * (lower * by["suspension.stiffness"] * hexapod.suspension.stiffness).sum(axis=(1, 2))
+    )
+    np.testing.assert_allclose(of_suspension, shares.suspension, rtol=1e-9, atol=1e-12)
+
+
+# --- limits ---------------------------------------------------------------------------------------------------------
+
+
+@given(hexapod=machines())
+def test_without_stiffness_nothing_changes_in_the_last_bit(hexapod):
+    none = hexapod.replace({"legs.joint_stiffness.universal": 0.0, "legs.joint_rest.position": [0.0, 0.0, 1.0]})
+    pose = away(hexapod)
+    assert spring_matrix(none, pose).shape == (6, 6)
+    np.testing.assert_array_equal(fx.natural_modes(none, pose).omega, fx.natural_modes(hexapod, pose).omega)
+    np.testing.assert_array_equal(fx.linearise(none, pose).K, fx.linearise(hexapod, pose).K)
+
+
+@given(hexapod=machines())
+def test_weak_springs_change_frequencies_by_their_derivative(hexapod):
+    """The derivatives by stiffnesses that are not there."""
+    pose = away(hexapod)
+    omega, by = fx.natural_modes(hexapod, pose).omega, fx.frequency_sensitivity(hexapod, pose).springs
+    weak = 1e-7 * hexapod.legs.stiffness.mean() * size(hexapod) ** 2
+    for name, place in (("universal", (3, 1)), ("spherical", (0,)), ("torsion", (5,))):
+        key = f"legs.joint_stiffness.{name}"
+        stiffness = np.zeros(by[key].shape[1:])
+        stiffness[place] = weak
+        more = fx.natural_modes(hexapod.replace({key: stiffness}), pose).omega
+        np.testing.assert_allclose(more - omega, weak * by[key][:, *place], rtol=1e-3, atol=1e-9 * omega[5])
+
+
+def test_joints_of_endless_stiffness_lock():
+    """Two legs' torsion and bending without end hold the platform where it is, and frequencies grow with the root."""
+    hexapod = machine(3)
+    pose, found = away(hexapod), []
+    for stiffness in (1e16, 1e18):
+        locked = hexapod.replace(
+            {f"legs.joint_stiffness.{name}": stiffness for name in ("universal", "spherical", "torsion")}
+        )
+        found.append(fx.natural_modes(locked, pose).omega)
+    np.testing.assert_allclose(found[1] / found[0], 10.0, rtol=1e-6)
+
+
+@pytest.mark.parametrize("joint", JOINTS)
+def test_a_turned_and_moved_machine_bears_the_same(joint):
+    hexapod = drawn_machine(7)
+    pose = away(hexapod)
+    turn, shift = Rotation.from_rotvec([0.4, -1.1, 0.7]), np.array([3.0, -2.0, 5.0])
+    base = fx.Pose(shift, turn)
+    moved = fx.Pose(shift + turn.as_matrix() @ pose.position, turn.as_matrix() @ pose.matrix)
+    one, other = (fx.joint_moments(hexapod, p, base=b, joint=joint) for p, b in ((pose, None), (moved, base)))
+    for a, b in zip(one, other, strict=True):
+        np.testing.assert_allclose(b, a, rtol=1e-11, atol=1e-12 * np.abs(a).max())
+    omegas = [fx.natural_modes(hexapod, p, base=b, joint=joint).omega for p, b in ((pose, None), (moved, base))]
+    np.testing.assert_allclose(*omegas, rtol=1e-12)
