@@ -113,6 +113,9 @@ CLAIMS: dict[str, Claim] = {
     ),
     "modes/stored": Claim(MODES, "all six at the 24 states", STORED),
     "modes/ordinary": Claim(MODES, "all six, five machines, both joint models", DIGITS, "eps cond(B)"),
+    "modes/joint-springs": Claim(
+        MODES, "all six with springs in joints, weak to stiff, at singular poses too", DIGITS, "eps cond(B)"
+    ),
     "modes/near-singular": Claim(MODES, "all six near singular poses, cond(B) up to 1e8", DIGITS, "eps cond(B)"),
     "modes/sensitivities": Claim(
         MODES, "derivatives by masses, stiffnesses, joints", DIFFERENCES, "of omega + 10 |slope|"
@@ -137,6 +140,9 @@ CLAIMS: dict[str, Claim] = {
         PUBLISHED, "pose found from the printed lengths (5e-5 m, cond(H) = 40)", "ROBOOP", "m, and of R"
     ),
     "sweeps/omega": Claim(SWEEPS, "frequencies in every instruction set, cond(B) up to 1e10", DIGITS, "eps cond(B)"),
+    "sweeps/joint-springs": Claim(
+        SWEEPS, "frequencies with springs in joints, weak to stiff, cond(B) up to 1e10", DIGITS, "eps cond(B)"
+    ),
     "sweeps/cond_H": Claim(SWEEPS, "cond(H) of the same", DIGITS, "eps cond(H)"),
     "sweeps/single": Claim(
         SWEEPS, "frequencies of 301 poses, three machines", "single poses by Jacobi rotations", "eps cond(B)"

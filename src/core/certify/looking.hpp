@@ -151,7 +151,7 @@ template <class Lane, int n, class Rules = Sound> class Looking {
         M_[r][s] += task_.kind == Kind::index ? platform_[r][s] : r != s ? 0.0 : r < 3 ? 1.0 : turn;
   }
 
-  double stiffness(int j) const { return task_.kind == Kind::index ? spring_stiffness(machine_.design, j) : 1.0; }
+  double stiffness(int j) const { return task_.kind == Kind::index ? machine_.axial.constant[j] : 1.0; }
 
   static Mat6<Lane> constant_of(const Mat6<T>& models) {
     Mat6<Lane> centre;
