@@ -9,6 +9,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import http.client
 import json
 import os
 import statistics
@@ -16,13 +18,14 @@ import subprocess
 import sys
 import threading
 import time
-import urllib.request
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import cycle
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
+import psutil
 from tests.web.browser import CHROMIUM, FLAGS
 
 from benchmarks._contest import OURS, Contender, Contest, Plan
@@ -53,8 +56,10 @@ def served() -> Iterator[tuple[str, int]]:
     environment = {**os.environ, "PYTHONUNBUFFERED": "1"}
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as process:
         assert process.stdout is not None
-        yield json.loads(process.stdout.readline())["url"], process.pid
-        process.terminate()
+        try:
+            yield json.loads(process.stdout.readline())["url"], process.pid
+        finally:
+            process.terminate()
 
 
 def opened(browser: Any, url: str, tab: str) -> Any:
@@ -97,43 +102,69 @@ def frames_per_second(browser: Any, url: str) -> float:
     return rate
 
 
-def many_pages(url: str) -> list[float]:
-    """Milliseconds of every answer to PAGES clients that ask without rest, each with its own poses."""
-    start = json.load(urllib.request.urlopen(f"{url}api/start"))
-    text = start["presets"]["motion-base"]
+class Page:
+    """A page as a browser holds it: one connection that is kept, and the cookie of its first answer."""
+
+    def __init__(self, url: str, own: str = "127.0.0.1") -> None:
+        """own: the address from which it asks."""
+        address = urlsplit(url)
+        self._server = http.client.HTTPConnection(address.hostname or "", address.port, 60, (own, 0))
+        self._head = {"content-type": "application/json"}
+        self.cookie = ""
+        self.start = json.loads(self.ask("GET", "start"))
+
+    def ask(self, method: str, path: str, body: bytes | None = None) -> bytes:
+        """The answer, which must be a good one."""
+        self._server.request(method, f"/api/{path}", body, self._head)
+        answer = self._server.getresponse()
+        if cookie := answer.headers["set-cookie"]:
+            self.cookie = self._head["cookie"] = cookie.split(";")[0]
+        content = answer.read()
+        if answer.status != 200:
+            raise OSError(f"{path}: {answer.status} {content[:200]!r}")
+        return content
+
+
+def many_pages(pages: list[Page]) -> list[float]:
+    """Milliseconds of every answer to pages with ten moves a second each, as hands on sliders make them."""
+    text = pages[0].start["presets"]["motion-base"]
     found: list[float] = []
+    faults: list[Exception] = []
     end = time.perf_counter() + SECONDS
 
-    def client(number: int) -> None:
+    def use(page: Page, number: int) -> None:
         i = 0
         while time.perf_counter() < end:
             i += 1
             pose = [0.001 * (i % 500), 0.002 * number, 2.39, 0, 0, 0]
             body = json.dumps({"design": text, "changes": {}, "pose": pose, "joint": "universal"}).encode()
-            request = urllib.request.Request(f"{url}api/state", body, {"content-type": "application/json"})
             began = time.perf_counter()
-            urllib.request.urlopen(request).read()
+            try:
+                page.ask("POST", "state", body)
+            except (OSError, http.client.HTTPException) as error:
+                faults.append(error)
+                return
             found.append(1e3 * (time.perf_counter() - began))
-            time.sleep(max(0.0, 0.1 - (time.perf_counter() - began)))  # ten moves a second, as a hand makes them
+            time.sleep(max(0.0, 0.1 - (time.perf_counter() - began)))
 
-    threads = [threading.Thread(target=client, args=(n,)) for n in range(PAGES)]
+    threads = [threading.Thread(target=use, args=given) for given in zip(pages, range(len(pages)), strict=True)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
+    if faults:
+        raise faults[0]
     return found
 
 
 def memory(pid: int) -> float:
-    """Resident MB of a process and its children."""
-    children = [
-        child for thread in Path(f"/proc/{pid}/task").iterdir() for child in (thread / "children").read_text().split()
-    ]
+    """MB of a process and those that it started, what they share counted once."""
+    process = psutil.Process(pid)
     total = 0
-    for process in [str(pid), *children]:
-        line = next(x for x in Path(f"/proc/{process}/status").read_text().splitlines() if x.startswith("VmRSS"))
-        total += int(line.split()[1])
-    return total / 1024
+    for one in (process, *process.children(recursive=True)):
+        with contextlib.suppress(psutil.NoSuchProcess):
+            total += one.memory_full_info().pss
+    return total / 2**20
 
 
 def percentile(values: list[float], share: float) -> float:
@@ -182,7 +213,7 @@ def main() -> None:
                 print(f"slider to table, {words}: median {middle:.0f} ms, p95 {slow:.0f} ms")
             print(f"an animated mode in software WebGL: {frames_per_second(browser, url):.0f} frames/s")
             browser.close()
-        answers = many_pages(url)
+        answers = many_pages([Page(url) for _ in range(PAGES)])
         print(
             f"{PAGES} pages, ten moves a second each: {len(answers) / SECONDS:.0f} answers/s, median "
             f"{statistics.median(answers):.0f} ms, p95 {percentile(answers, 0.95):.0f} ms, {memory(pid):.0f} MB; "

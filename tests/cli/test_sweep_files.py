@@ -151,10 +151,11 @@ def test_any_encoding_of_the_output_will_do(encoding):
     assert "?" not in text
 
 
-def test_no_number_of_a_piped_table_is_cut():
+@pytest.mark.parametrize("columns", [{}, {"COLUMNS": "30"}])
+def test_no_number_of_a_table_is_cut(columns):
     """The condition number at a pose on the edge of singular is long, and so are coordinates."""
     command = ["sweep", "mukherjee-i", "--around", "0.1", "20", "--points", "200000"]
-    env = {name: value for name, value in os.environ.items() if name != "COLUMNS"}
+    env = {name: value for name, value in os.environ.items() if name != "COLUMNS"} | columns
     ended = subprocess.run(
         [sys.executable, "-m", "flexapod", *command], capture_output=True, text=True, check=True, env=env
     )
@@ -162,6 +163,7 @@ def test_no_number_of_a_piped_table_is_cut():
     assert "..." not in ended.stdout
     found = fx.summarise(fx.sweep(I, fx.random_poses(fx.Box.about(fx.home_pose(I), 0.1, np.radians(20)), 200_000)))
     assert f"{found.worst_conditioned.cond_H:.4g}" in ended.stdout
+    assert "worst" in ended.stdout
 
 
 def test_the_head_of_a_table_is_short(tmp_path, capsys):

@@ -195,15 +195,13 @@ def test_what_takes_too_long_is_stopped(monkeypatch: pytest.MonkeyPatch, client:
     assert client.post("/api/state", json=ASKED).status_code == 200
 
 
-def test_too_many_who_wait_are_told(monkeypatch: pytest.MonkeyPatch, client: TestClient) -> None:
-    monkeypatch.setattr(limits, "WAITING", 0)
-    assert client.post("/api/state", json=ASKED).status_code == 503
-    assert b"too many jobs wait" in client.post("/api/jobs/time", json=ASKED).content
-    monkeypatch.undo()
-    monkeypatch.setattr(limits, "BODIES_BYTES", 10)
-    assert client.post("/api/state", json=ASKED).status_code == 503
-    monkeypatch.undo()
-    assert client.post("/api/state", json=ASKED).status_code == 200
+@pytest.mark.parametrize(("limit", "value"), [("WAITING", 0), ("BODIES_BYTES", 10)])
+def test_too_many_who_wait_are_told(limit: str, value: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits, limit, value)
+    with TestClient(application(), base_url="http://127.0.0.1:8765") as client:
+        assert client.post("/api/state", json=ASKED).status_code == 503
+        job = client.post("/api/jobs/time", json=ASKED)
+    assert b"too many jobs wait" in job.content if limit == "WAITING" else job.status_code == 503
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux enforces such a limit")
@@ -240,10 +238,10 @@ def test_half_requests_are_closed(served: Served, monkeypatch: pytest.MonkeyPatc
             pass
 
 
-def test_of_too_many_connections_the_oldest_idle_is_closed(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_of_too_many_connections_the_oldest_idle_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(limits, "CONNECTIONS", 5)
     monkeypatch.setattr(limits, "HEAD_SECONDS", 100.0)
-    with contextlib.ExitStack() as stack:
+    with running() as served, contextlib.ExitStack() as stack:
         held = [stack.enter_context(socket.create_connection(("127.0.0.1", served.port), timeout=20)) for _ in range(8)]
         assert served.ask("state", ASKED)[0] == 200
         assert until(lambda: len(served.server.server_state.connections) <= 5)

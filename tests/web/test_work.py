@@ -1,19 +1,18 @@
 """What a job's process does, here in a thread: the messages of each kind of job, and how jobs fail."""
 
-import asyncio
 import json
 import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Coroutine, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 from tests.web.asked import ASKED, BOX, MACHINE, POSE
+from tests.web.serving import apart
 
 import flexapod as fx
 
@@ -22,15 +21,10 @@ pytest.importorskip("starlette")
 from flexapod.design import design_file
 from flexapod.web import pose_ranges, requests, response
 from flexapod.web import worker as work
+from flexapod.web.clients import Client
 from flexapod.web.encode import as_json
 from flexapod.web.jobs import Jobs
 from flexapod.web.security import Guard
-
-
-def apart(task: Coroutine[Any, Any, Any]) -> Any:
-    """What a coroutine returns, run in a thread of its own: the browser's tests leave a loop running in this one."""
-    with ThreadPoolExecutor(1) as pool:
-        return pool.submit(asyncio.run, task).result()
 
 
 def as_bytes(spec: dict[str, Any]) -> bytes:
@@ -229,7 +223,7 @@ def test_a_process_that_dies_is_told_or_replaced(when: str) -> None:
         try:
             if when == "idle":
                 kill(pids)
-            async for part in jobs.run("cloud" if when == "idle" else "time", as_bytes(spec)):
+            async for part in jobs.run(Client("127.0.0.1"), "cloud" if when == "idle" else "time", as_bytes(spec)):
                 if when == "at work" and len(found) == 1:  # it has begun to tell
                     kill(pids)
                 found.append(part)

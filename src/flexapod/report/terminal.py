@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from rich.cells import cell_len
+from rich.measure import Measurement
 from rich.table import Table as Grid
 from rich.text import Text
 
@@ -12,7 +14,9 @@ from flexapod.report.numbers import percent, shown
 from flexapod.report.study import Bars, Column, Drawing, Row, Study, Table, shown_on
 
 if TYPE_CHECKING:
-    from rich.console import Console
+    from rich.console import Console, JustifyMethod
+
+_ENDLESS = 100_000  #: columns, more than any table has
 
 
 def show(study: Study, out: Console) -> None:
@@ -35,7 +39,18 @@ def _words(row: Row) -> str:
 
 def _item(item: Table | Bars, title: str, out: Console) -> None:
     out.print(Text(item.title or title, style="bold"), soft_wrap=True)
-    out.print(_bars(item) if isinstance(item, Bars) else _table(item))
+    put(_bars(item) if isinstance(item, Bars) else _table(item), out)
+
+
+def put(grid: Grid, out: Console) -> None:
+    """Print a table as wide as its numbers need, however narrow the terminal: a number that is cut is another one."""
+    needed = Measurement.get(out, out.options.update_width(_ENDLESS), grid).minimum
+    before = out.width
+    out.width = max(before, needed)
+    try:
+        out.print(grid, crop=False)
+    finally:
+        out.width = before
 
 
 def _table(table: Table) -> Grid:
@@ -44,7 +59,10 @@ def _table(table: Table) -> Grid:
     for column in columns:
         wordy = any(isinstance(value, str) and any(map(str.isalpha, value)) for value in column.values)
         heading = "\n".join(filter(None, (column.title, column.unit)))
-        grid.add_column(heading, justify="left" if wordy else "right", no_wrap=not wordy, vertical="top")
+        words = [word for value in column.values if isinstance(value, str) for word in value.split()] if wordy else []
+        least = max(map(cell_len, words), default=None)
+        side: JustifyMethod = "left" if wordy else "right"
+        grid.add_column(heading, justify=side, no_wrap=not wordy, min_width=least, vertical="top")
     for i in range(len(columns[0].values)):
         grid.add_row(*(_cell(column, i) for column in columns))
     return grid

@@ -21,12 +21,13 @@ from flexapod.design import design_file
 from flexapod.errors import FlexapodError
 from flexapod.web import description, limits, worker
 from flexapod.web.answers import Refusal, Start
+from flexapod.web.clients import Clients
 from flexapod.web.encode import JSONAnswer
 from flexapod.web.jobs import Jobs
 from flexapod.web.process import Pool
 from flexapod.web.questions import Answer, Questions
 from flexapod.web.requests import Bodies, RequestError
-from flexapod.web.security import Guard
+from flexapod.web.security import Guard, Pace
 
 STATIC = Path(__file__).parent / "static"
 
@@ -36,17 +37,18 @@ def application(start: Path | None = None, hosts: Iterable[str] = (), token: str
 
     token: what clients must know; None where only this computer can reach the server.
     """
-    jobs, questions, bodies = Jobs(), Questions(_presets().values()), Bodies()
+    jobs, questions, bodies, clients = Jobs(), Questions(_presets().values()), Bodies(), Clients()
 
-    async def begin(_: Request) -> Response:
-        return JSONAnswer(await run_sync(_start, start))
+    async def begin(request: Request) -> Response:
+        return JSONAnswer(await run_sync(_start, start), headers=clients.cookie(clients.who(request)))
 
     async def ask(request: Request) -> Response:
         kind = request.path_params["kind"]
         if kind not in worker.QUESTIONS:
             raise RequestError(f"there is no question {kind!r}", 404)
-        body = await bodies.read(request, limits.QUESTION_BYTES)
-        answer = await _while_there(request, partial(questions.ask, kind, body))
+        client = clients.who(request)
+        body = await bodies.read(request, client, limits.QUESTION_BYTES)
+        answer = await _while_there(request, partial(questions.ask, client, kind, body))
         timing = {"server-timing": f"compute;dur={1e3 * answer.seconds:.2f}"}
         return Response(answer.content, answer.status, timing, JSONAnswer.media_type)
 
@@ -54,8 +56,9 @@ def application(start: Path | None = None, hosts: Iterable[str] = (), token: str
         kind = request.path_params["kind"]
         if kind not in worker.KINDS:
             raise RequestError(f"there is no job {kind!r}", 404)
-        body = await bodies.read(request, limits.JOB_BYTES)
-        return StreamingResponse(jobs.run(kind, body), media_type="application/octet-stream")
+        client = clients.who(request)
+        body = await bodies.read(request, client, limits.JOB_BYTES)
+        return StreamingResponse(jobs.run(client, kind, body), media_type="application/octet-stream")
 
     async def stop_job(request: Request) -> Response:
         if not jobs.cancel(request.path_params["name"]):
@@ -71,7 +74,7 @@ def application(start: Path | None = None, hosts: Iterable[str] = (), token: str
     ]
     app = Starlette(
         routes=routes,
-        middleware=[Middleware(Guard, hosts=tuple(hosts), token=token)],
+        middleware=[Middleware(Pace, clients=clients), Middleware(Guard, hosts=tuple(hosts), token=token)],
         exception_handlers={FlexapodError: _refused},
         lifespan=lambda _: _warm(questions.quick.pool, jobs.pool, questions.careful.pool),
     )

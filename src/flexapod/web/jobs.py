@@ -5,6 +5,7 @@ A job is stopped when its page closes or cancels it, or when it takes too long.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import secrets
 from collections.abc import AsyncIterator
@@ -13,8 +14,10 @@ import anyio
 
 from flexapod.web import limits
 from flexapod.web.answers import JobMessage
+from flexapod.web.clients import Client
 from flexapod.web.encode import frame
 from flexapod.web.process import Pool
+from flexapod.web.turns import Share, Turns
 
 KEPT = 2  #: idle processes kept: a page starts a cloud and a slice at the same time
 NICENESS = 10  #: questions, which follow sliders, go before jobs
@@ -25,10 +28,10 @@ class Jobs:
     """Jobs of all pages."""
 
     def __init__(self, at_once: int | None = None) -> None:
-        self._limit = anyio.CapacityLimiter(at_once or min(max(4, os.cpu_count() or 1), limits.MOST_JOBS))
-        self.pool = Pool(KEPT, NICENESS)
+        self._turns = Turns(at_once or min(max(4, os.cpu_count() or 1), limits.MOST_JOBS))
+        self.pool = Pool(KEPT, NICENESS, limits.MEMORY)
         self._cancelled: dict[str, bool] = {}  # running jobs, and whether each was told to stop
-        self._waiting = 0  # bytes of the jobs that wait
+        self._there, self._bytes = Share(limits.WAITING), Share(limits.BODIES_BYTES)
 
     def running(self) -> list[str]:
         """Names of the jobs that run or wait."""
@@ -41,23 +44,21 @@ class Jobs:
             self._cancelled[name] = True
         return known
 
-    async def run(self, kind: str, body: bytes) -> AsyncIterator[bytes]:
+    async def run(self, client: Client, kind: str, body: bytes) -> AsyncIterator[bytes]:
         """Frames of one job: its name, its messages, and how it ended (done, failed or cancelled)."""
-        size = len(body)
-        if len(self._cancelled) >= limits.WAITING or self._waiting + size > limits.BODIES_BYTES:
-            yield _failed("too many jobs wait for their turn; try again later")
-            return
-        name = secrets.token_urlsafe(16)
-        self._cancelled[name] = False
-        self._waiting += size
-        try:
-            yield frame({"type": "job", "id": name, "waiting": self._limit.available_tokens < 1})
-            async with self._limit:
+        with contextlib.ExitStack() as held:
+            if not (
+                held.enter_context(self._there.held(client)) and held.enter_context(self._bytes.held(client, len(body)))
+            ):
+                yield _failed("too many jobs wait for their turn; try again later")
+                return
+            name = secrets.token_urlsafe(16)
+            self._cancelled[name] = False
+            held.callback(self._cancelled.pop, name)
+            yield frame({"type": "job", "id": name, "waiting": self._turns.waits(client)})
+            async with self._turns.turn(client):
                 async for message in self._frames(name, kind, body):
                     yield message
-        finally:
-            del self._cancelled[name]
-            self._waiting -= size
 
     async def _frames(self, name: str, kind: str, body: bytes) -> AsyncIterator[bytes]:
         """Frames of a job that has its turn. The process is kept only if the job came to its end."""

@@ -39,16 +39,15 @@ def _interrupts_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _serve(pipe: Connection, niceness: int) -> None:
-    """What a process does: it lets others go first, limits its memory, and answers until its pipe closes."""
-    if niceness and hasattr(os, "nice"):
-        os.nice(niceness)
-    limit_memory(limits.MEMORY)
+def _serve(pipe: Connection, memory: int) -> None:
+    """What a process does: it limits its memory, and answers until its pipe closes."""
+    limit_memory(memory)
     threading.Thread(
         target=import_module, args=("xarray",), daemon=True
     ).start()  # slow: before the first response needs it
-    pipe.send(({"type": "ready"}, b""))
-    worker.serve(pipe)
+    with contextlib.suppress(BrokenPipeError):  # the server has ended meanwhile
+        pipe.send(({"type": "ready"}, b""))
+        worker.serve(pipe)
 
 
 def limit_memory(more: int) -> None:
@@ -71,11 +70,14 @@ class Process(NamedTuple):
     pipe: Connection
 
     @classmethod
-    def start(cls, niceness: int) -> Process:
+    def start(cls, niceness: int, memory: int) -> Process:
         ours, theirs = _SPAWN.Pipe()
-        process = _SPAWN.Process(target=_serve, args=(theirs, niceness), name="flexapod-job", daemon=True)
+        process = _SPAWN.Process(target=_serve, args=(theirs, memory), name="flexapod-job", daemon=True)
         with _interrupts_blocked():
             process.start()
+        if niceness and hasattr(os, "setpriority"):  # from its start on, which takes longer than most work
+            with contextlib.suppress(ProcessLookupError):  # it has died already
+                os.setpriority(os.PRIO_PROCESS, process.pid or 0, os.getpriority(os.PRIO_PROCESS, 0) + niceness)
         theirs.close()
         return cls(process, ours)
 
@@ -102,13 +104,13 @@ class Process(NamedTuple):
 class Pool:
     """Some idle processes are kept, since starting one takes longer than most questions and jobs."""
 
-    def __init__(self, kept: int, niceness: int = 0) -> None:
-        self.kept, self.niceness = kept, niceness
+    def __init__(self, kept: int, niceness: int, memory: int) -> None:
+        self.kept, self.niceness, self.memory = kept, niceness, memory
         self.idle: list[Process] = []
         self._starting = anyio.Lock()
 
     async def _start(self) -> Process:
-        process = await run_sync(Process.start, self.niceness)
+        process = await run_sync(Process.start, self.niceness, self.memory)
         end = anyio.current_time() + limits.START_SECONDS
         while await process.receive(0.1) is None:
             if anyio.current_time() > end:

@@ -1,8 +1,8 @@
 """Questions that are answered at once, in processes of their own.
 
 Two kinds of process share the work, so that nobody's moving sliders wait for a text that takes long to read:
-- quick ones answer about designs whose text was accepted before, whatever was changed in them: a few milliseconds each;
-- careful ones take texts that are new, or long.
+- quick ones answer about designs whose text was accepted before, with few changes: a few milliseconds each;
+- careful ones, of lower priority, take texts that are new or long, and many changes.
 """
 
 from __future__ import annotations
@@ -15,9 +15,11 @@ from typing import NamedTuple
 import anyio
 
 from flexapod.web import limits, requests
+from flexapod.web.clients import Client
 from flexapod.web.encode import as_json
 from flexapod.web.jobs import DIED
 from flexapod.web.process import Pool, Process
+from flexapod.web.turns import Share, Turns
 
 REMEMBERED = 1000  #: texts that were accepted
 
@@ -38,30 +40,35 @@ def refusal(status: int, words: str) -> Answer:
 class _Lane:
     """Processes for one kind of question, and those who wait for them."""
 
-    def __init__(self, at_once: int, kept: int, niceness: int) -> None:
-        self.pool = Pool(kept, niceness)
-        self._limit = anyio.CapacityLimiter(at_once)
+    def __init__(self, turns: Turns, kept: int, niceness: int) -> None:
+        self.pool = Pool(kept, niceness, limits.QUESTION_MEMORY)
+        self._turns, self._there = turns, Share(limits.WAITING)
 
-    async def ask(self, kind: str, body: bytes) -> Answer:
-        if self._limit.statistics().tasks_waiting >= limits.WAITING:
-            return refusal(503, "too many questions wait for their answers; ask again later")
-        async with self._limit:
-            try:
-                process = await self.pool.take()
-            except (EOFError, OSError):
-                return refusal(503, DIED.format("question"))
-            answer = None
-            try:
-                await process.send(kind, body)
-                answer = await _answer(process, limits.ANSWER_SECONDS)
-            except (EOFError, OSError):
-                return refusal(503, DIED.format("question"))
-            except anyio.get_cancelled_exc_class():  # its client has left
-                with anyio.CancelScope(shield=True):
-                    answer = await _after_all(process)
-                raise
-            finally:
-                self.pool.give_back(process, answer is not None)
+    async def ask(self, client: Client, kind: str, body: bytes) -> Answer:
+        """The answer to a question of a client, when it is its turn."""
+        with self._there.held(client) as allowed:
+            if not allowed:
+                return refusal(503, "too many questions wait for their answers; ask again later")
+            async with self._turns.turn(client):
+                return await self._asked(kind, body)
+
+    async def _asked(self, kind: str, body: bytes) -> Answer:
+        try:
+            process = await self.pool.take()
+        except (EOFError, OSError):
+            return refusal(503, DIED.format("question"))
+        answer = None
+        try:
+            await process.send(kind, body)
+            answer = await _answer(process, limits.ANSWER_SECONDS)
+        except (EOFError, OSError):
+            return refusal(503, DIED.format("question"))
+        except anyio.get_cancelled_exc_class():  # its client has left
+            with anyio.CancelScope(shield=True):
+                answer = await _after_all(process)
+            raise
+        finally:
+            self.pool.give_back(process, answer is not None)
         return answer or refusal(503, f"computing this was stopped after {limits.ANSWER_SECONDS:g} s")
 
 
@@ -87,19 +94,21 @@ class Questions:
     """Questions of all pages. accepted: texts that are known to be designs."""
 
     def __init__(self, accepted: Iterable[str] = ()) -> None:
-        self.quick = _Lane(limits.QUICK, limits.QUICK, 0)
-        self.careful = _Lane(limits.CAREFUL, 1, 5)
+        self.quick = _Lane(Turns(limits.QUICK, alone=True), limits.QUICK, 0)
+        self.careful = _Lane(Turns(limits.CAREFUL), 1, 5)
         self._accepted: OrderedDict[bytes, None] = OrderedDict((_digest(text), None) for text in accepted)
 
-    async def ask(self, kind: str, body: bytes) -> Answer:
+    async def ask(self, client: Client, kind: str, body: bytes) -> Answer:
         """The answer to a question. Raises RequestError if the body makes no sense."""
         if len(body) > limits.SMALL_BYTES:
-            return await self.careful.ask(kind, body)
-        text = requests.parsed(body).get("design")
-        if not isinstance(text, str):
-            return await self.quick.ask(kind, body)  # which refuses it
+            return await self.careful.ask(client, kind, body)
+        asked = requests.parsed(body)
+        text, changes = asked.get("design"), asked.get("changes", {})
+        if not isinstance(text, str) or not isinstance(changes, dict):
+            return await self.quick.ask(client, kind, body)  # which refuses it
         digest = _digest(text)
-        answer = await (self.quick if digest in self._accepted else self.careful).ask(kind, body)
+        quick = digest in self._accepted and len(changes) <= limits.FEW_CHANGES
+        answer = await (self.quick if quick else self.careful).ask(client, kind, body)
         if answer.status == 200:
             self._accepted[digest] = None
             self._accepted.move_to_end(digest)

@@ -16,7 +16,9 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import FlexapodError
 from flexapod.pose import Pose
 from flexapod.web import designs, limits
+from flexapod.web.clients import Allowance, Client
 from flexapod.web.geometry import pose_at
+from flexapod.web.turns import Share
 
 
 class RequestError(FlexapodError, ValueError):
@@ -47,26 +49,28 @@ class Bodies:
     """Bodies of requests as they arrive: each of limited length, all together of limited size, and in time."""
 
     def __init__(self) -> None:
-        self._held = 0
+        self._share = Share(limits.BODIES_BYTES)
+        self._pace = Allowance(limits.LONG_BYTES, limits.LONG_BYTES_A_SECOND)
 
-    async def read(self, request: Request, most: int) -> bytes:
+    async def read(self, request: Request, client: Client, most: int) -> bytes:
         """The body of a request. Its length is checked as it arrives, since the header may not state it."""
         parts: list[bytes] = []
         size = 0
         try:
             with anyio.fail_after(limits.BODY_SECONDS):
                 async for part in request.stream():
-                    size += len(part)
-                    self._held += len(part)
-                    if size > most:
+                    if size + len(part) > most:
                         raise RequestError(f"the request is longer than {most} bytes; use a smaller file", 413)
-                    if self._held > limits.BODIES_BYTES:
+                    if not self._share.take(client, len(part)):
                         raise RequestError("too many long requests arrive at the same time; try again later", 503)
+                    size += len(part)
                     parts.append(part)
+                    if size > limits.SMALL_BYTES:
+                        await anyio.sleep(self._pace.owed(client, len(part)))
         except TimeoutError:
             raise RequestError(f"the request took longer than {limits.BODY_SECONDS:g} s to arrive", 408) from None
         finally:
-            self._held -= size
+            self._share.give_back(client, size)
         return b"".join(parts)
 
 

@@ -12,12 +12,13 @@ from urllib.parse import parse_qs
 
 import anyio
 from starlette.datastructures import Headers, MutableHeaders
-from starlette.requests import ClientDisconnect
+from starlette.requests import ClientDisconnect, HTTPConnection
 from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from flexapod.web import limits
 from flexapod.web.answers import Refusal
+from flexapod.web.clients import Allowance, Clients
 
 LOCAL_HOSTS = ("127.0.0.1", "localhost", "[::1]")
 _HOST = re.compile(r"(\[[0-9a-f:.]+\]|[\w.-]+)(:\d{1,5})?", re.ASCII)
@@ -106,6 +107,25 @@ class Guard:
         shown = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])
         plain = scope["path"].startswith("/") and not scope["path"].startswith(("//", "/\\"))  # no way to another site
         return scope["method"] in ("GET", "HEAD") and plain and _same(shown[0], self.token or "")
+
+
+class Pace:
+    """Middleware in which the requests of a client wait that come faster than they may."""
+
+    def __init__(self, app: ASGIApp, clients: Clients) -> None:
+        self.app, self.clients = app, clients
+        self._allowance = Allowance(limits.REQUESTS, limits.REQUESTS_A_SECOND)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "http":
+            client = self.clients.who(HTTPConnection(scope))
+            wait = self._allowance.owed(client, 1)
+            if wait > limits.LATE_SECONDS:
+                self._allowance.owed(client, -1)
+                await _refused(429, "too many requests; ask more slowly")(scope, receive, _Sender(send))
+                return
+            await anyio.sleep(wait)
+        await self.app(scope, receive, send)
 
 
 def _same(given: str, right: str) -> bool:

@@ -78,6 +78,8 @@ def _show(title: str, omega: Array, descriptions: list[str]) -> None:
     from rich.table import Table
     from rich.text import Text
 
+    from flexapod.report.terminal import put
+
     common.console().print(Text(title), soft_wrap=True)
     table = Table()
     for heading in ("mode", "rad/s", "Hz"):
@@ -85,4 +87,4 @@ def _show(title: str, omega: Array, descriptions: list[str]) -> None:
     table.add_column("motion")
     for i, words in enumerate(descriptions):
         table.add_row(f"{i + 1}", f"{omega[i]:.6g}", f"{omega[i] / TWO_PI:.5g}", words)
-    common.console().print(table)
+    put(table, common.console())

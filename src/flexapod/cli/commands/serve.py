@@ -34,9 +34,9 @@ def command(design: str | None, port: int, host: str, allow_host: tuple[str, ...
     why = "`flexapod serve` needs uvicorn and starlette"
     needed("uvicorn", "web", why), needed("starlette", "web", why)
     from flexapod.web.app import application
-    from flexapod.web.serving import server
+    from flexapod.web.serving import Door, server
 
-    bound = _listen(host, port)
+    bound = _listen(Door, host, port)
     address, port = bound.getsockname()[:2]
     open_to_others = not ipaddress.ip_address(address).is_loopback
     token = secrets.token_urlsafe(16) if open_to_others else None
@@ -70,12 +70,12 @@ def _checked(design: str) -> Path:
     return path
 
 
-def _listen(host: str, port: int) -> socket.socket:
+def _listen(door: type[socket.socket], host: str, port: int) -> socket.socket:
     """A socket that listens: whoever comes before the server runs waits for it."""
     if not host.strip():
         raise click.UsageError("--host is empty, which would be every address. Leave it out for this computer only.")
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
-    bound = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)  # named: or asyncio leaves its delays on
+    bound = door(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)  # named: or asyncio leaves its delays on
     bound.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         bound.bind((host, port))
