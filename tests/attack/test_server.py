@@ -22,7 +22,7 @@ from tests.web.serving import running, until
 from flexapod.web import limits
 from flexapod.web.security import HEADERS
 
-OWN_MEMORY = 150 * limits.MIB  # of a process beside what it shares: at its start 60 MB, measured here: 90 MB
+OWN_MEMORY = 160 * limits.MIB  # of a process beside what it shares: 93 MB at its start, 115 MB after all questions
 STATUSES = {200, 204, 303, 304, 400, 403, 404, 405, 408, 413, 421, 422, 429, 503}
 #: What each handler reads beside the design, its changes, the pose and the joint model.
 READ = {
@@ -204,7 +204,7 @@ def request(draw, port):
 
 def answered(sent, method, port, leave):
     """Status, heads and body of what the server answers; None where it closes without a word, or we leave."""
-    with socket.create_connection(("127.0.0.1", port), timeout=60) as client:
+    with socket.create_connection(("127.0.0.1", port), timeout=300) as client:
         try:
             client.sendall(sent[: len(sent) // 2] if leave == "half-way" else sent)
             if leave:
@@ -255,7 +255,7 @@ def test_the_server_attacked(served, capfd):
     def others():
         """Another client, who is served all the time."""
         while not end.is_set():
-            status, found = served.ask("state", ASKED)
+            status, found = served.ask("state", ASKED, 300.0)
             if status != 200 or "omega" not in found:
                 faults.append(("another client", status))
             others_seen["answers"] += 1
@@ -284,8 +284,8 @@ def test_the_server_attacked(served, capfd):
             for thread in crowd:
                 thread.start()
             for thread in crowd:
-                thread.join(timeout=120)
-                assert not thread.is_alive(), "no answer in two minutes"
+                thread.join(timeout=900)
+                assert not thread.is_alive(), "no answer in a quarter of an hour"
             assert not faults, faults[0]
             assert most_own(psutil.Process()) < OWN_MEMORY
     finally:

@@ -103,7 +103,7 @@ def test_a_share_leaves_as_much_to_the_others() -> None:
 
 def test_what_was_taken_comes_back_with_time(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [0.0]
-    monkeypatch.setattr(web_clients.time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(web_clients, "monotonic", lambda: now[0])
     allowance = Allowance(10, 2)
     assert [allowance.take("a") for _ in range(12)] == [True] * 10 + [False] * 2
     assert allowance.take("b"), "each has its own"
@@ -216,11 +216,12 @@ def test_requests_that_come_too_fast_wait_and_then_are_refused(monkeypatch: pyte
 
     monkeypatch.setattr(limits, "REQUESTS", 3)
     monkeypatch.setattr(limits, "REQUESTS_A_SECOND", 0.5)
+    monkeypatch.setattr(web_clients, "monotonic", lambda: 1.0)
     with running() as served:
         monkeypatch.setattr("flexapod.web.security.anyio.sleep", sleep)
         found = [greet(served) for _ in range(6)]
     assert found == [b"HTTP/1.1 200"] * 4 + [b"HTTP/1.1 429"] * 2
-    assert [round(wait) for wait in waits] == [0, 0, 0, 2]
+    assert waits == [0, 0, 0, 2]
 
 
 def test_long_bodies_come_at_a_pace(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -244,14 +245,15 @@ def test_long_bodies_come_at_a_pace(monkeypatch: pytest.MonkeyPatch) -> None:
         return len(await bodies.read(request, client, limits.JOB_BYTES))
 
     monkeypatch.setattr("flexapod.web.requests.anyio.sleep", sleep)
+    monkeypatch.setattr(web_clients, "monotonic", lambda: 1.0)
     bodies = Bodies()
-    for _ in range(2000):
+    for _ in range(600):
         assert apart(read(bodies, GREEDY, [limits.SMALL_BYTES])) == limits.SMALL_BYTES
     assert waits == [], "short ones do not wait"
     assert apart(read(bodies, GREEDY, [limits.LONG_BYTES // 4] * 2)) == limits.LONG_BYTES // 2
     assert apart(read(bodies, GREEDY, [limits.LONG_BYTES // 4] * 2)) == limits.LONG_BYTES // 2
-    assert max(waits) < 0.1
+    assert max(waits) == 0.0
     assert apart(read(bodies, GREEDY, [limits.LONG_BYTES_A_SECOND] * 2)) == 2 * limits.LONG_BYTES_A_SECOND
-    assert waits[-1] == pytest.approx(2.0, abs=0.2)
+    assert waits[-1] == 2.0
     apart(read(bodies, OTHER, [limits.LONG_BYTES // 4] * 2))
     assert waits[-1] == 0.0

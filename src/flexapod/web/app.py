@@ -78,7 +78,7 @@ def application(start: Path | None = None, hosts: Iterable[str] = (), token: str
         exception_handlers={FlexapodError: _refused},
         lifespan=lambda _: _warm(questions.quick.pool, jobs.pool, questions.careful.pool),
     )
-    app.state.jobs = jobs
+    app.state.jobs, app.state.questions = jobs, questions
     return app
 
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 import hmac
 import ipaddress
 import secrets
-import time
 from collections import OrderedDict
+from time import monotonic
 from typing import NamedTuple
 
 from starlette.requests import HTTPConnection
@@ -45,7 +45,7 @@ class Allowance:
     def owed(self, client: str | Client, amount: float) -> float:
         """Take an amount, and return how long the client has to wait until it is allowed, s."""
         left = self._now(client) - amount
-        self._left[client] = left, time.monotonic()
+        self._left[client] = left, monotonic()
         self._left.move_to_end(client)
         if len(self._left) > REMEMBERED:
             self._left.popitem(last=False)
@@ -54,7 +54,7 @@ class Allowance:
     def _now(self, client: str | Client) -> float:
         """What is left to the client now."""
         left, then = self._left.get(client, (self._at_once, 0.0))
-        return min(self._at_once, left + (time.monotonic() - then) * self._a_second)
+        return min(self._at_once, left + (monotonic() - then) * self._a_second)
 
 
 class Clients:
