@@ -164,6 +164,7 @@ def test_a_run_that_stops_shows_how_far_it_came(job: Work) -> None:
         ("slice", {"box": BOX, "across": "w"}, "across is 'w'; it must be one of x, y, z"),
         ("time", {"duration": 1e4}, "duration is 10000 s; at most"),
         ("time", {"kind": "csv"}, "csv must be the text of a CSV file"),
+        ("time", {"joint": []}, "joint is []; it must be one of universal"),
         ("time", {"kind": "hop"}, "kind is 'hop'; it must be one of harmonic"),
         ("time", {"kind": "step", "pulse": -1}, "pulse is -1; it must be a number from"),
     ],

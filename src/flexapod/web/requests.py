@@ -11,7 +11,7 @@ import anyio
 import numpy as np
 from starlette.requests import Request
 
-from flexapod.conventions import AXES, Array
+from flexapod.conventions import AXES, JOINT_MODELS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import FlexapodError
 from flexapod.pose import Pose
@@ -108,8 +108,7 @@ def _check_depth(value: Any) -> None:
 def question(asked: dict[str, Any]) -> Question:
     """The design, pose and joint model of a request."""
     six = numbers(asked.get("pose", [0.0] * 6), "pose", 6)
-    joint = asked.get("joint", "universal")
-    return Question(source(asked), six, joint)
+    return Question(source(asked), six, choice(asked, "joint", JOINT_MODELS))
 
 
 def source(asked: dict[str, Any]) -> designs.Source:
