@@ -22,6 +22,7 @@ from anyio.to_thread import run_sync
 
 from flexapod.web import limits, worker
 
+STARTING = 5  #: niceness of a process that starts, if it is to let others go first at all
 _SPAWN = multiprocessing.get_context("spawn")  # a fork of a server with threads may hang
 
 
@@ -39,8 +40,10 @@ def _interrupts_blocked() -> Iterator[None]:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def _serve(pipe: Connection, memory: int) -> None:
-    """What a process does: it limits its memory, and answers until its pipe closes."""
+def _serve(pipe: Connection, niceness: int, memory: int) -> None:
+    """What a process does: it lets others go first, limits its memory, and answers until its pipe closes."""
+    if niceness > STARTING and hasattr(os, "nice"):
+        os.nice(niceness - STARTING)
     limit_memory(memory)
     threading.Thread(
         target=import_module, args=("xarray",), daemon=True
@@ -72,12 +75,12 @@ class Process(NamedTuple):
     @classmethod
     def start(cls, niceness: int, memory: int) -> Process:
         ours, theirs = _SPAWN.Pipe()
-        process = _SPAWN.Process(target=_serve, args=(theirs, memory), name="flexapod-job", daemon=True)
+        process = _SPAWN.Process(target=_serve, args=(theirs, niceness, memory), name="flexapod-job", daemon=True)
         with _interrupts_blocked():
             process.start()
-        if niceness and hasattr(os, "setpriority"):  # from its start on, which takes longer than most work
+        if niceness and hasattr(os, "setpriority"):  # its start takes longer than most work, and must come to its end
             with contextlib.suppress(ProcessLookupError):  # it has died already
-                os.setpriority(os.PRIO_PROCESS, process.pid or 0, os.getpriority(os.PRIO_PROCESS, 0) + niceness)
+                os.setpriority(os.PRIO_PROCESS, process.pid or 0, os.getpriority(os.PRIO_PROCESS, 0) + STARTING)
         theirs.close()
         return cls(process, ours)
 
