@@ -1,5 +1,6 @@
 __version__: str
 
+from . import certificates as certificates
 from . import control as control
 from . import design as design
 from . import errors as errors
@@ -12,6 +13,12 @@ from . import plots as plots
 from . import simulation as simulation
 from . import vibration as vibration
 from . import workspace as workspace
+from .certificates.certificate import Certificate as Certificate
+from .certificates.claims import certify_condition_number as certify_condition_number
+from .certificates.claims import certify_limits as certify_limits
+from .certificates.claims import certify_regular as certify_regular
+from .certificates.index import certify as certify
+from .certificates.largest import certified_box as certified_box
 from .design.design_file import packaged_designs as packaged_designs
 from .design.hexapod import Hexapod as Hexapod
 from .design.loading import load as load

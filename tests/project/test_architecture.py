@@ -24,6 +24,7 @@ ORDER = [
     "design",
     "mechanics",
     "workspace",
+    "certificates",
     "excitation",
     "simulation",
     "vibration",

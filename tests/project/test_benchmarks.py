@@ -20,6 +20,7 @@ TASKS = [
     "Simulation, rtol 1e-9",
     "Simulation, fastest mode to 1 %",
     "Worst case of a design",
+    "Proved bound over a box",
 ]
 
 

@@ -71,6 +71,7 @@ SINGLE = {
     *("kp", "kd", "nearness", "unstable", "bound", "singular", "goal", "timing", "plan", "study", "against", "refine"),
     *("number", "dataset", "window", "frames", "exaggeration", "sensitivity", "sampler", "verify", "on_trial", "stop"),
     "pose_samples",
+    *("at_most", "within_limits", "time_limit", "cluster", "resume", "certified", "certify"),
     *(
         "length",
         "radius",

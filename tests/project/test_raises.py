@@ -8,6 +8,7 @@ SHOWN with the test that shows them where a call takes long.
 import inspect
 import re
 import sys
+from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
 
@@ -103,6 +104,34 @@ PROVOKED = {
     ("robustness", "MissingExtraError"): without(
         "SALib", lambda: fx.robustness(MACHINE, [fx.Uncertain("legs.stiffness", 0.1)], samples=16, sensitivity=16)
     ),
+    ("certify", "ArgumentError"): lambda: fx.certify(MACHINE, HOME, at_least=-1.0),
+    ("certify", "DesignError"): lambda: fx.certify("motion-base", HOME),
+    ("certify", "OutputError"): lambda: fx.certify(MACHINE, HOME, path="no-such-folder/proof.json"),
+    ("certify", "PoseError"): lambda: fx.certify(MACHINE, MEETING),
+    ("certify_condition_number", "ArgumentError"): lambda: fx.certify_condition_number(MACHINE, HOME, gap=2.0),
+    ("certify_condition_number", "DesignError"): lambda: fx.certify_condition_number(None),
+    ("certify_condition_number", "OutputError"): lambda: fx.certify_condition_number(
+        MACHINE, HOME, path="no/proof.json"
+    ),
+    ("certify_condition_number", "PoseError"): lambda: fx.certify_condition_number(MACHINE, MEETING),
+    ("certify_limits", "ArgumentError"): lambda: fx.certify_limits(fx.load("mukherjee-ii")),
+    ("certify_limits", "DesignError"): lambda: fx.certify_limits(None),
+    ("certify_limits", "OutputError"): lambda: fx.certify_limits(MACHINE, HOME, path="no-such-folder/proof.json"),
+    ("certify_limits", "PoseError"): lambda: fx.certify_limits(MACHINE, np.zeros((0, 6))),
+    ("certify_regular", "ArgumentError"): lambda: fx.certify_regular(MACHINE, HOME, time_limit=0.0),
+    ("certify_regular", "DesignError"): lambda: fx.certify_regular(None),
+    ("certify_regular", "OutputError"): lambda: fx.certify_regular(MACHINE, HOME, path="no-such-folder/proof.json"),
+    ("certify_regular", "PoseError"): lambda: fx.certify_regular(MACHINE, np.zeros((0, 6))),
+    ("certified_box", "ArgumentError"): lambda: fx.certified_box(MACHINE, HOME, 1.0),
+    ("certified_box", "DesignError"): lambda: fx.certified_box(None, fx.Workspace.about_home(0.1, 0.1), 1.0),
+    ("certified_box", "PoseError"): lambda: fx.certified_box(
+        fx.load("mukherjee-ii").replace({"home": None}), fx.Workspace.about_home(0.1, 0.1), 1.0
+    ),
+    ("check_certificate", "ArgumentError"): lambda: fx.certificates.check_certificate(
+        replace(fx.certify(MACHINE, HOME), upper=1.0)
+    ),
+    ("check_certificate", "OutputError"): lambda: fx.certificates.check_certificate("no-such-file.json"),
+    ("read_certificate", "OutputError"): lambda: fx.certificates.read_certificate("no-such-file.json"),
     ("animate_mode", "OutputError"): lambda: fx.animate_mode(MACHINE, HOME, 1, "nowhere/never.gif"),
     ("animate_simulation", "OutputError"): lambda: fx.animate_simulation(
         fx.simulate(MACHINE, HOME, duration=1e-3), MACHINE, "nowhere/never.gif"

@@ -1,6 +1,6 @@
 """Better designs, trade-offs between wishes, and the robustness of a design.
 
-May import: design, mechanics, workspace.
+May import: design, mechanics, workspace, certificates.
 """
 
 from flexapod._suggestions import attach

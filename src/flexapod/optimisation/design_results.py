@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
+from flexapod.certificates.certificate import Certificate
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import told_apart
@@ -85,12 +86,15 @@ class Verification:
         Where: x, y, z in m, roll, pitch, yaw in rad. None for a mean.
     checks : tuple of Check
         Every constraint there.
+    certificate : Certificate or None
+        What is proved of the index over the region, where that was asked for.
     """
 
     points: int
     index: float
     pose: Array | None
     checks: tuple[Check, ...]
+    certificate: Certificate | None = None
 
     @property
     def holds(self) -> bool:

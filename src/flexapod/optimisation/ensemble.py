@@ -9,10 +9,10 @@ import numpy as np
 from flexapod.conventions import TRANSLATIONS, Array
 from flexapod.design.form_numbers import Makers
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.layout import FULL, HOME, PLACES, describe, with_short_forms
+from flexapod.design.layout import FULL, HOME, describe, with_short_forms
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.inputs import as_hexapod
-from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, UncertainRange, quantile
+from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, UncertainRange, add_payload, quantile
 
 
 class Ensemble:
@@ -64,7 +64,7 @@ class Ensemble:
                 self._makers.make(row)
         found = found[:, : HOME.start]
         if load:
-            _add_payload(
+            add_payload(
                 found, load["payload.mass"], np.stack([load[f"payload.{axis}"] for axis in TRANSLATIONS], axis=1)
             )
         return found
@@ -92,16 +92,3 @@ class Ensemble:
             nominal = np.nan if p.index is None else float(self.base[p.index[0]] / p.unit)
             found[p.name] = UncertainRange(p.words, p.unit_name, p.distribution, nominal, low, high)
         return found
-
-
-def _add_payload(designs: Array, mass: Array, at: Array) -> None:
-    """Adds a point mass to the platform: mass, mass centre, and inertia about the new mass centre."""
-    M, R = designs[:, PLACES["platform.mass"]].copy(), designs[:, PLACES["platform.mass_center"]].copy()
-    total = M + mass
-    designs[:, PLACES["platform.mass"]] = total
-    designs[:, PLACES["platform.mass_center"]] = (M[:, None] * R + mass[:, None] * at) / total[:, None]
-    d = at - R
-    reduced = M * mass / total  # two point masses about their common centre
-    inertia, (i, j) = PLACES["platform.inertia"], np.triu_indices(3, 1)
-    designs[:, inertia.diagonal()] += reduced[:, None] * ((d**2).sum(axis=1, keepdims=True) - d**2)
-    designs[:, inertia[i, j]] -= reduced[:, None] * d[:, i] * d[:, j]

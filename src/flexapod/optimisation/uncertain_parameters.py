@@ -11,13 +11,19 @@ from numpy.typing import ArrayLike
 from flexapod.checks import not_negative, number, numbers, one_of, positive, several
 from flexapod.conventions import TRANSLATIONS, Array
 from flexapod.design import layout
+from flexapod.design.form_numbers import with_numbers
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.layout import entries
+from flexapod.design.layout import PLACES, entries
 from flexapod.errors import ArgumentError
 
 Distribution = Literal["uniform", "normal", "triangular", "lognormal"]
 #: How many spreads below its value a number may come; a normal distribution is cut off at four.
 _REACH = {"uniform": 1.0, "triangular": 1.0, "normal": 4.0, "lognormal": 0.0}
+#: Numbers that raise the index with themselves, those that lower it, and those that are not in it.
+_RAISING = ("legs.stiffness",)
+_LOWERING = ("platform.mass", "legs.lower.mass", "legs.upper.mass")
+_INERTIAS = ("platform.inertia", "legs.lower.inertia", "legs.upper.inertia")  # on their diagonals
+_WITHOUT_EFFECT = ("gravity", "legs.damping.prismatic", "legs.damping.universal", "legs.damping.spherical")
 
 
 @dataclass(frozen=True)
@@ -104,6 +110,54 @@ class Uncertain:
             )
         return found
 
+    @property
+    def words(self) -> str:
+        """What is assumed, for readers: "legs.stiffness +-10 % (uniform)"."""
+        spread = f"{100 * self.spread:.6g} %" if self.relative else f"{self.spread:.6g} in its unit"
+        cut = ", cut off at four of these" if self.distribution in ("normal", "lognormal") else ""
+        return f"{self.target} +-{spread} ({self.distribution}{cut})"
+
+    def at_worst(self, hexapod: Hexapod) -> Hexapod:
+        """Make the design with these numbers at the ends of their ranges at which the index is least.
+
+        Parameters
+        ----------
+        hexapod : Hexapod
+            The design.
+
+        Returns
+        -------
+        Hexapod
+            The design whose index is, at every pose, the least of all designs in the range.
+
+        Raises
+        ------
+        ArgumentError
+            If the index does not rise or fall with the numbers at every pose, such as with the places of joints.
+
+        Notes
+        -----
+        omega_1^2 is the least of v^T K v / v^T J v (Rayleigh): it rises with the stiffness of a leg, and falls with a
+        mass or a moment of inertia that adds v^T dJ v >= 0 while mass centres stay.
+        """
+        found = layout.with_short_forms(hexapod)
+        changed = np.zeros(layout.FULL, dtype=bool)
+        for parameter in self.parameters(hexapod):
+            sides = np.array([_side(number) for number in parameter.index])
+            if not sides.all():
+                name = layout.describe(int(parameter.index[int(np.argmin(np.abs(sides)))]))
+                raise ArgumentError(
+                    f"{name} is uncertain, and the index neither rises nor falls with it at every pose, so that no end "
+                    f"of its range is the worst. Those of {', '.join((*_RAISING, *_LOWERING))} and moments of inertia "
+                    "have one; for others certify several designs."
+                )
+            ends = np.array([quantile(self.distribution, np.array(u), self.spread) for u in (0.0, 1.0)])
+            away = np.where(sides > 0, ends[0], ends[1])
+            own = found[parameter.index]
+            found[parameter.index] = own * away if self.distribution == "lognormal" else own + away * parameter.width
+            changed[parameter.index] = True
+        return with_numbers(hexapod, found, changed)
+
 
 @dataclass(frozen=True)
 class Payload:
@@ -155,6 +209,43 @@ class Payload:
                 raise ArgumentError(f"the payload's {axis} is {given!r} m; it must be a number, or (least, most).")
             found.append(_of_payload(axis, np.array(pair), "m"))
         return found
+
+    @property
+    def words(self) -> str:
+        """What is assumed, for readers: "a payload of 0 to 5 kg at (0, 0, 0.1) m"."""
+        place = ", ".join(f"{a:.6g}" for a in np.asarray([np.max(axis) for axis in self.position]))
+        return f"a payload of {self.mass[0]:.6g} to {self.mass[1]:.6g} kg at ({place}) m"
+
+    def at_worst(self, hexapod: Hexapod) -> Hexapod:
+        """Make the design with the largest payload, under which the index is least at every pose.
+
+        Parameters
+        ----------
+        hexapod : Hexapod
+            The design.
+
+        Returns
+        -------
+        Hexapod
+            The design whose platform carries the payload.
+
+        Raises
+        ------
+        ArgumentError
+            If its place is uncertain: the index neither rises nor falls with that at every pose.
+        """
+        mass, *place = self.parameters(hexapod)
+        if moving := [one.words for one in place if not one.fixed]:
+            raise ArgumentError(
+                f"{moving[0]} is uncertain, and the index neither rises nor falls with it at every pose. Give one "
+                "place, and certify several."
+            )
+        found = layout.with_short_forms(hexapod)
+        add_payload(found[None], mass.width[1:], np.array([[one.width[0] for one in place]]))
+        changed = np.zeros(layout.FULL, dtype=bool)
+        for key in ("platform.mass", "platform.mass_center", "platform.inertia"):
+            changed[PLACES[key]] = True
+        return with_numbers(hexapod, found, changed)
 
 
 class UncertainRange(NamedTuple):
@@ -222,6 +313,32 @@ class UncertainParameter:
 def _of_payload(name: str, pair: Array, unit_name: str) -> UncertainParameter:
     name = f"payload.{name}"
     return UncertainParameter(name, "uniform", None, pair, 0.0, name, unit_name=unit_name)
+
+
+def _side(number: int) -> int:
+    """1 for a number that the index rises with at every pose, -1 for one that it falls with, 0 for others.
+
+    One that is not in the index counts as 1: either end is as bad.
+    """
+    key = layout.owner(number)
+    if key in _RAISING or key in _WITHOUT_EFFECT:
+        return 1
+    if key in _INERTIAS:
+        return -1 if len(set(layout.indices(number)[-2:])) == 1 else 0
+    return -1 if key in _LOWERING else 0
+
+
+def add_payload(designs: Array, mass: Array, at: Array) -> None:
+    """Adds point masses (s,) at places (s, 3) to the platforms of designs (s, n): mass, mass centre, and inertia."""
+    M, R = designs[:, PLACES["platform.mass"]].copy(), designs[:, PLACES["platform.mass_center"]].copy()
+    total = M + mass
+    designs[:, PLACES["platform.mass"]] = total
+    designs[:, PLACES["platform.mass_center"]] = (M[:, None] * R + mass[:, None] * at) / total[:, None]
+    d = at - R
+    reduced = M * mass / total  # two point masses about their common centre
+    inertia, (i, j) = PLACES["platform.inertia"], np.triu_indices(3, 1)
+    designs[:, inertia.diagonal()] += reduced[:, None] * ((d**2).sum(axis=1, keepdims=True) - d**2)
+    designs[:, inertia[i, j]] -= reduced[:, None] * d[:, i] * d[:, j]
 
 
 def quantile(distribution: str, u: Array, spread: float) -> Array:

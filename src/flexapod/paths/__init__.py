@@ -1,6 +1,6 @@
 """Trajectories through the workspace: their stability, their loads, and how to plan them.
 
-May import: design, mechanics, workspace.
+May import: design, mechanics, workspace, certificates.
 """
 
 from flexapod._suggestions import attach

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
+from flexapod.certificates.certificate import Certificate
 from flexapod.checks import whole
 from flexapod.conventions import in_unit
 from flexapod.design.hexapod import Hexapod
@@ -41,6 +42,8 @@ class Plan:
         Least relative margin to any requirement on the path.
     batches : int
         Batches of samples that the search drew.
+    certificate : Certificate or None
+        Whether the bound on the index is proved all along the path, where that was asked for.
 
     See Also
     --------
@@ -64,6 +67,7 @@ class Plan:
     straight_least_index: float
     margin: float
     batches: int
+    certificate: Certificate | None = None
 
 
 def plan_slice(hexapod: Hexapod, plan: Plan, *, samples: int = 81) -> xr.Dataset:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
+from flexapod.certificates.index import certify as certify_index
 from flexapod.design.hexapod import Hexapod
 from flexapod.paths.leg_speed import LegSpeed
 from flexapod.paths.plan import Plan
@@ -13,6 +15,8 @@ from flexapod.paths.planning_task import WAYPOINTS, Objective, PlanningTask
 from flexapod.paths.requirements import PathRequirements
 from flexapod.paths.smoothing import resampled
 from flexapod.pose import PoseLike
+
+LONGEST = 60.0  # s that a proof may take: mostly it takes milliseconds
 
 
 def plan_path(
@@ -23,6 +27,7 @@ def plan_path(
     *,
     objective: Objective = "length",
     timing: LegSpeed | float = 1.0,
+    certify: bool = False,
     seed: int = 0,
     progress: Callable[[float], object] | None = None,
 ) -> Plan:
@@ -40,6 +45,9 @@ def plan_path(
         What is made least. "time" needs a LegSpeed as `timing`.
     timing : LegSpeed or float, optional
         What the actuators can do, or the duration, s.
+    certify : bool, optional
+        Whether the bound on the index is also proved at every pose of the path: `certificate` of the plan. One that
+        keeps it by less than 1e-6 of it may stay undecided.
     seed : int, optional
         Seed of the search. The same seed gives the same path.
     progress : callable, optional
@@ -96,11 +104,20 @@ def plan_path(
     straight = task.path(resampled(line, WAYPOINTS[0]))
     straight_margin = task.margin(straight)
     if straight_margin >= 0 and objective == "length":
-        return task.plan(straight, straight, None, 0)
+        return _certified(task.plan(straight, straight, None, 0), hexapod, certify)
     if straight_margin >= 0:
         rough, batches = line, 0
     else:
         rough, batches = task.explore(seed, lambda share: report(0.5 * min(share, 1.0)))
     path = task.smoothed(rough, lambda share: report(0.5 + 0.5 * share))
     corners = None if batches == 0 else task.chart.poses(rough * task.scale)
-    return task.plan(path, straight, corners, batches)
+    return _certified(task.plan(path, straight, corners, batches), hexapod, certify)
+
+
+def _certified(plan: Plan, hexapod: Hexapod, certify: bool) -> Plan:
+    """The plan with a certificate, where one is asked for."""
+    if not certify:
+        return plan
+    needed = plan.requirements
+    proof = certify_index(hexapod, plan.path, at_least=needed.index, joint=needed.joint, time_limit=LONGEST)
+    return replace(plan, certificate=proof)

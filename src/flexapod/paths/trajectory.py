@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Literal, get_args
 
 import numpy as np
@@ -129,6 +130,26 @@ class Trajectory:
     def poses(self, samples: int) -> Pose:
         """Give at least `samples` poses of the path, with every waypoint among them: the path as a region."""
         return self(self.grid(samples)).pose
+
+    def polynomials(self) -> tuple[Array, Array, Array]:
+        """Give the pieces of the path as polynomials, for `flexapod.certify`.
+
+        Returns
+        -------
+        pieces : ndarray, shape (n, 6, k + 1)
+            Coefficients of position (m) and rotation vector (rad) by the time (s) since the piece's beginning, lowest
+            power first.
+        middle : ndarray, shape (3, 3)
+            The orientation that the rotation vector turns, about the base's axes.
+        spans : ndarray, shape (n, 3)
+            Number of the piece, and the least and largest time since its beginning, s.
+        """
+        curve = self._splines[0]
+        knots = np.unique(np.clip(curve.t, self.times[0], self.times[-1]))
+        begin, length = knots[:-1], np.diff(knots)
+        pieces = np.stack([curve(begin, nu=m) / math.factorial(m) for m in range(curve.k + 1)], axis=-1)
+        spans = np.stack([np.arange(len(begin), dtype=np.float64), np.zeros(len(begin)), length], axis=1)
+        return pieces, self.chart.middle, spans
 
     def length(self, characteristic_length: float = 1.0) -> float:
         """Integrate the speed, m; one radian of rotation counts as `characteristic_length`, m."""

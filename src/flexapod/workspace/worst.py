@@ -9,15 +9,17 @@ import numpy as np
 from flexapod.checks import thread_count, whole
 from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import PoseError
+from flexapod.errors import ArgumentError, PoseError
 from flexapod.mechanics.inputs import as_hexapod
 from flexapod.workspace.box import Box
 from flexapod.workspace.descents import BoxSearch, SquaredFrequency, starts_of
 from flexapod.workspace.limit_margins import LimitMargins, margins_to_keep, none_within
+from flexapod.workspace.proof import Boxes, Prover, Standing, Watch, check_provable, run, six_of
 from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.region import RegionLike, as_region, home_of
 
 SINGULAR = 1e-9  # omega_1 / omega_6 below which the index is zero to rounding
+GAP = 0.01  # that a certified least index may be below what is found, as a share of that
 AGREE = 1e-6  # relative difference of indices that count as the same minimum
 _TOUCHES = 1e-6  # margin of a limit, and share of the box's width from its edge, at which the pose is
 
@@ -48,6 +50,8 @@ class WorstPose(NamedTuple):
         Limits of the design that the pose is at, as "greatest length of leg 3".
     share_within_limits : float
         Part of the region's poses that is within the design's limits; NaN where all poses count.
+    proved : float
+        Index that no pose of the region falls below, rad/s; NaN where it was not asked for (`certified`).
     """
 
     pose: Array
@@ -61,6 +65,7 @@ class WorstPose(NamedTuple):
     sampled: float
     at_limits: tuple[str, ...] = ()
     share_within_limits: float = float("nan")
+    proved: float = float("nan")
 
 
 def worst_pose(
@@ -73,8 +78,9 @@ def worst_pose(
     seed: int = 0,
     threads: int | None = None,
     all_poses: bool = False,
+    certified: bool = False,
 ) -> WorstPose:
-    """Find the pose of a region with the least stability index.
+    """Search the pose of a region with the least stability index.
 
     Parameters
     ----------
@@ -97,6 +103,9 @@ def worst_pose(
     all_poses : bool, optional
         If True, poses beyond the design's limits count as well. If False (default), the worst of those within them is
         found; a design without limits allows all.
+    certified : bool, optional
+        If True, it is also proved that no pose of a box has an index more than 1 % lower, which takes from parts of a
+        second to hours (`certify` can limit the time). If the proof meets a lower pose, the search goes on from there.
 
     Returns
     -------
@@ -122,7 +131,8 @@ def worst_pose(
     In a box, a Sobol sweep gives low poses apart from one another; from each, and from every corner that no corner next
     to it undercuts, L-BFGS-B (Byrd, Lu, Nocedal and Zhu, 1995) descends on omega_1^2 with exact derivatives. The lowest
     of several frequencies that meet is never least where they meet (it has a ridge there), so that the descent passes
-    repeated frequencies; squared, it is smooth at a singular pose.
+    repeated frequencies; squared, it is smooth at a singular pose. A search proves nothing: how far the index may be
+    below what it finds is known with `certified` only.
 
     Where the design has limits, the descents begin at poses within them and keep to them by sequential quadratic
     programming (SLSQP, Kraft, 1988) with exact derivatives of leg lengths, joint angles and leg distances: the worst
@@ -140,13 +150,22 @@ def worst_pose(
     limits = margins_to_keep(hexapod, all_poses)
     home = home_of(hexapod, where)
     box, threads = where.box(home), thread_count(threads)
+    if certified:
+        check_provable(hexapod)
     if box is None:
+        if certified:
+            raise ArgumentError(
+                "certified is for a box, whose poses are not all looked at; of these poses each one is."
+            )
         return _worst_of(index, limits, where.rows(home, samples), threads)
     count = whole(starts, "starts")
     search = BoxSearch(index, box, limits, whole(samples, "samples"), whole(seed, "seed", 0), threads)
     poses = search.sample()
     ends = [search.descend(start) for start in starts_of(poses, box, count)]
     found = sorted(((index.root(end), end) for end in ends), key=lambda one: one[0])
+    proved = float("nan")
+    if certified:
+        proved, found = _proved(search, found)
     minima = _distinct(found, box)
     least, pose = minima[0]
     touches = _TOUCHES * (box.high - box.low)
@@ -163,7 +182,23 @@ def worst_pose(
         sampled=poses.least,
         at_limits=_at_limits(limits, pose),
         share_within_limits=_share(index, limits, poses.share),
+        proved=proved,
     )
+
+
+def _proved(search: BoxSearch, found: list[tuple[float, Array]]) -> tuple[float, list[tuple[float, Array]]]:
+    """What no pose of the box falls below, and the minima, with another one where the proof meets a lower pose."""
+    index = search.index
+    least, pose = found[0]
+    if least <= SINGULAR * index.scale:
+        return 0.0, found
+    place = Boxes(np.stack([search.box.low, search.box.high], axis=-1)[None])
+    prover = Prover(index.hexapod, index.joint_name, "index", place, search.limits is not None, threads=search.threads)
+    standing = run(prover, Standing("undecided", np.nan, least, place.parts, at=pose), GAP, Watch())
+    if standing.value < least:
+        end = search.descend(six_of(standing.at, place.parts))
+        found = sorted([*found, (index.root(end), end)], key=lambda one: one[0])
+    return 0.0 if np.isnan(standing.floor) else standing.floor, found
 
 
 def _worst_of(index: SquaredFrequency, limits: LimitMargins | None, rows: Array, threads: int) -> WorstPose:

@@ -5,15 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeAlias
 
+from flexapod.conventions import Array
 from flexapod.errors import ClusterError
 from flexapod.optional import needed
 from flexapod.workspace.pose_sets import GivenPoses
+from flexapod.workspace.proof import TURN, Prover, Turn, together
 from flexapod.workspace.store.block_job import Finished, Job, compute_block
 
 LOCAL = "local"
 _POLL = 0.5  # s between looks at whether to stop
+_SHARED_TURN = 10.0  # s of a turn of a proof: long beside what it takes to send parts
+_SHARES = 8  # parts that each thread gets at the least, so that none is idle for long
+Told: TypeAlias = "Callable[[float], object] | None"
 
 
 class Cluster:
@@ -57,6 +62,27 @@ class Cluster:
             if self.client.status == "running":
                 self.client.cancel(list(running))
 
+    def take_turn(self, prover: Prover, parts: Array, level: float, gap: float, seconds: float, progress: Told) -> Turn:
+        """A turn of a proof, shared out: each thread of the workers has its parts for a while (see `_SHARED_TURN`).
+
+        A share whose worker dies is left for the next turn.
+        """
+        from distributed.comm import CommClosedError
+
+        each = max(1, sum(self.client.nthreads().values()))
+        parts = prover.place.split(parts, _SHARES * each)
+        shares = [parts[first::each] for first in range(min(each, len(parts)))]
+        long = _SHARED_TURN if seconds >= TURN else seconds
+        try:
+            job = self.client.scatter(prover, broadcast=True)
+            given = [self.client.submit(_turn, job, share, level, gap, long, pure=False, retries=2) for share in shares]
+            found = [_result(future) for future in given]
+        except (CancelledError, CommClosedError) as error:
+            raise ClusterError(
+                "the connection to the scheduler was lost. What is stored of the proof is kept."
+            ) from error
+        return together(prover, found, shares)
+
     def _most(self) -> int:
         """Blocks to have under way: enough that no worker waits for its next one."""
         from distributed.comm import CommClosedError
@@ -72,6 +98,21 @@ class Cluster:
             rows = job.points.rows(block.start, block.stop)
             job = job._replace(points=None)
         return self.client.submit(compute_block, job, number, rows, key=f"sweep-{job.token}-{number}", retries=2)
+
+
+def _turn(prover: Prover, parts: Array, level: float, gap: float, seconds: float) -> Turn:
+    return prover.turn(parts, level, gap, seconds, None)
+
+
+def _result(future: Any) -> Turn | None:
+    """What a worker found; None where it died over it."""
+    from distributed import KilledWorker
+
+    try:
+        found: Turn = future.result()
+    except KilledWorker:
+        return None
+    return found
 
 
 def _knock(address: str, timeout: float) -> None:

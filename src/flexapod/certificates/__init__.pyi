@@ -1,0 +1,9 @@
+from .certificate import Certificate as Certificate
+from .checking import check_certificate as check_certificate
+from .claims import certify_condition_number as certify_condition_number
+from .claims import certify_limits as certify_limits
+from .claims import certify_regular as certify_regular
+from .file import read_certificate as read_certificate
+from .index import certify as certify
+from .largest import CertifiedBox as CertifiedBox
+from .largest import certified_box as certified_box

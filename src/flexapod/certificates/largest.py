@@ -1,0 +1,204 @@
+"""The largest box of a shape for which a bound on the stability index holds, proved."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from flexapod.certificates.certificate import Certificate
+from flexapod.certificates.index import certify
+from flexapod.certificates.known import least_index
+from flexapod.certificates.question import Uncertainty, question
+from flexapod.checks import positive, thread_count
+from flexapod.conventions import Array, JointModel
+from flexapod.design.hexapod import Hexapod
+from flexapod.errors import ArgumentError, PoseError
+from flexapod.workspace.box import Box, Workspace
+from flexapod.workspace.region import as_region, home_of
+
+_GREATEST = 2.0**12  # of a scale that is tried
+_TURN = 2 * np.pi  # widest range of an angle that is tried, rad
+
+
+class CertifiedBox(NamedTuple):
+    """The largest box of a shape for which a bound is proved, as `certified_box` gives it.
+
+    Attributes
+    ----------
+    box : Box
+        The box.
+    scale : float
+        Its widths as a share of those of the shape.
+    certificate : Certificate
+        The proof for it.
+    refuted : float
+        The least scale at which a pose below the bound was found: no larger box can be proved. Infinity if none was.
+    pose : ndarray, shape (6,), or None
+        That pose: x, y, z (m), roll, pitch, yaw (rad).
+    """
+
+    box: Box
+    scale: float
+    certificate: Certificate
+    refuted: float
+    pose: Array | None
+
+
+def certified_box(
+    hexapod: Hexapod,
+    box: Box | Workspace,
+    at_least: float,
+    *,
+    tolerance: float = 0.01,
+    joint: JointModel = "universal",
+    within_limits: bool = False,
+    uncertain: Uncertainty = (),
+    time_limit: float | None = None,
+    threads: int | None = None,
+    progress: Callable[[float], object] | None = None,
+    stop: Callable[[], bool] | None = None,
+) -> CertifiedBox:
+    """Find the largest box of a shape for which a bound on the stability index is proved.
+
+    Parameters
+    ----------
+    hexapod : Hexapod
+        The machine.
+    box : Box or Workspace
+        Its widths are scaled together, about its middle.
+    at_least : float
+        The bound, rad/s.
+    tolerance : float, optional
+        How far the scale may be from the one at which a pose below the bound is known, as a share of that.
+    joint : {"universal", "spin_free"}, optional
+        Joint model.
+    within_limits, uncertain : optional
+        As for `certify`.
+    time_limit : float, optional
+        How long to try, s; then the largest box that is proved is given.
+    threads : int, optional
+        Number of threads, default one for each core.
+    progress : callable, optional
+        Called with the share of the volume of the box in hand that is decided, from 0 to 1.
+    stop : callable, optional
+        Called often; when it returns True, the search ends with what it has.
+
+    Returns
+    -------
+    CertifiedBox
+        The box with its certificate, and the scale at which the bound is refuted.
+
+    Raises
+    ------
+    DesignError
+        If `hexapod` is not a Hexapod.
+    ArgumentError
+        If the middle of the box has less than the bound, nothing was proved in the time, or an argument is invalid.
+    PoseError
+        If no pose can be computed.
+
+    See Also
+    --------
+    certify : The proof for one box.
+
+    Notes
+    -----
+    Bisection: what is proved of a box holds for every smaller one in it. The scale at which poses are below the bound
+    is found first, by descents; then boxes below that size are proved, the largest first. One of which nothing is
+    decided in half of the time that is left counts as too large.
+
+    Examples
+    --------
+    >>> machine = fx.load("motion-base")
+    >>> found = fx.certified_box(machine, fx.Workspace.about_home(0.05, 0.05), 26.0, tolerance=0.1)
+    >>> found.certificate.status, found.scale < found.refuted
+    ('proved', True)
+    """
+    tolerance = positive(tolerance, "tolerance")
+    until = np.inf if time_limit is None else time.monotonic() + positive(time_limit, "time_limit", "s")
+    given = {"joint": joint, "uncertain": uncertain, "within_limits": within_limits}
+    search = _Search(hexapod, box, positive(at_least, "at_least", "rad/s"), given, thread_count(threads))
+    watch = {"threads": threads, "progress": progress, "stop": stop}
+    refuted, pose = search.refuted(tolerance / 4)
+    low, high, found = 0.0, min(refuted, search.greatest), None
+    scale = high * (1 - 0.8 * tolerance)
+    while low < high * (1 - tolerance) and time.monotonic() < until and not (stop and stop()):
+        left = None if time_limit is None else max(1e-3, (until - time.monotonic()) / 2)
+        certificate = search.prove(scale, {"time_limit": left, **watch})
+        if certificate.proved:
+            low, found = scale, certificate
+        else:
+            high = scale
+        if certificate.status == "refuted":
+            refuted, pose = scale, certificate.pose
+        scale = (low + high) / 2
+    if found is None:
+        raise ArgumentError(
+            f"no box of this shape was proved to keep {at_least:.6g} rad/s in the time. Give more of it "
+            "(time_limit), or a lower bound."
+        )
+    return CertifiedBox(search.box(low), low, found, refuted, pose)
+
+
+class _Search:
+    """Boxes of a shape by their scale."""
+
+    def __init__(
+        self,
+        hexapod: Hexapod,
+        shape: Box | Workspace,
+        at_least: float,
+        given: dict[str, Any],
+        threads: int,
+    ) -> None:
+        where = as_region(shape)
+        box = where.box(home_of(hexapod, where)) if isinstance(shape, Box | Workspace) else None
+        if box is None:
+            raise ArgumentError("box must be a Box or a Workspace with a range, which is made larger and smaller.")
+        self._middle, self._half = (box.low + box.high) / 2, (box.high - box.low) / 2
+        self._at_least, self._given = at_least, given
+        self._hexapod, self._threads = hexapod, threads
+        self.greatest = min(_GREATEST, _TURN / max(2 * float(self._half[3:].max()), _TURN / _GREATEST))
+
+    def box(self, scale: float) -> Box:
+        half = scale * self._half
+        return Box(*zip(self._middle - half, self._middle + half, strict=True))
+
+    def refuted(self, tolerance: float) -> tuple[float, Array | None]:
+        """About the least scale at which a pose below the bound is found, and the pose; infinity where none is."""
+        if self._least(0.0)[0] < self._at_least:
+            raise ArgumentError(
+                f"the middle of the box has an index of {self._least(0.0)[0]:.6g} rad/s, less than the bound of "
+                f"{self._at_least:.6g}: no box about it keeps that. Move the box, or give a lower bound."
+            )
+        low, high, pose = 0.0, min(1.0, self.greatest), None
+        while (found := self._least(high))[0] >= self._at_least:
+            low, high = high, min(2 * high, self.greatest)
+            if low >= self.greatest:
+                return float("inf"), None
+        pose = found[1]
+        while high - low > tolerance * high:
+            middle = (low + high) / 2
+            found = self._least(middle)
+            if found[0] < self._at_least:
+                high, pose = middle, found[1]
+            else:
+                low = middle
+        return high, pose
+
+    def _least(self, scale: float) -> tuple[float, Array]:
+        region = self.box(scale) if scale > 0 else self._middle
+        try:
+            found = least_index(question(self._hexapod, region, **self._given), self._threads)
+        except PoseError:
+            if scale > 0:
+                return 0.0, self._middle
+            raise
+        return (0.0 if found.singular else found.value), found.pose
+
+    def prove(self, scale: float, watch: dict[str, Any]) -> Certificate:
+        """The certificate of the bound for a scale."""
+        return certify(self._hexapod, self.box(scale), at_least=self._at_least, **self._given, **watch)

@@ -1,0 +1,172 @@
+"""What is asked: a design, at its worst where it is uncertain, a region in numbers, and which of its poses count."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Protocol, TypeAlias, runtime_checkable
+
+import numpy as np
+
+from flexapod.checks import number, positive
+from flexapod.conventions import Array, JointModel
+from flexapod.design.hexapod import Hexapod
+from flexapod.errors import ArgumentError, DesignError, PoseError, shown
+from flexapod.mechanics.inputs import as_hexapod, as_joint
+from flexapod.pose import Pose
+from flexapod.workspace.box import Box, Workspace
+from flexapod.workspace.proof import Boxes, PathPieces, Place, Prover, check_provable_limits
+from flexapod.workspace.region import Curve, RegionLike, as_region, home_of
+
+MOST_BOXES = 10**6
+_WIDEST = 4 * np.pi  # of a range of an angle, rad
+
+
+@runtime_checkable
+class Straying(Protocol):
+    """A number of a design that is only known up to a spread, such as `fx.Uncertain`."""
+
+    @property
+    def words(self) -> str:
+        """What is assumed, for readers."""
+        ...
+
+    def at_worst(self, hexapod: Hexapod) -> Hexapod:
+        """The design with it at the end of its range at which the index is least at every pose."""
+        ...
+
+
+@runtime_checkable
+class PolynomialCurve(Curve, Protocol):
+    """A path whose pieces are polynomials, such as `fx.Trajectory`."""
+
+    def polynomials(self) -> tuple[Array, Array, Array]:
+        """Pieces, middle orientation and spans, as `flexapod.workspace.proof.PathPieces` has them."""
+        ...
+
+
+#: Whatever a certificate is asked for over.
+Asked: TypeAlias = "RegionLike | Sequence[Box | Workspace]"
+Uncertainty: TypeAlias = "Straying | Iterable[Straying]"
+
+
+@dataclass(frozen=True)
+class Question:
+    """A design at its worst, and where; within_limits: whether only poses within its limits count.
+
+    nominal: the digest of the design as it was given. assumed: what is uncertain, in words. path: the curve, if it is
+    one.
+    """
+
+    hexapod: Hexapod
+    joint: JointModel
+    place: Place
+    within_limits: bool
+    nominal: str
+    assumed: tuple[str, ...]
+
+    def prover(self, kind: str, threads: int, limits: bool | None = None) -> Prover:
+        """The prover of a claim, a name of `_core.CertificateKind`."""
+        limits = self.within_limits if limits is None else limits
+        return Prover(self.hexapod, self.joint, kind, self.place, limits, threads=threads)
+
+
+def question(
+    hexapod: Hexapod,
+    region: Asked,
+    joint: JointModel,
+    uncertain: Uncertainty = (),
+    within_limits: bool = False,
+) -> Question:
+    """The question of some arguments. Raises DesignError, ArgumentError or PoseError for wrong ones."""
+    as_joint(joint)
+    place = place_of(as_hexapod(hexapod), region)
+    if within_limits and not hexapod.limits.given:
+        raise ArgumentError(
+            f"within_limits is True, but {hexapod.name!r} has no limits, so that all poses are. Leave it out, or add "
+            "[limits] to the design."
+        )
+    if within_limits:
+        check_provable_limits(hexapod)
+    worst, assumed = hexapod, []
+    for one in [uncertain] if isinstance(uncertain, Straying) else uncertain:
+        if not isinstance(one, Straying):
+            raise ArgumentError(f"uncertain holds {shown(one)}; give fx.Uncertain or fx.optimisation.Payload.")
+        worst = _at_worst(one, worst)
+        assumed.append(one.words)
+    return Question(worst, joint, place, within_limits, hexapod.digest, tuple(assumed))
+
+
+def _at_worst(one: Straying, hexapod: Hexapod) -> Hexapod:
+    try:
+        return one.at_worst(hexapod)
+    except DesignError as error:
+        raise ArgumentError(f"{one!r} leads to what is no hexapod: {error}") from error
+
+
+def place_of(hexapod: Hexapod, region: Asked) -> Place:
+    """A region in numbers. Raises ArgumentError or PoseError for what is none."""
+    if isinstance(region, PolynomialCurve):
+        pieces, middle, spans = region.polynomials()
+        return PathPieces(pieces, middle, spans)
+    if isinstance(region, list | tuple) and region and all(isinstance(one, Box | Workspace) for one in region):
+        return Boxes(_checked(np.concatenate([_boxes(hexapod, one) for one in region])))
+    return Boxes(_checked(_boxes(hexapod, region)))  # type: ignore[arg-type]
+
+
+def _boxes(hexapod: Hexapod, region: RegionLike) -> Array:
+    where = as_region(region)
+    home = home_of(hexapod, where)
+    box = where.box(home)
+    if box is not None:
+        return np.stack([box.low, box.high], axis=-1)[None]
+    return np.repeat(where.rows(home, 0)[:, :, None], 2, axis=2)
+
+
+def _checked(boxes: Array) -> Array:
+    if len(boxes) > MOST_BOXES:
+        raise ArgumentError(f"the region has {len(boxes)} boxes or poses; at most {MOST_BOXES} are proved together.")
+    turn = float(np.ptp(boxes[:, 3:], axis=2).max())
+    if turn > _WIDEST:
+        raise ArgumentError(
+            f"an angle of the region ranges over {np.degrees(turn):.4g} degrees; at most two turns make sense. Are its "
+            "angles in rad?"
+        )
+    return boxes
+
+
+def checked_level(value: float | None, name: str, unit: str) -> float | None:
+    """What is to be proved: a number > 0, or None."""
+    return None if value is None else positive(value, name, unit)
+
+
+def checked_gap(gap: float) -> float:
+    """A gap of bounds, a share above 0 and below 1."""
+    if not 1e-9 <= number(gap, "gap") < 1:
+        raise ArgumentError(f"gap is {gap}; it is a share of what a pose has, at least 1e-9 and below 1, as 0.01.")
+    return float(gap)
+
+
+def known_poses(place: Place, samples: int) -> Array:
+    """Poses of a region, rows (n, 6) or, of a path, (n, 12): boxes of no width, or points along the path."""
+    if isinstance(place, Boxes):
+        return place.parts[:, :, 0]
+    rows = []
+    for piece, low, high in place.parts:
+        at = np.linspace(low, high, max(2, samples // len(place.parts)))
+        six = np.stack([np.polynomial.polynomial.polyval(at, one) for one in place.pieces[int(piece)]], axis=-1)
+        rows.append(six)
+    return rotated(np.concatenate(rows), place.middle)
+
+
+def rotated(six: Array, middle: Array) -> Array:
+    """Rows (n, 12), position and matrix, of positions and rotation vectors (n, 6) that turn a middle orientation."""
+    from scipy.spatial.transform import Rotation
+
+    matrices = Rotation.from_rotvec(six[:, 3:]).as_matrix() @ middle
+    return Pose(six[:, :3], matrices).packed
+
+
+def none_known(place: Place) -> PoseError:
+    """What is told where no pose of a region can be computed."""
+    return PoseError(f"none of the {len(place.parts)} poses can be computed. Look at the status of a sweep of them.")
