@@ -1,6 +1,6 @@
 """The command line. Each command lives in a module of this package and is imported only when it is called.
 
-May import: design, mechanics, workspace, excitation, simulation, vibration, paths, optimisation, control,
+May import: design, mechanics, workspace, certificates, excitation, simulation, vibration, paths, optimisation, control,
 interchange, plots, paper, report, web.
 """
 
@@ -37,7 +37,7 @@ class _Lazy(click.Group):
             super().invoke(ctx)
         except EOFError as error:  # click would take it for Ctrl-C
             raise click.ClickException(failures.sentence(error) or "") from error
-        return interrupt.exit_code(ctx)
+        return interrupt.end_code(ctx)
 
 
 @click.group(cls=_Lazy, invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})
@@ -52,7 +52,8 @@ def group(ctx: click.Context) -> None:
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line and return its exit code.
 
-    0; 2 for a wrong command line or design, or what cannot be computed or written; 130 after Ctrl-C, 143 after SIGTERM.
+    0; 1 or 3 for a claim that is refuted or undecided; 2 for a wrong command line or design, or what cannot be computed
+    or written; 130 after Ctrl-C, 143 after SIGTERM.
     """
     given = sys.argv[1:] if arguments is None else arguments
     streams.speak_plainly()

@@ -89,6 +89,11 @@ optimise_options = common.stack(
         "--verify", type=common.count(2, 10**8), default=2**17, show_default=True, help="Poses of the last sweep."
     ),
     click.option(
+        "--certify",
+        is_flag=True,
+        help="Prove what the index of the result is at least over the whole workspace, to 1 %, in at most 5 minutes.",
+    ),
+    click.option(
         "--refine", type=common.count(0, 1000), default=12, show_default=True, help="Points of a front made exact."
     ),
     threads_option,
@@ -114,6 +119,7 @@ class Options:
     seed: int
     points: int
     verify: int
+    certify: bool
     refine: int
     threads: int | None
     out: Path | None

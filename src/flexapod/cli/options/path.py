@@ -36,6 +36,7 @@ class Options:
     condition: float | None
     clearance: float | None
     limits: bool
+    certify: bool
     seed: int
     out: Path | None
 
@@ -80,6 +81,9 @@ path_options = common.stack(
         "--clearance", type=POSITIVE_LENGTH, metavar="M", help="Least distance of leg axes on a planned path."
     ),
     click.option("--limits/--no-limits", default=True, help="Whether a planned path keeps the design's limits."),
+    click.option(
+        "--certify", is_flag=True, help="Prove the bound at every pose of the path; without --bound, the closest one."
+    ),
     click.option("--seed", type=common.SEED, default=0, show_default=True, help="Of the planner's samples."),
     common.out_option("Where to write the report, figures and planned waypoints. Default: nothing is written."),
 )

@@ -11,6 +11,7 @@ from typing import Any
 
 import click
 
+_ANSWER = "flexapod.answer"  # where a context keeps the exit code that says what a command found
 _SIGNAL = "flexapod.signal"  # where a context keeps the number of the signal that cut its command short
 
 
@@ -76,3 +77,13 @@ class Stopping:
 def exit_code(context: click.Context) -> int:
     """The exit code of a command that ended in good order: that of the signal that cut it short, or else 0."""
     return 128 + context.meta[_SIGNAL] if _SIGNAL in context.meta else 0
+
+
+def answer(code: int) -> None:
+    """Have the command end with an exit code that says what it found, unless a signal cut it short."""
+    click.get_current_context().meta[_ANSWER] = code
+
+
+def end_code(context: click.Context) -> int:
+    """The exit code of a command that ended in good order: of the signal, or else of its answer."""
+    return exit_code(context) or int(context.meta.get(_ANSWER, 0))

@@ -23,13 +23,16 @@ def compute(options: Options) -> Study:
     """The design, or the front of designs, that the options ask for. The first interrupt ends the search early."""
     hexapod = common.load_design(options.design, options.changes)
     aim = problem.objective(hexapod, options.pose, options.box, options.around, options.mean)
+    if options.certify and options.against is not None:
+        raise click.UsageError("--certify proves the index of one design, --against gives many. Leave one of them out.")
     varied, kept = problem.variables(options.vary), problem.constraints(options.keep)
     found: OptimalDesign | ParetoFront
     with Stopping() as stop, TrialProgress() as bar:
         settings = {**options.settings(), "on_trial": bar, "stop": stop}
         try:
             if options.against is None:
-                found = optimise(hexapod, varied, aim, kept, sampler=options.sampler, verify=options.verify, **settings)
+                own = {"sampler": options.sampler, "verify": options.verify, "certify": options.certify}
+                found = optimise(hexapod, varied, aim, kept, **own, **settings)  # type: ignore[arg-type]
             else:
                 other = problem.keep(options.against)
                 found = pareto_front(hexapod, varied, other, aim, kept, refine=options.refine, **settings)

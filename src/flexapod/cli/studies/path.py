@@ -7,6 +7,7 @@ import math
 import click
 import numpy as np
 
+from flexapod.certificates.index import certify
 from flexapod.cli.options import common, waypoints
 from flexapod.cli.options.path import Options
 from flexapod.cli.output.stages import Report
@@ -16,7 +17,7 @@ from flexapod.paths.analysis import path_index
 from flexapod.paths.leg_speed import LegSpeed
 from flexapod.paths.loads import path_loads
 from flexapod.paths.plan import Plan, plan_slice
-from flexapod.paths.planning import plan_path
+from flexapod.paths.planning import LONGEST, plan_path
 from flexapod.paths.requirements import PathRequirements
 from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
@@ -49,7 +50,11 @@ def _given(hexapod: Hexapod, options: Options) -> PathFindings:
         index = path_index(hexapod, path, bound=options.bound, joint=options.joint)
     except (SingularPoseError, PoseError) as error:
         raise type(error)(f"{error}{_hint(hexapod, path, options)}") from error
-    return PathFindings(path, index, path_loads(hexapod, path, joint=options.joint), _size(hexapod))
+    loads = path_loads(hexapod, path, joint=options.joint)
+    proof = None
+    if options.certify:
+        proof = certify(hexapod, path, at_least=options.bound, joint=options.joint, time_limit=LONGEST)
+    return PathFindings(path, index, loads, _size(hexapod), certificate=proof)
 
 
 def _planned(hexapod: Hexapod, options: Options, report: Report) -> PathFindings:
@@ -71,15 +76,17 @@ def _planned(hexapod: Hexapod, options: Options, report: Report) -> PathFindings
         needed,
         objective=options.objective,  # type: ignore[arg-type]
         timing=_timing(options),
+        certify=options.certify,
         seed=options.seed,
         progress=lambda share: report("planning", share),
     )
     index = path_index(hexapod, plan.path, bound=options.bound, joint=options.joint)
     loads = path_loads(hexapod, plan.path, joint=options.joint)
     if plan.rough is None:
-        return PathFindings(plan.path, index, loads, plan.size, plan=plan)
+        return PathFindings(plan.path, index, loads, plan.size, plan=plan, certificate=plan.certificate)
     beside = path_index(hexapod, plan.straight, bound=options.bound, joint=options.joint, singular="keep")
-    return PathFindings(plan.path, index, loads, plan.size, beside, plan, plan_slice(hexapod, plan))
+    plane = plan_slice(hexapod, plan)
+    return PathFindings(plan.path, index, loads, plan.size, beside, plan, plane, plan.certificate)
 
 
 def _pose(six: tuple[float, ...], origin: Pose | None) -> Pose:

@@ -13,6 +13,7 @@ from flexapod.optimisation.design_results import Check, OptimalDesign, VariableR
 from flexapod.optimisation.pareto import ParetoFront
 from flexapod.report.numbers import DASH, brief, file_name, percent, shown, six_words
 from flexapod.report.studies import least_index
+from flexapod.report.studies.certificate import certificate_data, one_line
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 
 
@@ -61,12 +62,15 @@ def _optimal_rows(found: OptimalDesign) -> list[Row]:
     by = f" ({100 * found.gain:+.3g} %)" if np.isfinite(found.gain) else ""
     gain = f"rad/s{by}, verified at {found.verification.points} poses"
     start = "rad/s, but it breaks a constraint" if found.start_breaks else "rad/s"
+    proof = found.verification.certificate
+    proved = [] if proof is None else [Row("Index, proved", one_line(proof))]
     return [
         Row("Index, verified", found.index, f"rad/s = {shown(found.index / TWO_PI, 4)} Hz", 5, on="page"),
         Row("Design begun with", found.start_index, start, 5, on="page"),
         Row("Gain", percent(found.gain) if np.isfinite(found.gain) else DASH, "of the index", on="page"),
         Row("Trials", str(found.history.sizes["trial"]), f"in {brief(found.seconds, 3)} s", on="page"),
         Row("index", f"{found.start_index:.6g} -> {found.index:.6g}", gain, on="terminal"),
+        *proved,
     ]
 
 
@@ -157,6 +161,7 @@ def _optimal_data(found: OptimalDesign, objective: str) -> dict[str, object]:
         "trials": found.history.sizes["trial"],
         "gradient_evaluations": found.evaluations,
         "seconds": found.seconds,
+        "certificate": certificate_data(found.verification.certificate),
     }
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from flexapod import plots
+from flexapod.certificates.certificate import Certificate
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
 from flexapod.paths.analysis import PathIndex
@@ -17,6 +18,7 @@ from flexapod.paths.plan import Plan
 from flexapod.paths.trajectory import Trajectory
 from flexapod.report.numbers import DASH, pose_numbers, pose_words, shown
 from flexapod.report.studies import least_index
+from flexapod.report.studies.certificate import certificate_data, one_line
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 
 
@@ -31,6 +33,7 @@ class PathFindings:
     beside: PathIndex | None = None
     plan: Plan | None = None
     plane: xr.Dataset | None = None
+    certificate: Certificate | None = None
 
 
 def study(hexapod: Hexapod, f: PathFindings, waypoints: str | None = None) -> Study:
@@ -110,6 +113,8 @@ def _rows(f: PathFindings) -> list[Row]:
     if bound is not None:
         words = "above it all along" if index.above else "BELOW it in places"
         rows.insert(7, Row("bound", f"{bound:.5g}", f"rad/s: {words}", on="terminal"))
+    if f.certificate is not None:
+        rows.insert(-1, Row("proved all along", one_line(f.certificate)))
     if f.plan is not None:
         p = f.plan
         beside = f"m; the straight line has {p.straight_length:.4g} m and an index down to {p.straight_least_index:.4g}"
@@ -153,6 +158,8 @@ def _data(hexapod: Hexapod, f: PathFindings) -> dict[str, Any]:
         "waypoints_m_deg": [pose_numbers(f.path.waypoints[i]) for i in range(len(f.path.times))],
         "files": [],
     }
+    if f.certificate is not None:
+        data["certificate"] = certificate_data(f.certificate)
     if plan is not None:
         data["plan"] = {
             "straight_length_m": plan.straight_length,

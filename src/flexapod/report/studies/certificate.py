@@ -1,0 +1,214 @@
+"""A certificate as a study: one page that says what is proved, of what, what it leaves out, and how to check it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from flexapod.certificates.certificate import Certificate
+from flexapod.certificates.largest import CertifiedBox
+from flexapod.conventions import AXES, TWO_PI
+from flexapod.mechanics.cautions import Caution
+from flexapod.report.numbers import brief, file_name, percent, shown, six_words
+from flexapod.report.studies import least_index
+from flexapod.report.study import Column, Row, Section, Study, Table
+from flexapod.workspace.proof import Boxes
+
+MOST = 12  # boxes that the page lists
+_TITLES = {
+    "index": "Least natural frequency",
+    "regular": "No singular pose",
+    "condition": "Condition number",
+    "limits": "Limits kept",
+}
+_LEAVES_OUT = (
+    "Other poses than those of the region, other modes than the lowest, and what happens in fast motion.",
+    "What the model leaves out: plates are rigid, joints have no play, and the frequency is that of the undamped small "
+    "vibration about a pose, in which weight and preload do not count.",
+    "How well the numbers of the design fit the machine: they count as exact, but for what is said to be uncertain.",
+    "Faults of the processor or the compiler. The proof allows for the rounding of every operation.",
+)
+
+
+def study(found: Certificate, *, checked: bool = False, largest: CertifiedBox | None = None) -> Study:
+    """The study of a certificate. checked: it is that of a check. largest: where the box was sought."""
+    name = f"{file_name(found.hexapod.name)}-certificate"
+    what = "A certificate checked by other boxes" if checked else "A certificate"
+    return Study(
+        hexapod=found.hexapod,
+        subject="certificate",
+        about=f"{what}. {found.words}",
+        data=_data(found, checked, largest),
+        rows=_rows(found, largest),
+        sections=_sections(found, name, checked),
+        cautions=_cautions(found),
+        files={f"{name}-check.html" if checked else f"{name}.html": None},
+    )
+
+
+def _rows(found: Certificate, largest: CertifiedBox | None) -> list[Row]:
+    rows = [Row(_TITLES[found.claim], found.status, on="page"), *_bounds(found)]
+    if largest is not None:
+        beyond = f"a pose below the bound is known at {largest.refuted:.4g}" if np.isfinite(largest.refuted) else ""
+        rows.append(Row("Size", f"{largest.scale:.4g}", "times the shape", note=beyond))
+    if found.within_limits:
+        rows.append(Row("Beyond the limits", percent(found.share_outside, 1), "of the volume, left out"))
+    if found.status == "undecided":
+        rows.append(Row("Not decided", percent(found.share_left, 2), f"of the volume, {len(found.left)} parts"))
+    rows.append(Row("Looked at", str(found.boxes), f"{_parts(found)} in {brief(found.seconds, 3)} s"))
+    return rows
+
+
+def _parts(found: Certificate) -> str:
+    return "pieces of the path" if found.on_path else "box" if found.boxes == 1 else "boxes"
+
+
+def _bounds(found: Certificate) -> list[Row]:
+    where = "" if found.pose is None else f"at {six_words(found.pose)}"
+    if found.claim == "index":
+        proved = f"rad/s = {brief(found.lower / TWO_PI, 5)} Hz"
+        known = f"rad/s, {where}" if where else "rad/s"
+        return [
+            Row("Proved at every pose", found.lower or None, proved if found.lower else "nothing", 6),
+            Row("Least that is known", found.upper, known, 6),
+            Row("Gap between them", percent(found.reached, 2)),
+        ]
+    if found.claim == "condition":
+        most = found.upper if np.isfinite(found.upper) else None
+        return [
+            Row("Proved at every pose: at most", most, "" if most else "nothing", 6),
+            Row("Greatest that is known", found.lower, where, 6),
+        ]
+    if found.status != "refuted":
+        return []
+    what = f"the {found.broken} breaks its limit" if found.claim == "limits" else "singular"
+    return [Row("Refuted", what, note=where)]
+
+
+def _sections(found: Certificate, name: str, checked: bool) -> list[Section]:
+    joint = {"universal": "exact universal joints", "spin_free": "legs that do not spin (the paper's)"}[found.joint]
+    model = (
+        f"Rigid plates, legs that are axial springs with mass, {joint}, a base at rest; the lowest natural frequency "
+        "is that of Eq. 5 of the paper."
+    )
+    assumed = f"It holds for every design in the ranges of {'; '.join(found.assumed)}." if found.assumed else ""
+    words = [found.words, model, *filter(None, [assumed])]
+    left = (
+        [Table(_box_columns(found.left), _more(found.left), on="page")] if len(found.left) and not found.on_path else []
+    )
+    again = (
+        f"With Flexapod installed, the command \u201cflexapod certify --check {name}.json\u201d proves the same anew "
+        "by boxes that are cut elsewhere. The file holds the design, the region, the model and the bound, and a sum "
+        "over them."
+    )
+    sections = [
+        Section("What is claimed", [_facts(found)], words),
+        Section("The region", [_region(found)]),
+        *([Section("What is not decided", left)] if left else []),
+        Section("What it does not cover", [], [f"{text}" for text in _LEAVES_OUT]),
+    ]
+    return sections if checked else [*sections, Section("Check it again", [], [again])]
+
+
+def _facts(found: Certificate) -> Table:
+    nominal = [("Digest of the design as it is", found.nominal)] if found.assumed else []
+    rows = [
+        ("Design", found.hexapod.name),
+        ("Digest of the design that is proved", found.hexapod.digest),
+        *nominal,
+        ("Joint model", found.joint),
+        ("Poses that count", "those within the design's limits" if found.within_limits else "all of the region"),
+        *([("Bound asked for", _wanted(found))] if found.wanted is not None else []),
+    ]
+    return Table([Column("", [a for a, _ in rows]), Column("", [b for _, b in rows])], style="facts", on="page")
+
+
+def _wanted(found: Certificate) -> str:
+    assert found.wanted is not None
+    if found.claim == "index":
+        return f"at least {shown(found.wanted, 6)} rad/s = {shown(found.wanted / TWO_PI, 5)} Hz"
+    return f"at most {shown(found.wanted, 6)}"
+
+
+def _region(found: Certificate) -> Table:
+    if isinstance(found.place, Boxes):
+        return Table(_box_columns(found.place.parts), _more(found.place.parts), on="page")
+    spans = found.place.parts
+    rows = [("Pieces (polynomials)", str(len(spans))), ("Duration", f"{(spans[:, 2] - spans[:, 1]).sum():.6g} s")]
+    return Table([Column("", [a for a, _ in rows]), Column("", [b for _, b in rows])], style="facts", on="page")
+
+
+def _box_columns(boxes: Any) -> list[Column]:
+    scale = np.repeat([1.0, 180 / np.pi], 3)[:, None]
+    columns = [Column("box", [str(k + 1) for k in range(min(MOST, len(boxes)))])]
+    for k, axis in enumerate(AXES):
+        ends = boxes[:MOST, k] * scale[k]
+        words = [brief(a, 6) if a == b else f"{brief(a, 6)} to {brief(b, 6)}" for a, b in ends]
+        columns.append(Column(axis, words, "m" if k < 3 else "deg"))
+    return columns
+
+
+def _more(boxes: Any) -> str:
+    return f"and {len(boxes) - MOST} more, which are in the file." if len(boxes) > MOST else ""
+
+
+def _cautions(found: Certificate) -> list[Caution]:
+    cautions = []
+    if found.status == "undecided":
+        nothing = found.claim == "index" and found.lower == 0
+        more = " Nothing is proved of the whole region yet." if nothing else ""
+        text = f"The proof ended with {percent(found.share_left, 2)} of the region left.{more} Go on with --resume."
+        cautions.append(Caution("undecided", text, {"share": found.share_left}))
+    if found.claim != "index" or found.pose is None:
+        return cautions
+    return [*cautions, *least_index.cautions(found.hexapod, found.pose, found.joint)]
+
+
+def _data(found: Certificate, checked: bool, largest: CertifiedBox | None) -> dict[str, Any]:
+    boxes = isinstance(found.place, Boxes)
+    data: dict[str, Any] = {
+        "design": found.hexapod.name,
+        "digest": found.hexapod.digest,
+        "nominal_digest": found.nominal,
+        "claim": found.claim,
+        "status": found.status,
+        "checked": checked,
+        "joint": found.joint,
+        "within_limits": found.within_limits,
+        "uncertain": list(found.assumed),
+        "wanted": found.wanted,
+        **_bounds_data(found),
+        "pose_m_rad": found.pose,
+        "broken": found.broken or None,
+        "boxes": found.boxes,
+        "seconds": found.seconds,
+        "share_left": found.share_left,
+        "share_outside": found.share_outside,
+        "parts_left": len(found.left),
+        "region": found.place.parts if boxes else None,
+        "path_s": None if boxes else float((found.place.parts[:, 2] - found.place.parts[:, 1]).sum()),
+    }
+    if largest is not None:
+        data |= {"scale": largest.scale, "refuted_scale": largest.refuted}
+    return data
+
+
+def _bounds_data(found: Certificate) -> dict[str, Any]:
+    if found.claim == "index":
+        return {"lower_rad_s": found.lower, "upper_rad_s": found.upper, "gap": found.reached}
+    if found.claim == "condition":
+        return {"lower": found.lower, "upper": found.upper, "gap": found.reached}
+    return {}
+
+
+def certificate_data(found: Certificate | None) -> dict[str, Any] | None:
+    """A certificate as plain data, for other studies."""
+    return None if found is None else {**_data(found, False, None)}
+
+
+def one_line(found: Certificate) -> str:
+    """A certificate in a few words, for other studies."""
+    if found.claim == "index" and found.lower > 0:
+        return f"at least {shown(found.lower, 6)} rad/s, to {percent(found.reached, 2)} of what is found"
+    return f"nothing ({found.status})"
