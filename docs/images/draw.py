@@ -12,6 +12,7 @@ HERE = Path(__file__).parent
 #: Picture -> the script beside this one that draws it.
 PICTURES = {
     "better.png": "draw_guides.py",
+    "certificates.png": "draw_certificates.py",
     "envelope.png": "draw_guides.py",
     "frames.svg": "draw_conventions.py",
     "house.svg": "draw_architecture.py",
