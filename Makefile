@@ -18,13 +18,16 @@ report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 paper: build ## the paper reproduced on one page (OUT=...)
 	$(BIN)/flexapod paper --out $(OUT)
 
+# On every core, each file of tests on one: what its tests share is made once.
+AT_ONCE := -n logical --dist loadfile
+
 test: build ## the whole test suite; with COVERAGE=1 also how much of the Python code it runs
 ifdef COVERAGE
 	$(BIN)/coverage erase
-	$(BIN)/coverage run -m pytest
+	$(BIN)/coverage run -m pytest $(AT_ONCE)
 	$(BIN)/python tests/helpers/covered.py
 else
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest $(AT_ONCE)
 endif
 
 coverage: ## the same, counted: fails below 95 % of the branches
