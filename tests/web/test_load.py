@@ -136,7 +136,7 @@ def test_pages_have_their_turns_beside_jobs_and_a_hostile_client(monkeypatch: py
         owned = [own_memory(psutil.Process(process.process.pid)) for pool in kept for process in pool.idle]
         assert len(served.app.state.jobs.running()) == 4
         assert statuses == {200: PAGES * MOVES}
-        assert len(log.passed) == PAGES * MOVES
+        assert PAGES * MOVES <= len(log.passed) <= PAGES * MOVES + len(jobs)  # whose turns may come later
         assert max(log.passed) <= 2
         assert max(owned) < OWN
         for job in jobs:
