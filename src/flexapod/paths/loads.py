@@ -6,13 +6,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from flexapod.conventions import LEGS, JointModel, in_unit
+from flexapod.conventions import LEGS, Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
 from flexapod.mechanics.dynamics import inverse_dynamics
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.joint_limits import check_limits
-from flexapod.mechanics.kinematics import leg_rates
+from flexapod.mechanics.kinematics import LegRates, leg_rates
+from flexapod.mechanics.load_limits import load_excess
 from flexapod.paths.analysis import check_arguments, singular_times
 from flexapod.paths.trajectory import Trajectory
 
@@ -47,7 +48,8 @@ def path_loads(
     xarray.Dataset
         Over `time` (s) and `leg`: leg_force (N, positive: compression), static_force (N, the same at rest), leg_length
         (m), leg_rate (m/s), leg_acceleration (m/s2), power (W) of each actuator; over `leg`: stroke (m), peak_force
-        (N); over `time`: within_limits.
+        (N); over `time`: within_limits, of lengths, angles and distances, and loads_within_limits, of forces, speeds,
+        accelerations and power.
 
     Raises
     ------
@@ -101,7 +103,16 @@ def path_loads(
             "stroke": ("leg", np.ptp(legs.length, axis=0), in_unit("m", "leg travel")),
             "peak_force": ("leg", np.abs(leg_force).max(axis=0), in_unit("N", "peak leg force")),
             "within_limits": ("time", check_limits(hexapod, motion.pose).ok),
+            "loads_within_limits": ("time", _kept(hexapod, leg_force, legs)),
         },
         {"time": ("time", times, in_unit("s")), "leg": list(LEGS)},
     )
     return dataset.assign_attrs(design=hexapod.name, digest=hexapod.digest)
+
+
+def _kept(hexapod: Hexapod, force: Array, legs: LegRates) -> np.ndarray:
+    """Whether the legs keep the limits of loads at each instant, (n,)."""
+    ok = np.ones(len(force), dtype=bool)
+    for quantity in load_excess(hexapod, force, legs.rate, legs.acceleration):
+        ok &= ((quantity.value >= quantity.least) & (quantity.value <= quantity.most)).all(axis=-1)
+    return ok

@@ -60,10 +60,20 @@ def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
         joint_limits.leg_distance(hexapod, pose),
         state.condition_shown(kinematics.condition_number(hexapod, pose)),
         [one.text for one in told if one.code == "singular" or "elsewhere" in one.numbers],
-        joint_limits.check_limits(hexapod, pose).exceeded,
+        (*joint_limits.check_limits(hexapod, pose).exceeded, *([] if state.singular else _forces(hexapod, pose))),
     )
     found = dict(zip(keys, values, strict=True))
     return {"pose_m_deg": pose_numbers(pose), **found, "cautions": [one.text for one in told]}
+
+
+def _forces(hexapod: Hexapod, pose: Pose) -> list[str]:
+    """What the leg forces that hold the pose at rest exceed, in words."""
+    from flexapod.mechanics.joint_limits import in_words
+    from flexapod.mechanics.load_limits import load_excess
+    from flexapod.mechanics.statics import hold
+
+    force = hold(hexapod, pose).leg_force
+    return [f"at rest, {words}" for quantity in load_excess(hexapod, force) for words in in_words(quantity)]
 
 
 def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:

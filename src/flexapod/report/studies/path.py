@@ -12,7 +12,9 @@ import xarray as xr
 from flexapod import plots
 from flexapod.certificates.certificate import Certificate
 from flexapod.design.hexapod import Hexapod
+from flexapod.errors import told_apart
 from flexapod.mechanics.cautions import Caution
+from flexapod.mechanics.load_limits import load_excess
 from flexapod.paths.analysis import PathIndex
 from flexapod.paths.plan import Plan
 from flexapod.paths.trajectory import Trajectory
@@ -54,6 +56,7 @@ def study(hexapod: Hexapod, f: PathFindings, waypoints: str | None = None) -> St
         cautions=[
             *least_index.cautions(hexapod, f.along.minimum_pose, f.along.samples.attrs["joint"]),
             *cautions(f),
+            *load_cautions(hexapod, f.loads),
         ],
         files={**files, "path.html": None},
     )
@@ -92,6 +95,26 @@ def cautions(f: PathFindings) -> list[Caution]:
         first = float(f.loads.time.values[outside][0])
         text = f"The path leaves the design's limits for {outside.mean():.0%} of it, first at {first:.4g} s."
         found.append(Caution("limit", text, {"share": float(outside.mean()), "first": first}))
+    return found
+
+
+def load_cautions(hexapod: Hexapod, loads: xr.Dataset) -> list[Caution]:
+    """Which legs exceed limits of force, speed, acceleration and power on the way, and by how much at most."""
+    found = []
+    values = (loads[name].values for name in ("leg_force", "leg_rate", "leg_acceleration"))
+    for name, unit, value, least, most in load_excess(hexapod, *values):
+        for side, over, bound in (("below", least - value, least), ("above", value - most, most)):
+            if over.max() <= 0:
+                continue
+            at, leg = np.unravel_index(int(np.argmax(over)), over.shape)
+            told, limit = told_apart(float(value[at, leg]), float(bound))
+            legs = ", ".join(str(one) for one in loads.leg.values[(over > 0).any(axis=0)])
+            when = f"{loads.time.values[at]:.4g} s"
+            text = (
+                f"The {name} of leg {loads.leg.values[leg]} is {told} {unit} at {when}, {side} the limit of {limit} "
+                f"{unit}; legs beyond it on the path: {legs}."
+            )
+            found.append(Caution("load_limit", text, {"value": float(value[at, leg]), "limit": float(bound)}))
     return found
 
 
@@ -151,6 +174,7 @@ def _data(hexapod: Hexapod, f: PathFindings) -> dict[str, Any]:
         "below_bound_s": index.below,
         "weighted_mean_index_rad_s": index.weighted_mean,
         "within_limits": bool(loads.within_limits.all()),
+        "loads_within_limits": bool(loads.loads_within_limits.all()),
         "leg_stroke_m": loads.stroke.values,
         "leg_peak_force_N": loads.peak_force.values,
         "leg_peak_rate_m_s": abs(loads.leg_rate).max("time").values,
