@@ -202,11 +202,10 @@ def test_nearest_physical_bodies_are_solid(name):
     assert (hexapod.legs.upper.mass > 0).all()
 
 
-@pytest.mark.parametrize("size", [1.0, 0.1, 1e-2])
-def test_mujoco_takes_legs_that_had_no_mass(tmp_path, size):
-    """Machines of metres, decimetres and centimetres, their frequencies alike."""
+def massless(size, friction=0.0):
+    """A motion base of another size, of the same density, whose legs have no mass; friction: of its spherical joints."""
     given = fx.load("motion-base")
-    massless = given.replace(
+    return given.replace(
         {
             "base.joints": given.base_joints * size,
             "platform.joints": given.platform_joints * size,
@@ -215,13 +214,47 @@ def test_mujoco_takes_legs_that_had_no_mass(tmp_path, size):
             "platform.mass_center": given.platform_mass_center * size,
             "platform.inertia": given.platform_inertia * size**5,
             "legs.stiffness": given.legs.stiffness * size,
+            "limits": None,
+            "legs.damping": None,
+            "legs.damping.spherical": friction * size**4,
             "legs.lower": None,
             "legs.upper": None,
         }
     )
-    solid = fx.interchange.nearest_physical(massless)
-    assert fx.natural_modes(solid).omega == pytest.approx(fx.natural_modes(massless).omega, rel=1e-3)
-    assert mujoco.MjModel.from_xml_path(str(fx.interchange.write_mjcf(tmp_path / "m.xml", solid))).nbody > 10
+
+
+@pytest.mark.filterwarnings("ignore:MuJoCo takes no moments")
+@pytest.mark.parametrize("friction", [0.0, 100.0])
+@pytest.mark.parametrize("size", [1.0, 0.1, 1e-2, 1e-3, 1e-4])
+def test_mujoco_takes_legs_that_had_no_mass(tmp_path, size, friction):
+    """Machines of metres to tenths of millimetres, their frequencies alike, with and without sockets of friction."""
+    given = massless(size, friction)
+    solid = fx.interchange.nearest_physical(given)
+    pose = fx.home_pose(solid)
+    assert fx.natural_modes(solid).omega == pytest.approx(fx.natural_modes(given).omega, rel=1e-3)
+    found = tangent(opened(tmp_path, "mjcf", solid, pose))
+    expected = fx.linearise(solid, pose)
+    scale = found.M[0, 0] / expected.M[0, 0]  # of the units of mass
+    assert scale == pytest.approx(1000.0 ** round(np.log(scale) / np.log(1000)), rel=1e-9)
+    for name in "MCK":
+        matrix, reference = getattr(found, name) / scale, getattr(expected, name)
+        bound = np.sqrt(np.outer(*2 * [np.diag(reference)])) if reference.any() else 1.0
+        assert np.abs((matrix - reference) / bound).max() < 1e-8, name
+
+
+def test_other_units_are_said_and_motors_take_newtons(tmp_path):
+    small = fx.interchange.nearest_physical(massless(1e-3, 100.0))
+    with pytest.warns(UserWarning, match="masses in its model are in ug and forces in nN"):
+        file = fx.interchange.write_mjcf(tmp_path / "small.xml", small)
+    assert "m, s, ug, nN" in file.read_text()
+    model = mujoco.MjModel.from_xml_path(str(file))
+    data = mujoco.MjData(model)
+    assert model.body_mass.sum() == pytest.approx(1e9 * (4e-6 + 12 * 4e-10), rel=1e-6)
+    data.ctrl[2] = 2e-6  # N
+    mujoco.mj_forward(model, data)
+    assert data.qfrc_actuator[model.joint("leg3_slide").dofadr[0]] == pytest.approx(2e3)  # nN
+    with pytest.raises(fx.DesignError, match="MuJoCo takes none below 1e-14, even with masses in pg"):
+        fx.interchange.write_mjcf(tmp_path / "none.xml", fx.interchange.nearest_physical(massless(1e-5, 100.0)))
 
 
 def test_names_need_no_care(tmp_path):
@@ -334,6 +367,10 @@ def test_export_replaces_bodies_when_told_to(run, result, tmp_path, monkeypatch)
     assert found["bodies_replaced"] is True
     assert 0 < found["frequency_change"] < 1e-3
     assert "change by" in run("export", "mukherjee-ii", "--to", "mjcf", "--nearest-physical")[1]
+    massless(1e-3, 100.0).save(tmp_path / "small.toml")
+    small = ("export", str(tmp_path / "small.toml"), "--to", "mjcf", "--nearest-physical")
+    assert "Warning: MuJoCo takes no moments" in run(*small)[1]
+    assert "forces in nN" in result(*small)["warnings"][0]
 
 
 def test_export_of_legs_that_do_not_spin(run, result, tmp_path):

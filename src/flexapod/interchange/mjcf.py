@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 import xml.etree.ElementTree as ET
 from os import PathLike
 from pathlib import Path
@@ -13,6 +14,7 @@ from flexapod import __version__
 from flexapod.checks import positive
 from flexapod.conventions import TWO_PI, Array
 from flexapod.design.hexapod import Hexapod
+from flexapod.errors import DesignError
 from flexapod.interchange.multibody import Body, Leg, Machine, at_rest
 from flexapod.interchange.xml_files import add, document
 from flexapod.mechanics.modes import natural_modes
@@ -22,6 +24,8 @@ from flexapod.pose import PoseLike
 STEPS = 50  # of a simulation for each period of the fastest mode
 SOCKET = 1e-3  # part of the platform that goes to each spherical joint with friction, where it has so much to give
 LEFT = 0.9  # of the platform's mass and moments must stay with it
+LEAST = 2e-14  # of a mass and of a moment of inertia: MuJoCo takes no moments below 1e-14
+MASSES, FORCES = ("kg", "g", "mg", "ug", "ng", "pg"), ("N", "mN", "uN", "nN", "pN", "fN")
 THICK = 0.02  # radius of a drawn leg, of its length
 
 
@@ -35,7 +39,7 @@ def write_mjcf(
     """Write the hexapod at rest as a MuJoCo model (MJCF).
 
     At joint positions zero the platform stands at the pose, held by the springs of the legs. Motors ``leg1`` to
-    ``leg6`` push beside the springs, in N. All numbers are in SI units.
+    ``leg6`` push beside the springs, in N. All numbers are in SI units, except for very small machines (see Notes).
 
     Parameters
     ----------
@@ -67,8 +71,17 @@ def write_mjcf(
     OutputError
         If the file cannot be written.
 
+    Warns
+    -----
+    UserWarning
+        If masses and forces in the file are in smaller units than kg and N.
+
     Notes
     -----
+    MuJoCo has no units, and refuses moments of inertia below 1e-14. Where a body has one, in machines of some
+    millimetres, masses and forces are written in units a thousand or more times smaller, g and mN or mg and uN, with
+    which the machine moves exactly as before; the file begins with them. Its motors take N all the same.
+
     The loops are closed by ``connect`` constraints. Where a spherical joint has friction, a ball joint with this
     friction carries a small piece cut out of the platform, and a ``weld`` joins the piece to the rest: together they
     have the platform's mass and inertia. The joints between base and legs are universal joints, as in the exact model.
@@ -88,8 +101,18 @@ def mjcf(hexapod: Hexapod, pose: PoseLike | None = None, timestep: float | None 
     machine = at_rest(hexapod, pose)
     if timestep is None:
         timestep = _timestep(hexapod, machine)
+    smaller = _smaller(machine)
+    machine, units = machine.scaled(1000.0**smaller), "SI units"
+    if smaller:
+        units = f"m, s, {MASSES[smaller]}, {FORCES[smaller]}"
+        warnings.warn(
+            f"MuJoCo takes no moments of inertia as small as those of {hexapod.name!r}: masses in its model are in "
+            f"{MASSES[smaller]} and forces in {FORCES[smaller]}. It moves as before; the motors take N.",
+            UserWarning,
+            stacklevel=3,
+        )
     root = ET.Element("mujoco", model=machine.name)
-    root.append(ET.Comment(f" Written by Flexapod {__version__} for {machine.pose!r}; SI units, base frame. "))
+    root.append(ET.Comment(f" Written by Flexapod {__version__} for {machine.pose!r}; {units}, base frame. "))
     add(root, "compiler", angle="radian", autolimits="true")
     option = add(
         root,
@@ -110,8 +133,24 @@ def mjcf(hexapod: Hexapod, pose: PoseLike | None = None, timestep: float | None 
     equality, actuator = add(root, "equality"), add(root, "actuator")
     for leg in machine.legs:
         _close(equality, leg)
-        add(actuator, "motor", name=leg.name, joint=f"{leg.name}_slide")
+        gear = 1000.0**smaller if smaller else None
+        add(actuator, "motor", name=leg.name, joint=f"{leg.name}_slide", gear=gear)
     return document(root)
+
+
+def _smaller(machine: Machine) -> int:
+    """How many thousands smaller the units of mass and force must be, for MuJoCo to take all bodies."""
+    rest, sockets = _divided(machine)
+    parts = [part for leg in machine.legs for part in (leg.lower, leg.upper)]
+    bodies = [rest, *parts, *(piece for piece in sockets if piece is not None)]
+    least = min(min(body.mass, float(np.linalg.eigvalsh(body.inertia)[0])) for body in bodies)
+    smaller = max(0, math.ceil(math.log(LEAST / least, 1000)))
+    if smaller >= len(MASSES):
+        raise DesignError(
+            f"a body of {machine.name!r} has a moment of inertia of {least:.3g} kg m2; MuJoCo takes none below 1e-14, "
+            f"even with masses in {MASSES[-1]}. Give its bodies more mass."
+        )
+    return smaller
 
 
 def _timestep(hexapod: Hexapod, machine: Machine) -> float:

@@ -22,6 +22,10 @@ class Body(NamedTuple):
     center: Array
     inertia: Array
 
+    def scaled(self, factor: float) -> Body:
+        """With its mass in another unit, that is `factor` times smaller."""
+        return self._replace(mass=factor * self.mass, inertia=factor * self.inertia)
+
 
 class Leg(NamedTuple):
     """One leg; its axes are x from base to platform joint, y = k x s normalised, z = x cross y."""
@@ -41,6 +45,12 @@ class Leg(NamedTuple):
     spherical: float  # N m s/rad
     travel: tuple[float, float] | None  # m, from here to the shortest and the longest leg
 
+    def scaled(self, factor: float) -> Leg:
+        """With masses, and so forces, in units that are `factor` times smaller."""
+        forces = ("stiffness", "force", "prismatic", "universal", "spherical")
+        changed = {name: factor * getattr(self, name) for name in forces}
+        return self._replace(lower=self.lower.scaled(factor), upper=self.upper.scaled(factor), **changed)
+
 
 class Machine(NamedTuple):
     """A hexapod at rest at a pose."""
@@ -50,6 +60,10 @@ class Machine(NamedTuple):
     pose: Pose
     platform: Body  # from the platform's reference point, platform axes
     legs: tuple[Leg, ...]
+
+    def scaled(self, factor: float) -> Machine:
+        """With masses and forces in units that are `factor` times smaller: it moves as before."""
+        return self._replace(platform=self.platform.scaled(factor), legs=tuple(leg.scaled(factor) for leg in self.legs))
 
 
 def at_rest(hexapod: Hexapod, pose: PoseLike | None = None) -> Machine:

@@ -14,7 +14,6 @@ from flexapod.mechanics.inputs import as_hexapod
 
 LEAST_MASS = 1e-4  # of the platform's mass, in place of none
 LEAST_SPREAD = 1e-6  # of the largest second moment; of mass times the machine's width squared for a mass at a point
-LEAST_MOMENT = 1e-14  # kg m2; MuJoCo takes no moment of inertia, which is the sum of two of these, below 1e-14
 
 
 def nearest_physical(hexapod: Hexapod) -> Hexapod:
@@ -44,8 +43,7 @@ def nearest_physical(hexapod: Hexapod) -> Hexapod:
     bodies. Where it is not, its eigenvalues are raised to a millionth of the largest (a sheet gets a thickness of a
     thousandth of its width, a thin rod a radius): the smallest change, in the sum of squares, that gives such moments.
     Parts of legs without mass get a ten-thousandth of the platform's mass, and a mass at a point the moments of a ball
-    with a radius of gyration of a thousandth of the machine's width. No moment of inertia that was raised is one that
-    MuJoCo refuses, which takes none below 1e-14 kg m2.
+    with a radius of gyration of a thousandth of the machine's width. So machines of all sizes change alike.
 
     Examples
     --------
@@ -95,7 +93,7 @@ def check_physical(hexapod: Hexapod) -> None:
 def _mended(mass: float, inertia: Array, reach: float) -> Array:
     moments, axes = np.linalg.eigh(second_moments(inertia))
     ball = LEAST_SPREAD * mass * reach**2
-    least = max(LEAST_SPREAD * moments[2] if moments[2] > ball else ball, LEAST_MOMENT)
+    least = LEAST_SPREAD * moments[2] if moments[2] > ball else ball
     spread = (axes * np.maximum(moments, least)) @ axes.T
     spread = (spread + spread.T) / 2
     return np.asarray(np.trace(spread) * np.eye(3) - spread)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -70,7 +71,10 @@ def command(
     where = common.chosen_pose(given, pose)
     hexapod = nearest(given) if nearest_physical else given
     path = check_file(out or Path(f"{file_name(hexapod.name)}{SUFFIXES[kind]}"))
-    files = _write(kind, path, hexapod, where, joint)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        files = _write(kind, path, hexapod, where, joint)
+    told = [str(warning.message) for warning in caught]
     omega, before = (natural_modes(machine, where, joint=joint).omega for machine in (hexapod, given))
     written = [str(file) for file in files]
     found = {
@@ -82,6 +86,7 @@ def command(
         "bodies_replaced": hexapod != given,
         "frequency_change": float(abs(omega / before - 1).max()),
         "omega_rad_s": omega,
+        "warnings": told,
     }
     if as_json:
         common.print_json(found)
@@ -89,6 +94,7 @@ def command(
     click.echo(f"Wrote {' and '.join(written)}: {hexapod.name} at {where!r}.")
     if found["bodies_replaced"]:
         click.echo(f"Bodies were replaced; its natural frequencies change by {found['frequency_change']:.3g} at most.")
+    common.print_warnings(told)
 
 
 def _write(kind: str, path: Path, hexapod: Hexapod, pose: Pose, joint: JointModel) -> tuple[Path, ...]:
