@@ -26,6 +26,8 @@ from flexapod.optimisation.requirements import Requirement
 from flexapod.workspace.worst import WorstPose, worst_pose
 
 _SHARPNESS = (40.0, 400.0, 4000.0, 4000.0, 4000.0)
+_ROUNDS = 14  # at most, also of those that are made anew
+_BROKEN = 0.02  # sum of margins broken, from which a round led astray: legs have passed through one another, say
 _SLACK = 1e-7  # bounds are kept by this much more than asked, so that rounding does not break them
 _PINNED = -1e-9  # instead of it, where a bound can only just be kept: at the end of a variable's range, for one
 _SMOOTH = 4e-3  # by which a smooth extreme may pass a bound that the extreme itself keeps: 2 log(6) / 1000
@@ -61,17 +63,20 @@ class Finished:
 def finish(
     problem: Problem, start: Array, samples: int, seed: int = 0, stop: Callable[[], bool] | None = None
 ) -> Finished:
-    """Improves variables x from a start, in rounds. The start itself is returned where nothing better was found."""
+    """Improves variables x from a start, in rounds. The start itself is returned where nothing better was found.
+
+    A round that ends far beyond a bound is made anew from the best design, with the poses held that it was broken at:
+    from a design whose legs have passed through one another no gradient leads back.
+    """
     best_x, best = start, assess_anew(problem, start, samples, seed)
     held: list[_Held] = []
     u, evaluations, rounds = problem.map.unit(start), 0, 0
     _hold(problem, start, held, samples, seed)
     messages = [] if held else ["its start makes no hexapod"]
-    for sharpness in _SHARPNESS if held else ():
-        if stop is not None and stop():
-            break
+    left = list(_SHARPNESS) if held else []
+    while left and rounds < _ROUNDS and not (stop is not None and stop()):
         rounds += 1
-        local = _Local(problem, held, sharpness)
+        local = _Local(problem, held, left[0])
         u = local.solve(u)
         evaluations += local.evaluations
         messages.append(local.message)
@@ -80,9 +85,13 @@ def finish(
         gain = found.index / best.index - 1 if best.feasible and best.index > 0 else 1.0
         if found.better_than(best):
             best_x, best = x, found
-        if sharpness == _SHARPNESS[-1] and found.feasible and gain < _CLOSE:
+        if left[0] == _SHARPNESS[-1] and found.feasible and gain < _CLOSE:
             break
         _hold(problem, x, held, samples, seed + rounds)
+        if best.feasible and found.violation > _BROKEN:
+            u = problem.map.unit(best_x)
+        else:
+            del left[0]
     return Finished(best_x, best, evaluations, rounds, messages[-1] if messages and all(messages) else "")
 
 
