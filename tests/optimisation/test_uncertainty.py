@@ -238,3 +238,39 @@ def test_values_are_in_the_units_of_their_keys_and_what_was_assumed_is_told():
     assert found.samples.attrs["seed"] == 5
     again = machine.replace({name: value for name, value in found.worst_at.items() if name.startswith("platform")})
     assert again.platform_mass == pytest.approx(6000)
+
+
+def test_poses_beyond_the_limits_do_not_count_unless_all_are_asked_for(result, run):
+    """The least of a sweep over the same poses, whose legs are softer by a fifth at the worst."""
+    machine = fx.load("motion-base")
+    workspace = fx.Workspace.about_home(0.3, np.radians(15))
+    soft = fx.Uncertain("legs.stiffness", 0.2, each=False)
+    swept = fx.sweep(machine, workspace.rows(np.concatenate([machine.home.position, machine.home.rpy]), 300, 0))
+    kept = swept.within_limits.values.astype(bool)
+    assert 0 < kept.sum() < kept.size
+    least = {}
+    for everywhere, counted in ((False, kept), (True, np.ones_like(kept))):
+        found = fx.robustness(machine, soft, workspace, samples=8, pose_samples=300, all_poses=everywhere)
+        least[everywhere] = swept.omega_1.values[counted].min()
+        assert found.nominal == pytest.approx(least[everywhere], rel=1e-12)
+        assert found.worst == pytest.approx(least[everywhere] * 0.8**0.5, rel=1e-9)
+        assert found.samples.attrs["poses"] == counted.sum()
+        assert found.samples.attrs["poses_beyond_limits"] == (~counted).sum()
+    assert least[True] < least[False]
+    with pytest.raises(fx.PoseError, match=r"none of the 1 poses is within the design's limits.*--all-poses"):
+        fx.robustness(machine, soft, [0, 0, 3.6, 0, 0, 0], samples=8)
+    given = (
+        "robust",
+        "motion-base",
+        "--uncertain",
+        "legs.stiffness=20%,together",
+        "--around",
+        "0.3",
+        "15",
+        "--samples",
+        "8",
+    )
+    given += ("--sensitivity", "0", "--poses", "300")
+    assert result(*given)["nominal_rad_s"] == pytest.approx(least[False], rel=1e-9)
+    assert result(*given, "--all-poses")["nominal_rad_s"] == pytest.approx(least[True], rel=1e-9)
+    assert "beyond them left out" in " ".join(run(*given)[1].split())

@@ -75,6 +75,8 @@ class LeastIndex:
     Notes
     -----
     The stability index is the lowest natural frequency, rad/s (the paper's conclusion 1).
+    All poses count, also those beyond the limits of a design: a search would gain by putting its worst poses out of
+    reach. `DesignLimits` is the constraint that keeps all of them within the limits.
 
     Examples
     --------
@@ -129,6 +131,8 @@ class MeanIndex:
     Notes
     -----
     The stability index is the lowest natural frequency, rad/s (the paper's conclusion 1).
+    All poses count, also those beyond the limits of a design: a search would gain by putting its worst poses out of
+    reach. `DesignLimits` is the constraint that keeps all of them within the limits.
 
     Examples
     --------

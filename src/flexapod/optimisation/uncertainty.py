@@ -15,11 +15,13 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_joint
+from flexapod.mechanics.joint_limits import check_limits
 from flexapod.optimisation.ensemble import Ensemble
 from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, UncertainRange
 from flexapod.optimisation.worst_case import worst_case
 from flexapod.optional import needed
 from flexapod.pose import Pose
+from flexapod.workspace.limit_margins import none_within
 from flexapod.workspace.region import RegionLike, as_region, home_of
 from flexapod.workspace.sobol import Sobol
 
@@ -79,6 +81,7 @@ def robustness(
     samples: int = 2**14,
     pose_samples: int = 256,
     sensitivity: int = 0,
+    all_poses: bool = False,
     joint: JointModel = "universal",
     seed: int = 0,
     threads: int | None = None,
@@ -102,6 +105,8 @@ def robustness(
     sensitivity : int, optional
         Number of base samples of a sensitivity analysis, a power of two such as 1024; it takes
         sensitivity * (parameters + 2) designs more. None is made by default.
+    all_poses : bool, optional
+        If True, poses beyond the limits of `hexapod` count as well.
     joint : {"universal", "spin_free"}, optional
         Model of the joints between base and legs.
     seed : int, optional
@@ -125,14 +130,15 @@ def robustness(
     MissingExtraError
         If SALib is needed and not installed.
     PoseError
-        If the region is invalid.
+        If the region is invalid, or none of its poses is within the limits.
 
     Notes
     -----
-    The frequencies of all designs are exact, and computed many at a time. For the worst case, all corners of the ranges
-    are computed where there are up to ten parameters; with more, one end after another is exchanged from many corners.
-    Pattern searches from the lowest corners and samples, apart from one another, follow. The sensitivities are Sobol
-    indices [1]_, estimated after Saltelli [2]_.
+    The poses are the same for all designs: those within the limits of `hexapod` itself, as given, unless `all_poses` is
+    set. The frequencies of all designs are exact, and computed many at a time. For the worst case, all corners of the
+    ranges are computed where there are up to ten parameters; with more, one end after another is exchanged from many
+    corners. Pattern searches from the lowest corners and samples, apart from one another, follow. The sensitivities are
+    Sobol indices [1]_, estimated after Saltelli [2]_.
 
     References
     ----------
@@ -154,6 +160,7 @@ def robustness(
         raise ArgumentError(f"sensitivity is {sensitivity}; it must be a power of two, at least 16, such as 1024.")
     where = as_region(region)
     rows = where.rows(home_of(hexapod, where), whole(pose_samples, "pose_samples"))
+    of, rows = len(rows), rows if all_poses else _within_limits(hexapod, rows)
     index = _Index(ensemble, rows, joint, threads)
     nominal = index.nominal(hexapod.name)
     u = Sobol(len(ensemble.names), seed).points(0, samples)
@@ -165,7 +172,13 @@ def robustness(
         rest = None if progress is None else lambda done: progress(share + (1 - share) * done)
         analysis = _sensitivity(ensemble, index, sensitivity, seed, rest)
     return Robustness(
-        samples=_samples(ensemble, u, values, hexapod, {"joint": joint, "poses": len(rows), "seed": seed}),
+        samples=_samples(
+            ensemble,
+            u,
+            values,
+            hexapod,
+            {"joint": joint, "poses": len(rows), "poses_beyond_limits": of - len(rows), "seed": seed},
+        ),
         ranges=ensemble.ranges(),
         nominal=nominal,
         mean=float(values.mean()),
@@ -177,6 +190,16 @@ def robustness(
         agreed=worst.agreed,
         sensitivity=analysis,
     )
+
+
+def _within_limits(hexapod: Hexapod, rows: Array) -> Array:
+    """The poses that the design's own limits allow. Raises PoseError where they allow none."""
+    if not hexapod.limits.given:
+        return rows
+    kept = np.atleast_1d(check_limits(hexapod, Pose.from_rpy(*rows.T)).ok)
+    if not kept.any():
+        raise none_within(len(rows))
+    return rows[kept]
 
 
 class _Index:

@@ -40,6 +40,7 @@ from flexapod.cli.output.stages import stages
     show_default=True,
     help="Base samples of the Sobol analysis, a power of two; 0 leaves it out.",
 )
+@click.option("--all-poses", is_flag=True, help="Let poses beyond the design's limits count as well.")
 @click.option("--seed", type=common.SEED, default=0, show_default=True)
 @threads_option
 @out_option

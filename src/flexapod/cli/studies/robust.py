@@ -25,7 +25,7 @@ def compute(hexapod: Hexapod, given: Mapping[str, Any], report: Report) -> Study
         straying.append(Payload(problem.span("--payload", given["payload"]), at))  # type: ignore[arg-type]
     if not straying:
         raise click.UsageError("nothing strays. Give --uncertain KEY=SPREAD or --payload LEAST:LARGEST.")
-    options = {name: given[name] for name in ("samples", "sensitivity", "joint", "seed", "threads")}
+    options = {name: given[name] for name in ("samples", "sensitivity", "all_poses", "joint", "seed", "threads")}
     found = robustness(
         hexapod,
         straying,

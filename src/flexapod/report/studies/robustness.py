@@ -20,7 +20,9 @@ CUT = "Normal and lognormal distributions are cut off at four standard deviation
 def study(hexapod: Hexapod, found: Robustness, over: str, pose: PoseLike | None = None) -> Study:
     """Distribution, worst case, and what matters most. over: the poses, in words. pose: where it is one, not home."""
     count, told = found.samples.sizes["sample"], found.samples.attrs
-    poses = f" ({told['poses']} poses)" if told["poses"] > 1 else ""
+    beyond = told["poses_beyond_limits"]
+    left = f" ({told['poses']} poses within the design's limits, {beyond} beyond them left out)" if beyond else ""
+    poses = left or (f" ({told['poses']} poses)" if told["poses"] > 1 else "")
     spread = Drawing("spread", "How the index strays", partial(plots.optimisation.spread, found),
                      f"{count} designs; at {over}{poses}.")  # fmt: skip
     drawn = f"{count} designs of a scrambled Sobol sequence, seed {told['seed']}; all parameters independent."
@@ -33,7 +35,7 @@ def study(hexapod: Hexapod, found: Robustness, over: str, pose: PoseLike | None 
     return Study(
         hexapod=hexapod,
         subject="robustness",
-        about=f"The index where parameters are uncertain: at {over}.",
+        about=f"The index where parameters are uncertain: at {over}{left}.",
         data=_data(hexapod, found, over),
         rows=_rows(found),
         sections=[*sections, Section("The worst case", [_worst(found)])],
@@ -106,6 +108,7 @@ def _data(hexapod: Hexapod, found: Robustness, over: str) -> dict[str, Any]:
         "parameters": {name: one._asdict() for name, one in found.ranges.items()},
         "samples": found.samples.sizes["sample"],
         "poses": found.samples.attrs["poses"],
+        "poses_beyond_limits": found.samples.attrs["poses_beyond_limits"],
         "seed": found.samples.attrs["seed"],
         "joint": found.samples.attrs["joint"],
     }
