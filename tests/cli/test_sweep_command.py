@@ -108,6 +108,25 @@ def test_poses_beyond_the_limits_do_not_count(tmp_path, capsys):
     assert code == 0
 
 
+@pytest.mark.parametrize(
+    "poses", [("--grid", "z=3.5:3.6:3"), ("--box", "z=3.5:3.6,roll=0:1", "--points", 500, "--worst")]
+)
+def test_what_was_written_is_told_where_no_pose_is_within_the_limits(poses, tmp_path, capsys):
+    for name in ("far.csv", "far.zarr"):
+        given = ("sweep", "motion-base", *poses, "--out", tmp_path / name, "--figure", tmp_path / "far.png")
+        code, text, _ = run(capsys, *given, "--json")
+        assert code == 0
+        found = json.loads(text)
+        assert "summary" not in found
+        assert "worst_pose" not in found
+        assert any(f"{name} was written, but none of the " in words for words in found["warnings"])
+        assert (tmp_path / name).exists()
+        (tmp_path / name).rename(tmp_path / f"kept-{name}")
+        code, text, _ = run(capsys, *given)
+        assert code == 0
+        assert "is within the design's limits" in " ".join(text.split())
+
+
 def test_a_store_of_a_design_with_limits_is_resumed_by_the_same_command(tmp_path, capsys):
     given = ("sweep", "motion-base", *AROUND, "--points", 1000, "--out", tmp_path / "map.zarr")
     for option in ((), ("--resume",), ("--resume", "--all-poses")):

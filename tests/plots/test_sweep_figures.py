@@ -156,7 +156,7 @@ def test_the_cloud_is_of_the_poses_within_the_limits():
     assert ax.get_title().startswith("motion-base")
     low, high = ax.get_ylim()  # the data fill the axis
     assert np.ptp(y) > 0.85 * (high - low)
-    with pytest.raises(fx.ArgumentError, match="no pose of this sweep within the design's limits has an index"):
+    with pytest.raises(fx.PoseError, match="no pose of this sweep within the design's limits has an index"):
         plots_sweep.index_scatter(found.assign(within_limits=found.within_limits & False))
 
 

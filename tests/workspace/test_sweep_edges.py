@@ -30,7 +30,7 @@ def test_a_sweep_without_an_index_is_not_summed_up():
     assert not np.isfinite(found.omega_1).any()
     with pytest.raises(fx.PoseError, match=r"none of the 5 poses has an index\. See the variable `status`"):
         fx.summarise(found)
-    with pytest.raises(fx.ArgumentError, match="no pose of this sweep has an index"):
+    with pytest.raises(fx.PoseError, match="no pose of this sweep has an index"):
         sweep.index_scatter(found)
     with pytest.raises(fx.PoseError, match=r"no pose of Box.* could be computed\. Look at the status"):
         fx.worst_pose(nowhere()[0], fx.Box(yaw=(-1e-12, 1e-12)), samples=4)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from flexapod.conventions import Array
-from flexapod.errors import ArgumentError
+from flexapod.errors import ArgumentError, PoseError
 from flexapod.plots.style import BLUE, VALUES
 from flexapod.plots.sweep_axes import LABELS, data_range, entitle, new_axes
 from flexapod.workspace.summary import Counted
@@ -53,7 +53,9 @@ def index_scatter(
     Raises
     ------
     ArgumentError
-        If a quantity was not swept, or no pose has an index, or none of those within the limits.
+        If a quantity was not swept.
+    PoseError
+        If no pose has an index, or none of those within the limits.
 
     Notes
     -----
@@ -106,9 +108,9 @@ class _Cloud:
                 self.count += pair[0].size
         if not self.count:
             within = " within the design's limits" if counted.within else ""
-            raise ArgumentError(
+            raise PoseError(
                 f"no pose of this sweep{within} has an index. See the variable `status` for the reasons"
-                f"{', or draw all poses (all_poses)' if within else ''}."
+                f"{', or draw all poses (all_poses, on the command line --all-poses)' if within else ''}."
             )
 
     def pairs(self) -> Iterator[tuple[Array, Array]]:

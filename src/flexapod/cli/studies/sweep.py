@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import click
 import xarray as xr
@@ -15,6 +16,7 @@ from flexapod.cli.options.sweep import DEFAULT_POINTS, Options
 from flexapod.cli.output.interrupt import CutShort, Stopping
 from flexapod.cli.output.progress import PoseProgress
 from flexapod.design.hexapod import Hexapod
+from flexapod.errors import PoseError
 from flexapod.plots import sweep as plots
 from flexapod.plots import sweep_axes
 from flexapod.report.studies.sweep import study
@@ -30,6 +32,8 @@ from flexapod.workspace.summary import summarise
 from flexapod.workspace.sweeping import sweep
 from flexapod.workspace.worst import worst_pose
 
+T = TypeVar("T")
+
 
 def compute(options: Options) -> Study:
     """The sweep that the options ask for, its summary, its worst pose and its figure."""
@@ -43,18 +47,34 @@ def compute(options: Options) -> Study:
     if options.figure is not None:
         sweep_axes.check_swept(points.dims, quantities)
     found = (_streamed if options.streamed else _in_memory)(hexapod, points, quantities, options)
-    everywhere = options.all_poses
+    everywhere, notes = options.all_poses, list[str]()
+
+    def judged(make: Callable[[], T]) -> T | None:
+        """What is made of the poses that count. Where none does, the numbers that were written are not lost with it."""
+        try:
+            return make()
+        except PoseError as error:
+            if options.out is None:
+                raise
+            notes.append(f"{options.out} was written, but {error}")
+            return None
+
     if options.figure is not None:
-        plots.save(plots.auto(found, options.level, all_poses=everywhere), options.figure)
-        click.echo(f"wrote {options.figure}", err=True)
+        judged(lambda: _draw(found, options))
     summary = worst = None
     if options.summary and "omega_1" in found:
-        summary = summarise(found, options.at_least, all_poses=everywhere)
+        summary = judged(lambda: summarise(found, options.at_least, all_poses=everywhere))
     if options.worst and box is not None:
-        worst = worst_pose(
-            hexapod, box, joint=options.joint, seed=options.seed, threads=options.threads, all_poses=everywhere
-        )
-    return study(hexapod, found, options.out, summary, worst, all_poses=everywhere)
+        given = {"joint": options.joint, "seed": options.seed, "threads": options.threads}
+        worst = judged(lambda: worst_pose(hexapod, box, **given, all_poses=everywhere))
+    notes = list(dict.fromkeys(notes))
+    return study(hexapod, found, options.out, summary, worst, all_poses=everywhere, notes=notes)
+
+
+def _draw(found: xr.Dataset, options: Options) -> None:
+    assert options.figure is not None
+    plots.save(plots.auto(found, options.level, all_poses=options.all_poses), options.figure)
+    click.echo(f"wrote {options.figure}", err=True)
 
 
 def _points(hexapod: Hexapod, options: Options) -> tuple[PoseSet, Box | None]:

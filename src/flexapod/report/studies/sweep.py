@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -31,8 +32,10 @@ def study(
     worst: WorstPose | None,
     *,
     all_poses: bool = False,
+    notes: Sequence[str] = (),
 ) -> Study:
-    """The study of a sweep. out: where it was written; summary, worst: where asked for; all_poses: see `summarise`."""
+    """The study of a sweep. out: where it was written; summary, worst: where asked for; all_poses: see `summarise`;
+    notes: what of these there is not, and why."""
     data: dict[str, Any] = {"attributes": dict(sweep.attrs), "out": None if out is None else str(out)}
     rows, tables = [], []
     within = " within the limits" if "within_limits" in sweep and not all_poses else ""
@@ -51,7 +54,7 @@ def study(
         data=data,
         rows=rows,
         sections=[Section(drawing.title, [drawing, *tables])],
-        cautions=_cautions(hexapod, sweep, summary, worst),
+        cautions=[*(Caution("no_pose_counts", note) for note in notes), *_cautions(hexapod, sweep, summary, worst)],
         dataset=sweep,
     )
 
