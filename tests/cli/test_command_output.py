@@ -67,7 +67,7 @@ def test_importing_the_module_that_runs_it_runs_nothing(capsys):
 
 
 def test_check_says_what_was_not_checked(run, homeless):
-    assert "No home pose and no --pose: limits were not checked." in words(run, "check", homeless)
+    assert "No home pose and no --pose: nothing was checked at a pose, neither limits" in words(run, "check", homeless)
 
 
 def test_brackets_in_a_warning_are_shown(capsys):

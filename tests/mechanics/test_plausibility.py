@@ -17,7 +17,8 @@ OWN = fx.Hexapod.from_toml(template("own"))
 def codes(hexapod, pose=None):
     pose = fx.home_pose(hexapod) if pose is None else pose
     omega = fx.natural_modes(hexapod, pose).omega
-    return [one.code for one in pose_cautions(hexapod, pose, omega, unitless_condition(hexapod, pose), None)]
+    condition = unitless_condition(hexapod, pose)
+    return [one.code for one in pose_cautions(hexapod, pose, omega, condition, None, fx.hold(hexapod, pose))]
 
 
 @pytest.mark.parametrize("name", fx.packaged_designs())
@@ -25,7 +26,7 @@ def test_packaged_designs_are_plausible(name):
     hexapod = fx.load(name)
     pose = fx.home_pose(hexapod)
     assert plausibility.implausible(hexapod) == []
-    assert plausibility.legs_that_cross(hexapod, pose) == plausibility.soft_legs(hexapod, pose) == []
+    assert plausibility.legs_that_cross(hexapod, pose) == plausibility.soft_legs(hexapod, fx.hold(hexapod, pose)) == []
 
 
 @pytest.mark.parametrize(
@@ -60,7 +61,7 @@ def test_packaged_designs_are_plausible(name):
 def test_what_is_hardly_meant_is_told_with_its_number(changes, code, words):
     hexapod = OWN.replace(changes)
     pose = fx.home_pose(hexapod)
-    found = plausibility.implausible(hexapod) + plausibility.soft_legs(hexapod, pose)
+    found = plausibility.implausible(hexapod) + plausibility.soft_legs(hexapod, fx.hold(hexapod, pose))
     (text,) = [one.text for one in found if one.code == code and words in one.text]
     assert text.endswith(".")
     assert code in codes(hexapod)

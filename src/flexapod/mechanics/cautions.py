@@ -28,6 +28,7 @@ from flexapod.mechanics.plausibility import (
     soft_legs,
 )
 from flexapod.mechanics.plausibility import Caution as Caution
+from flexapod.mechanics.statics import Equilibrium
 from flexapod.pose import Pose
 
 SINGULAR = 1e12  # condition number without units from which H is singular to rounding
@@ -35,6 +36,13 @@ NEAR_SINGULAR = 100.0  # a leg force up to a hundred times the load; stiffness 1
 GROWS = 1e-9  # of the highest frequency: a pole whose real part is larger belongs to a motion that grows
 TANGENT_DIFFERS = 0.01  # of a frequency: from here on gravity and preload must not be left out
 ALONG_AXIS = np.radians(2.0)  # a leg that is nearer to its universal joint's axis spins at each small motion
+
+#: Codes of cautions that come first, before exceeded limits.
+GRAVE = ("singular", "near_singular", "unsupported", "unstable")
+#: Those that matter at a pose which was found by its index alone: the index does not show them.
+UNHELD = ("singular", "unsupported", "unstable", "axis_along_leg")
+#: Those that are no fault of a design, or are told of it in another way.
+NO_FAULT = ("limit", "design", "no_home", "near_singular", "near_repeated", "preload", "shapes_differ", "overdamped")
 
 
 class Tangent(NamedTuple):
@@ -103,12 +111,17 @@ def response_attributes(linear: Linearisation) -> dict[str, str]:
 
 
 def pose_cautions(
-    hexapod: Hexapod, pose: Pose, omega: Array, condition: float, tangent: Tangent | None
+    hexapod: Hexapod,
+    pose: Pose,
+    omega: Array,
+    condition: float,
+    tangent: Tangent | None,
+    rest: Equilibrium | None = None,
 ) -> list[Caution]:
     """All cautions about one pose, the gravest first.
 
     omega: rad/s. condition: of H without units. tangent: modes of the exact tangent; None where no leg forces hold the
-    pose.
+    pose. rest: those forces, or None.
     """
     return [
         *singularity(condition, singular_everywhere(hexapod, pose, condition)),
@@ -118,7 +131,7 @@ def pose_cautions(
         *(Caution("limit", f"Limit exceeded: {text}.") for text in check_limits(hexapod, pose).exceeded),
         *_angles_without_home(hexapod),
         *legs_that_cross(hexapod, pose),
-        *soft_legs(hexapod, pose),
+        *([] if rest is None else soft_legs(hexapod, rest)),
         *implausible(hexapod),
         *(Caution("design", text) for text in hexapod.warnings),
         *([] if tangent is None else _preload(omega, tangent)),

@@ -11,11 +11,10 @@ import numpy as np
 from flexapod.conventions import LEG_PAIRS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.universal_axes import legs_at
-from flexapod.errors import FlexapodError
 from flexapod.mechanics.inputs import states
 from flexapod.mechanics.joint_limits import leg_distances
 from flexapod.mechanics.kinematics import condition_number, home_pose, inverse_kinematics
-from flexapod.mechanics.statics import hold
+from flexapod.mechanics.statics import Equilibrium
 from flexapod.pose import Pose
 
 FAR = 10.0  # times the machine's size: a mass centre or radius of gyration beyond is no part of it
@@ -236,14 +235,10 @@ def legs_that_cross(hexapod: Hexapod, pose: Pose) -> list[Caution]:
     return [Caution("legs_cross", text, {"pairs": len(pairs), "distance": nearest})]
 
 
-def soft_legs(hexapod: Hexapod, pose: Pose) -> list[Caution]:
-    """Legs that the weight compresses or stretches by a large part of their length."""
-    try:
-        rest = hold(hexapod, pose)
-    except FlexapodError:  # nothing holds this pose, which another caution says
-        return []
+def soft_legs(hexapod: Hexapod, rest: Equilibrium) -> list[Caution]:
+    """Legs that the weight compresses or stretches by a large part of their length. rest: what holds the machine."""
     change = np.abs(rest.unstretched_length - rest.leg_length)
-    share = change / inverse_kinematics(hexapod, pose)
+    share = change / rest.leg_length
     worst = int(np.argmax(share))
     if share[worst] < SAG:
         return []

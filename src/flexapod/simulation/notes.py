@@ -56,8 +56,9 @@ def _of_recording(run: SimulationRun, use: str, term: Term, name: str, highest: 
     if use in ("base_motion", "leg_command") and rests and abs(first) > JUMPS * span and first != 0:
         value = f"{np.degrees(first):.6g} degrees" if term.channel in ROTATIONS else f"{first:.6g} m"
         what = "the legs change by it at once" if use == "leg_command" else "the legs take it up at once"
-        remedy = "" if use == "leg_command" else ", or let the platform start with the base (start 'carried')"
-        yield f"begins at {value} in its first row, off zero: {what}. Take it out (detrend 'first'){remedy}"
+        carried = "" if use == "leg_command" else ", or let the platform start with the base (start 'carried')"
+        remedy = f"Let it rise smoothly (a ramp), take it out in place of another trend (detrend 'first'){carried}"
+        yield f"begins at {value} in its first row, off zero: {what}. {remedy}"
 
 
 def of_results(run: SimulationRun, result: xr.Dataset) -> list[str]:

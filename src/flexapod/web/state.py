@@ -8,7 +8,7 @@ from flexapod.control.sampling_rate import sampling_time
 from flexapod.conventions import LEGS, TWO_PI
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.at_rest import PoseState, pose_state
-from flexapod.mechanics.cautions import Tangent
+from flexapod.mechanics.cautions import GRAVE, Tangent
 from flexapod.mechanics.joint_limits import in_words, joint_angles, leg_distance, limit_excess
 from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
 from flexapod.mechanics.mode_shapes import energy_shares
@@ -16,8 +16,6 @@ from flexapod.mechanics.modes import near_repeated
 from flexapod.pose import Pose
 from flexapod.web.answers import DampedModes, Geometry, Limits, LoneMode, Snapshot, StaticLegs
 from flexapod.web.requests import Question
-
-GRAVE = ("singular", "near_singular", "unsupported", "unstable")  #: codes of cautions that come before limits
 
 
 def snapshot(question: Question) -> Snapshot:

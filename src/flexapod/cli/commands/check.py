@@ -14,12 +14,6 @@ if TYPE_CHECKING:
     from flexapod.pose import Pose
 
 
-#: Cautions that are no fault of a design, or are told beside.
-_LEFT_TO_REPORT = frozenset(
-    {"limit", "design", "no_home", "near_singular", "near_repeated", "preload", "shapes_differ", "overdamped"}
-)
-
-
 @click.command()
 @common.design_argument
 @common.pose_option
@@ -47,13 +41,15 @@ def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
     """What holds at a pose; null without one."""
     from flexapod.mechanics import joint_limits, kinematics, plausibility
     from flexapod.mechanics.at_rest import pose_state
+    from flexapod.mechanics.cautions import NO_FAULT
 
+    nowhere = "No home pose and no --pose: nothing was checked at a pose, neither limits nor singularity nor stability."
     keys = ("stability", "leg_lengths_m", "leg_distance_m", "condition_number", "singularity", "limits_exceeded")
     if pose is None:
         odd = [caution.text for caution in plausibility.implausible(hexapod)]
-        return {**dict.fromkeys(("pose_m_deg", *keys)), "cautions": odd}
+        return {**dict.fromkeys(("pose_m_deg", *keys)), "not_checked": nowhere, "cautions": odd}
     state = pose_state(hexapod, pose)
-    told = [one for one in state.cautions if one.code not in _LEFT_TO_REPORT or "elsewhere" in one.numbers]
+    told = [one for one in state.cautions if one.code not in NO_FAULT or "elsewhere" in one.numbers]
     values = (
         state.stability,
         kinematics.inverse_kinematics(hexapod, pose),
@@ -63,7 +59,7 @@ def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
         (*joint_limits.check_limits(hexapod, pose).exceeded, *([] if state.singular else _forces(hexapod, pose))),
     )
     found = dict(zip(keys, values, strict=True))
-    return {"pose_m_deg": pose_numbers(pose), **found, "cautions": [one.text for one in told]}
+    return {"pose_m_deg": pose_numbers(pose), **found, "not_checked": None, "cautions": [one.text for one in told]}
 
 
 def _forces(hexapod: Hexapod, pose: Pose) -> list[str]:
@@ -84,7 +80,7 @@ def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:
     for line in ("What was read, in SI units and degrees:", *read_back.lines(hexapod)):
         out.print(line, markup=False, soft_wrap=True)
     if pose is None:
-        out.print("No home pose and no --pose: limits were not checked.")
+        out.print(found["not_checked"], soft_wrap=True)
     else:
         lengths = found["leg_lengths_m"]
         out.print(f"At {pose!r}: {found['stability']}", markup=False, soft_wrap=True)

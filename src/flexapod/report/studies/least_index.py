@@ -5,21 +5,22 @@ The index leaves out weight and preload, so that it does not show by itself that
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 
 from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
 from flexapod.mechanics.at_rest import pose_state
-from flexapod.mechanics.cautions import Caution
+from flexapod.mechanics.cautions import UNHELD, Caution
 from flexapod.pose import PoseLike
 
-TOLD = ("singular", "unsupported", "unstable", "axis_along_leg")
 WHERE = "At the pose of the least index"
 
 
 def cautions(
-    hexapod: Hexapod, pose: PoseLike | None, joint: JointModel, what: str = WHERE, told: tuple[str, ...] = TOLD
+    hexapod: Hexapod, pose: PoseLike | None, joint: JointModel, what: str = WHERE, told: Collection[str] = UNHELD
 ) -> list[Caution]:
     """Whether the machine stands at a pose, and its legs along the axes of their joints. pose: None for home.
 

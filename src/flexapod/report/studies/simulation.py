@@ -19,6 +19,7 @@ from flexapod.plots.style import ROUNDING
 from flexapod.pose import Pose
 from flexapod.report.numbers import pose_numbers, pose_words, without_rounding
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
+from flexapod.simulation.notes import BALANCE
 
 
 def study(
@@ -126,7 +127,10 @@ def _summary(dataset: xr.Dataset) -> dict[str, dict[str, list[float]]]:
 def _of_what(dataset: xr.Dataset) -> str:
     """What the error of the energy balance is a part of, and whether it is one of the motion."""
     of = "of the largest of kinetic energy and works"
-    if np.abs(dataset.energy_error).max() > dataset.attrs["energy_rounding"] or dataset.attrs["energy_error"] < 1e-3:
+    if (
+        np.abs(dataset.energy_error).max() > dataset.attrs["energy_rounding"]
+        or dataset.attrs["energy_error"] <= BALANCE
+    ):
         return of
     return f"{of}: these are so small that the rounding of the energy stored in springs and height hides them"
 
