@@ -5,6 +5,7 @@ Each ends with exit code 0 or 2, says in a sentence why, and never hangs. FLEXAP
 
 import contextlib
 import io
+import re
 import shutil
 import warnings
 
@@ -92,6 +93,12 @@ DESIGNS = (
     "x" * 400,
     "a\0b",
     ".",
+)
+
+
+#: A call, a module or a flag of Python, and an argument by its name alone, that a user of commands does not know.
+PYTHON = re.compile(
+    r"\b(?:fx|np|hexapod|flexapod)\.[a-z_]+\w*\b(?!\.(?:toml|csv))|\b[a-z]+_[a-z_]+\(|\b\w+=(?:True|False|None)\b|\((?:see )?[a-z]+_[a-z_]+\)"
 )
 
 
@@ -208,6 +215,7 @@ def test_bad_command_lines_end_in_a_sentence(name, files, unserved):
         if code == 2:
             assert err.strip(), told
             assert len(err) < 8000, told
+            assert not PYTHON.search(err), told
         for hidden in files.rglob(".[0-9]*"):
             pytest.fail(f"{told}: {hidden} was left")
         if (files / "own.toml").exists():

@@ -92,7 +92,7 @@ class Problem:
         if self.hexapod.home is None and any(region.from_home for region in regions):
             raise ArgumentError(
                 f"the objective or a constraint is measured at home, but {self.hexapod.name!r} names no home pose. "
-                'Give a Box, a Pose, or a home: hexapod.replace({"home.position": [x, y, z]}).'
+                "Give a box, a pose, or a home: home.position of the design, on the command line --set."
             )
 
     def _check_bounds(self) -> None:

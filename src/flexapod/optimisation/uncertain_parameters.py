@@ -87,7 +87,8 @@ class Uncertain:
         value = layout.own(hexapod, index, self.target)
         if self.relative and not value.any():
             raise ArgumentError(
-                f"{self.target} is zero, so a share of it is nothing. Give relative=False and an amount."
+                f"{self.target} is zero, so a share of it is nothing. Give an amount (relative is False; on "
+                "the command line it has no %)."
             )
         width = self.spread * np.abs(value) if self.relative else np.full(len(index), self.spread * unit)
         sets = [[k] for k in range(len(index))] if self.each else [list(range(len(index)))]

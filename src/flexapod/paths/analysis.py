@@ -162,7 +162,8 @@ def path_index(
     if crossings and singular == "raise":
         raise SingularPoseError(
             f"the path passes through a singular pose at t = {crossings[0]:.6g} s, {path(crossings[0]).pose!r}; the "
-            "legs cannot hold the platform there. Lead the path round it (see plan_path)."
+            "legs cannot hold the platform there. Lead the path round it (plan_path, on "
+            "the command line --from and --to)."
         )
     all_times = np.unique(np.concatenate([times, [t for t, _ in low_points], crossings]))
     dataset = _samples(hexapod, path, all_times, index(all_times), joint)

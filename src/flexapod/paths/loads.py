@@ -87,7 +87,8 @@ def path_loads(
     if lost:
         raise SingularPoseError(
             f"no leg forces drive the path at t = {lost[0]:.6g} s, {path(lost[0]).pose!r}: H is singular there. "
-            "Lead the path round it (see plan_path)."
+            "Lead the path round it (plan_path, on "
+            "the command line --from and --to)."
         )
     static = inverse_dynamics(hexapod, motion.pose, base=None, force=force, moment=moment, joint=joint)
     legs = leg_rates(hexapod, motion)

@@ -154,7 +154,7 @@ class BoxSearch:
         raise PoseError(
             f"no pose of {self.box!r} is within the limits of {self.index.hexapod.name!r}: none of {_MOST} poses, and "
             f"descents from the nearest of them end beyond the {limits.names[int(np.argmin(margin))]}. Choose another "
-            "box, or take poses beyond the limits as well (all_poses)."
+            "box, or take poses beyond the limits as well (all_poses, on the command line --all-poses)."
         )
 
 

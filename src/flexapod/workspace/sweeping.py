@@ -131,7 +131,8 @@ def _check_memory(count: int, quantities: tuple[str, ...]) -> None:
     if needed > there:
         raise ArgumentError(
             f"{count} poses take {needed // 2**30} GiB, and this computer has {there // 2**30} GiB of memory. Take "
-            "fewer, or stream them to the disk with flexapod.workspace.SweepStore."
+            "fewer, or stream them to the disk with flexapod.workspace.SweepStore, on the "
+            "command line --out NAME.zarr."
         )
 
 
