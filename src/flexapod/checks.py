@@ -43,7 +43,7 @@ def number(value: Any, name: str, unit: str = "", *, need: str = "finite") -> fl
     except (TypeError, ValueError, OverflowError):
         found = float("nan")
     holds = {"finite": True, "> 0": found > 0, ">= 0": found >= 0}[need]
-    if isinstance(value, bool) or not (np.isfinite(found) and holds):
+    if isinstance(value, bool | np.bool_) or not (np.isfinite(found) and holds):
         required = "a finite number" if need == "finite" else f"finite and {need}"
         raise ArgumentError(f"{name} is {shown(value)}{' ' * bool(unit)}{unit}; it must be {required}.")
     return found

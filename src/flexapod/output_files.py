@@ -57,7 +57,7 @@ def _remove(path: Path) -> None:
 
         shutil.rmtree(path, ignore_errors=True)
     else:
-        with suppress(OSError):
+        with suppress(OSError, ValueError):
             path.unlink(missing_ok=True)
 
 
@@ -98,11 +98,13 @@ def write_figure(figure: Figure, path: str | PathLike[str]) -> None:
 
 
 def write_netcdf(dataset: xr.Dataset, path: str | PathLike[str], engine: str | None = None) -> None:
-    """Write a dataset as NetCDF. Raises OutputError.
+    """Write a dataset as NetCDF. Raises OutputError."""
+    write_file(path, netcdf(dataset, engine))
 
-    It is made in memory first: the HDF5 library ends the process where a disk is full.
-    """
-    write_file(path, bytes(dataset.to_netcdf(engine=engine)))  # type: ignore[arg-type]
+
+def netcdf(dataset: xr.Dataset, engine: str | None = None) -> bytes:
+    """A dataset as NetCDF, made in memory: the HDF5 library ends the process where a disk is full."""
+    return bytes(dataset.to_netcdf(engine=engine))  # type: ignore[arg-type]
 
 
 def check_figure(path: Path) -> None:

@@ -197,7 +197,7 @@ class Pose(metaclass=Suggesting):
 
     def angles(self, order: str = FIXED, *, degrees: bool = False) -> Array:
         """Give the three angles, rad or degrees, (..., 3), that `from_angles` takes for this orientation."""
-        found = self.rpy if order == FIXED else angles_of_matrix(self.matrix, order)
+        found = self.rpy if isinstance(order, str) and order == FIXED else angles_of_matrix(self.matrix, order)
         return np.degrees(found) if degrees else found
 
     def position_about(self, pivot: ArrayLike) -> Array:

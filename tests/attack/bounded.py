@@ -17,7 +17,9 @@ AMONG_TESTS = "FLEXAPOD_ATTACK_SECONDS" not in os.environ
 SEED = int(os.environ.get("FLEXAPOD_ATTACK_SEED", "1"))
 #: What was tried in this run, by attack: how often it came to what.
 TRIED: defaultdict[str, Counter[str]] = defaultdict(Counter)
-LIMIT = 60  # s, of one call: far more than any needs, so that only what never ends reaches it
+#: s of one call: far more than any needs, so that only what never ends reaches it. The first is of processor time, which
+#: does not run on while other programs have the machine; the second is for what waits and does nothing.
+LIMIT, WAIT = 60, 900
 
 
 class Hang(BaseException):
@@ -25,22 +27,26 @@ class Hang(BaseException):
 
 
 @contextmanager
-def limited(seconds: int = LIMIT) -> Iterator[None]:
-    """Raises Hang in a call that takes longer; only where signals can be used."""
-    if not hasattr(signal, "SIGALRM") or threading.current_thread() is not threading.main_thread():
+def limited(seconds: float = LIMIT, wait: float = WAIT) -> Iterator[None]:
+    """Raises Hang in a call that computes or waits longer; only where signals can be used."""
+    if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
         yield
         return
 
     def end(number, frame):
         raise Hang
 
-    before = signal.signal(signal.SIGALRM, end)
-    signal.alarm(seconds)
+    timers = {signal.SIGPROF: (signal.ITIMER_PROF, seconds), signal.SIGALRM: (signal.ITIMER_REAL, wait)}
+    before = {number: signal.signal(number, end) for number in timers}
+    for timer, limit in timers.values():
+        signal.setitimer(timer, limit)
     try:
         yield
     finally:
-        signal.alarm(0)
-        signal.signal(signal.SIGALRM, before)
+        for timer, _ in timers.values():
+            signal.setitimer(timer, 0)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def rounds(share: float, name: str, most: int = 30) -> Iterator[random.Random]:

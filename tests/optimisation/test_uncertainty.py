@@ -240,7 +240,7 @@ def test_values_are_in_the_units_of_their_keys_and_what_was_assumed_is_told():
     assert again.platform_mass == pytest.approx(6000)
 
 
-def test_poses_beyond_the_limits_do_not_count_unless_all_are_asked_for(result, run):
+def test_poses_beyond_the_limits_do_not_count_unless_all_are_asked_for(result, run, tmp_path):
     """The least of a sweep over the same poses, whose legs are softer by a fifth at the worst."""
     machine = fx.load("motion-base")
     workspace = fx.Workspace.about_home(0.3, np.radians(15))
@@ -273,4 +273,4 @@ def test_poses_beyond_the_limits_do_not_count_unless_all_are_asked_for(result, r
     given += ("--sensitivity", "0", "--poses", "300")
     assert result(*given)["nominal_rad_s"] == pytest.approx(least[False], rel=1e-9)
     assert result(*given, "--all-poses")["nominal_rad_s"] == pytest.approx(least[True], rel=1e-9)
-    assert "beyond them left out" in " ".join(run(*given)[1].split())
+    assert "beyond them left out" in " ".join(run(*given, "--out", tmp_path)[1].split())

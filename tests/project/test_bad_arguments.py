@@ -110,7 +110,7 @@ CASES = [
         fx.errors.PathError,
         "a periodic path needs at least three waypoints",
     ),
-    (lambda: fx.paths.LegSpeed(rate=-1.0), A, "leg speed is -1.0 m/s and inf m/s2; both must be > 0"),
+    (lambda: fx.paths.LegSpeed(rate=-1.0), A, "rate of the leg speed is -1.0 m/s; it must be finite and > 0"),
     (lambda: fx.plan_path(machine(), "here", FAR, 90.0), fx.PoseError, "start is str; give a flexapod Pose"),
     (lambda: planned(objective="energy"), A, "objective is 'energy'; it must be one of 'length', 'time'"),
     (lambda: planned(timing=0.0), A, "timing is 0.0 s; it must be finite and > 0"),

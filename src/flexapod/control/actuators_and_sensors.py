@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import floats, one_of
+from flexapod.checks import floats, instance, numbers, one_of, whole
 from flexapod.control.linear_controller import MEASUREMENTS, signals
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, shown
@@ -79,14 +79,16 @@ class Hardware:
         Raises
         ------
         ArgumentError
-            If a measurement is unknown or its noise negative.
+            If a measurement is unknown or its noise negative, or the seed is no whole number >= 0.
         """
         rms = np.zeros(_SIGNALS)
+        instance(self.noise, Mapping, "noise", "from a measurement to its RMS")
         for name, value in self.noise.items():
             one_of(name, "a key of noise", MEASUREMENTS)
-            part = np.asarray(value, dtype=np.float64)
+            part = numbers(value, f"noise of {name}", None)
             if part.shape not in ((), (6,)) or not np.isfinite(part).all() or (part < 0).any():
                 raise ArgumentError(f"noise of {name} is {shown(value)}; give a finite number >= 0, or six")
             rms[signals(name)] = part
-        drawn: Array = rms * np.random.default_rng(self.seed).standard_normal((samples, _SIGNALS))
+        random = np.random.default_rng(whole(self.seed, "seed", 0))
+        drawn: Array = rms * random.standard_normal((samples, _SIGNALS))
         return drawn

@@ -218,7 +218,7 @@ def damping_law(
 
 def check_legs(legs: Sequence[int]) -> None:
     """Raises ArgumentError unless these are different numbers of legs."""
-    chosen = tuple(legs)
+    chosen = tuple(legs) if isinstance(legs, Sequence | np.ndarray | range) else ()
     if not chosen or any(np.ndim(leg) or leg not in ALL_LEGS for leg in chosen) or len(set(chosen)) < len(chosen):
         raise ArgumentError(f"legs is {shown(legs)}; give different numbers from 1 to 6, at least one")
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import _core
-from flexapod.checks import one_of, positive, whole
+from flexapod.checks import numbers, one_of, positive, whole
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.linearisation import Linearisation
@@ -54,7 +54,8 @@ class Controller:
     Raises
     ------
     ArgumentError
-        For a measurement that there is not.
+        For a measurement that there is not, matrices of other shapes, numbers that are not finite, or a sampling time
+        that is not > 0.
 
     Examples
     --------
@@ -77,6 +78,11 @@ class Controller:
     def __post_init__(self) -> None:
         for name in self.measures:
             one_of(name, "a measurement of the controller", MEASUREMENTS)
+        n, m = np.shape(self.A)[0] if np.ndim(self.A) else 0, 6 * len(self.measures)
+        for key, shape in (("A", (n, n)), ("B", (n, m)), ("C", (6, n)), ("D", (6, m))):
+            object.__setattr__(self, key, numbers(getattr(self, key), f"{key} of the controller", shape))
+        if self.dt is not None:
+            positive(self.dt, "dt of the controller", "s")
 
     def on(self, linear: Linearisation) -> Controller:
         """Return the controller itself, which is already made for its hexapod."""

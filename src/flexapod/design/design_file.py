@@ -14,7 +14,7 @@ from flexapod.design.shorthands import Values, expand
 from flexapod.design.tables import START, complete, flatten
 from flexapod.design.text_limits import bytes_of_file, check_count, check_depth, check_size
 from flexapod.design.units import printed, si_unit
-from flexapod.errors import DesignError
+from flexapod.errors import DesignError, shown
 
 _DESIGNS = Path(__file__).parent / "machines"
 _TEMPLATE = "template"
@@ -127,6 +127,8 @@ def self_contained(path: Path) -> str:
 
 def tables_of(text: str) -> dict[str, Any]:
     """Nested tables of a TOML text that may be a design's. Raises DesignError, also where it is too large for one."""
+    if not isinstance(text, str):
+        raise DesignError(f"the text of the design is {shown(text)}; it must be text.")
     check_size(len(text))
     check_depth(text)
     try:

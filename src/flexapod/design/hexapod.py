@@ -20,7 +20,7 @@ from flexapod.design import changes as design_changes
 from flexapod.design import design_file
 from flexapod.design.flexible_joints import Suspension
 from flexapod.design.geometry_checks import joint_warnings, platform_warnings, unit_axes, warnings_of_part
-from flexapod.design.home import Home, home_of
+from flexapod.design.home import Home
 from flexapod.design.packing import packed
 from flexapod.design.parts import Damping, LegPart, Legs, Limits
 from flexapod.design.short_forms import ShortForm, standing
@@ -29,7 +29,7 @@ from flexapod.design.spring_checks import check_springs
 from flexapod.design.tables import DEFAULT_GRAVITY, complete, flatten
 from flexapod.design.universal_axes import default_axes
 from flexapod.design.value import Value, bytes_of
-from flexapod.design.values import legs_of, suspension_of, values_of_legs, values_of_suspension
+from flexapod.design.values import parts_of, values_of_legs, values_of_suspension
 from flexapod.errors import DesignError, shown
 from flexapod.output_files import write_file
 from flexapod.pose import Pose
@@ -142,6 +142,8 @@ class Hexapod(Value, metaclass=Suggesting):
     warnings: tuple[str, ...] = field(default=(), init=False)
 
     def __post_init__(self) -> None:
+        if not (isinstance(self.short_forms, tuple) and all(isinstance(form, ShortForm) for form in self.short_forms)):
+            raise DesignError(f"short_forms is {shown(self.short_forms)}; it must be a tuple, as another design has.")
         flatten({"name": self.name})
         for name, key in _KEYS.items():
             if name != "universal_axes" or self.universal_axes is not None:
@@ -259,8 +261,9 @@ class Hexapod(Value, metaclass=Suggesting):
         values, forms = expand(flatten(tables))
         machine = cls.from_values(complete(values), forms)
         friction = damping if isinstance(damping, Damping) else Damping(damping)  # type: ignore[arg-type]
-        legs = Legs(machine.legs.stiffness, friction, lower or LegPart.massless(), upper or LegPart.massless())
-        return dataclasses.replace(machine, legs=legs, limits=limits or Limits())
+        lower, upper = (LegPart.massless() if part is None else part for part in (lower, upper))
+        legs = Legs(machine.legs.stiffness, friction, lower, upper)
+        return dataclasses.replace(machine, legs=legs, limits=Limits() if limits is None else limits)
 
     @classmethod
     def from_values(cls, values: Mapping[str, Any], short_forms: Iterable[ShortForm] = ()) -> Hexapod:
@@ -269,18 +272,10 @@ class Hexapod(Value, metaclass=Suggesting):
         Raises
         ------
         DesignError
-            For values that make no hexapod.
+            For values that make no hexapod, or lack some.
         """
-
-        return cls(
-            name=values.get("name", "hexapod"),
-            **{name: values[key] for name, key in _KEYS.items()},
-            legs=legs_of(values),
-            limits=Limits(**{item.name: values.get(f"limits.{item.name}") for item in fields(Limits)}),
-            home=home_of(values),
-            suspension=suspension_of(values),
-            short_forms=tuple(short_forms),
-        )
+        given = parts_of(values, _KEYS)
+        return cls(**given, short_forms=tuple(short_forms) if isinstance(short_forms, Iterable) else short_forms)
 
     @classmethod
     def from_toml(cls, text: str) -> Hexapod:
@@ -330,6 +325,8 @@ class Hexapod(Value, metaclass=Suggesting):
         DesignError
             For an unknown key, with the nearest ones, or a value that it cannot have.
         """
+        if not isinstance(changes, Mapping | None):
+            raise DesignError(f"changes is {shown(changes)}; it must be a mapping from keys of a design to new values.")
         changes = {**(changes or {}), **more}
         return self.from_values(*design_changes.changed(self.values(), self.short_forms, changes))
 

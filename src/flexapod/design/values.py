@@ -10,9 +10,29 @@ import numpy as np
 
 from flexapod.design.flexible_joints import JointStiffness, Suspension
 from flexapod.design.home import home_of
-from flexapod.design.parts import Damping, LegPart, Legs, more_keys
+from flexapod.design.parts import Damping, LegPart, Legs, Limits, more_keys
 from flexapod.design.stiffness_laws import law_of, values_of_law
-from flexapod.errors import DesignError
+from flexapod.errors import DesignError, shown
+
+
+def parts_of(values: Mapping[str, Any], keys: Mapping[str, str]) -> dict[str, Any]:
+    """What a Hexapod is made from, out of its values by file key. keys: those of its own numbers, by attribute.
+
+    Raises DesignError for what is no mapping, or lacks a key.
+    """
+    if not isinstance(values, Mapping):
+        raise DesignError(f"values is {shown(values)}; it must be a mapping, as Hexapod.values() gives it.")
+    try:
+        return {
+            "name": values.get("name", "hexapod"),
+            **{name: values[key] for name, key in keys.items()},
+            "legs": legs_of(values),
+            "limits": Limits(**{item.name: values.get(f"limits.{item.name}") for item in fields(Limits)}),
+            "home": home_of(values),
+            "suspension": suspension_of(values),
+        }
+    except (KeyError, TypeError) as error:  # TypeError: a part of the legs without some of its numbers
+        raise DesignError(f"values lacks a key ({error}); it must hold every one of Hexapod.values().") from error
 
 
 def legs_of(values: Mapping[str, Any]) -> Legs:

@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod._core import TermKind
-from flexapod.checks import not_negative, number, numbers, one_of, positive
+from flexapod.checks import instance, not_negative, number, numbers, one_of, positive
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, Array
-from flexapod.errors import ArgumentError, shown
+from flexapod.errors import ArgumentError, PoseError, shown
 from flexapod.pose import Motion, PoseLike, as_pose
 
 #: One of the pieces of a term of `TermKind.pieces`, behind a number that says whether they meet with corners.
@@ -96,7 +96,7 @@ class Excitation:
     Raises
     ------
     ArgumentError
-        For another word for the rotation.
+        For another word for the rotation, or what is no tuple of terms.
 
     See Also
     --------
@@ -117,6 +117,11 @@ class Excitation:
 
     def __post_init__(self) -> None:
         one_of(self.rotation, "rotation", ("rpy", "vector"))
+        if not isinstance(self.terms, tuple) or not all(isinstance(term, Term) for term in self.terms):
+            raise ArgumentError(
+                f"terms is {shown(self.terms)}; it must be a tuple of terms. Make an excitation with harmonic, "
+                "sine_sweep, read_time_series and the like, and add them."
+            )
 
     def __add__(self, other: Excitation) -> Excitation:
         if not isinstance(other, Excitation):
@@ -190,6 +195,7 @@ class Excitation:
         axes : dict
             Old axis to new axis.
         """
+        instance(axes, Mapping, "axes", "from old axis to new axis")
         missing = [channel for channel in self.channels if axes.get(channel) not in AXES + LEGS]
         if missing:
             raise ArgumentError(
@@ -255,8 +261,10 @@ class Excitation:
         """
         check_use(self, "base_motion")
         t = numbers(times, "times", None)
-        rest = Motion.fixed(None if base is None else as_pose(base, "base")).packed
-        rows = _core.base_motion(self.packed, self.rotation == "rpy", rest, np.ascontiguousarray(t.ravel()))
+        rest = Motion.fixed(None if base is None else as_pose(base, "base"))
+        if rest.shape:
+            raise PoseError(f"base has batch axes {rest.shape}; this takes one pose. Index it first.")
+        rows = _core.base_motion(self.packed, self.rotation == "rpy", rest.packed, np.ascontiguousarray(t.ravel()))
         return Motion.unpacked(rows.reshape(*t.shape, _core.motion_size))
 
     def __repr__(self) -> str:

@@ -7,12 +7,12 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import instance, one_of, whole
+from flexapod.checks import instance, whole
 from flexapod.conventions import TWO_PI, Array
 from flexapod.errors import ArgumentError
 from flexapod.excitation.excitation import Excitation, Use
 from flexapod.excitation.sines import harmonic
-from flexapod.excitation.spectra import LOADS, MOTIONS, QUANTITIES, Spectrum, check_axis
+from flexapod.excitation.spectra import LOADS, MOTIONS, Spectrum, check_axis
 
 
 def random_motion(axis: str, spectrum: Spectrum, *, seed: int = 0, samples: int = 400) -> Excitation:
@@ -123,10 +123,7 @@ def _lines(spectrum: Spectrum, seed: int, samples: int) -> tuple[Array, Array, A
     rng = np.random.default_rng(whole(seed, "seed", 0))
     edges = np.linspace(spectrum.omega_min, spectrum.omega_max, samples + 1)
     omega = edges[:-1] + np.diff(edges) * rng.uniform(size=samples)
-    density = np.asarray(spectrum.density(omega), dtype=float)
-    if not np.isfinite(density).all() or (density < 0).any():
-        raise ArgumentError("the density holds NaN, infinity or negative numbers; it must be >= 0 and finite.")
-    quantity = one_of(spectrum.quantity, "quantity of the spectrum", QUANTITIES)
+    density, quantity = spectrum.values(omega), spectrum.quantity
     power = MOTIONS.index(quantity) if quantity in MOTIONS else 0
     amplitude = np.sqrt(2 * density * np.diff(edges)) / omega**power
     return omega, amplitude, rng.uniform(0, TWO_PI, samples)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import number, one_of, positive, whole
+from flexapod.checks import floats, number, one_of, positive, whole
 from flexapod.conventions import ROTATIONS, TWO_PI, Array
-from flexapod.errors import ArgumentError
+from flexapod.errors import ArgumentError, shown
 from flexapod.excitation.noise_models import HIGH_NOISE, LOW_NOISE
 
 Quantity = Literal["displacement", "velocity", "acceleration", "force", "moment"]
@@ -23,7 +23,8 @@ LOADS: dict[Quantity, str] = {"force": "N", "moment": "N m"}
 VC_SPEED = {"VC-A": 50.0, "VC-B": 25.0, "VC-C": 12.5, "VC-D": 6.25, "VC-E": 3.12, "VC-F": 1.56, "VC-G": 0.78}  # um/s
 
 
-class Spectrum(NamedTuple):
+@dataclass(frozen=True)
+class Spectrum:
     """A one-sided power spectral density of a motion or a load on one axis, per rad/s.
 
     Attributes
@@ -37,6 +38,11 @@ class Spectrum(NamedTuple):
         The range of frequencies, rad/s.
     unit : {"", "m", "rad"}, optional
         Whether a motion is a translation (m, m/s, m/s2) or a rotation; "" where it is that of the axis.
+
+    Raises
+    ------
+    ArgumentError
+        If the density is no function, the quantity or the unit is unknown, or the range does not ascend from above 0.
 
     Examples
     --------
@@ -52,6 +58,44 @@ class Spectrum(NamedTuple):
     omega_max: float
     unit: Literal["", "m", "rad"] = ""
 
+    def __post_init__(self) -> None:
+        if not callable(self.density):
+            raise ArgumentError(
+                f"density is {shown(self.density)}; it must be a function of angular frequencies, rad/s."
+            )
+        one_of(self.quantity, "quantity of the spectrum", QUANTITIES)
+        one_of(self.unit, "unit of the spectrum", ("", "m", "rad"))
+        for name, end in zip(("omega_min", "omega_max"), _range(self.omega_min, self.omega_max), strict=True):
+            object.__setattr__(self, name, end)
+
+    def values(self, omega: Array) -> Array:
+        """Return the densities at angular frequencies.
+
+        Parameters
+        ----------
+        omega : ndarray, shape (n,)
+            Angular frequencies, rad/s.
+
+        Returns
+        -------
+        ndarray, shape (n,)
+            Densities, in the unit of `density`.
+
+        Raises
+        ------
+        ArgumentError
+            If the density's function gives other than a finite number >= 0 for each frequency.
+        """
+        try:
+            found = np.broadcast_to(floats(self.density(omega)), omega.shape)
+        except (TypeError, ValueError, LookupError):
+            raise ArgumentError(
+                "density gives no densities (n,) for frequencies (n,) in rad/s; it must give a number for each."
+            ) from None
+        if not np.isfinite(found).all() or (found < 0).any():
+            raise ArgumentError("the density holds NaN, infinity or negative numbers; it must be >= 0 and finite.")
+        return found
+
     def rms(self, samples: int = 20000) -> float:
         """Return the root mean square of the quantity.
 
@@ -61,7 +105,7 @@ class Spectrum(NamedTuple):
             Number of frequencies of the integral, at equal ratios.
         """
         omega = np.geomspace(self.omega_min, self.omega_max, whole(samples, "samples", 2))
-        return float(np.sqrt(np.trapezoid(self.density(omega), omega)))
+        return float(np.sqrt(np.trapezoid(self.values(omega), omega)))
 
 
 def check_axis(spectrum: Spectrum, axis: str) -> None:
@@ -109,9 +153,7 @@ def flat_spectrum(rms: float, omega_min: float, omega_max: float, *, quantity: Q
     >>> round(fx.excitation.flat_spectrum(0.01, 5.0, 200.0).rms(), 6)
     0.01
     """
-    low, high = number(omega_min, "omega_min", "rad/s"), number(omega_max, "omega_max", "rad/s")
-    if not 0 < low < high:
-        raise ArgumentError(f"frequencies are {low} to {high} rad/s; the first must be > 0 and below the second.")
+    low, high = _range(omega_min, omega_max)
     one_of(quantity, "quantity", QUANTITIES)
     level = _square(positive(rms, "rms"), "rms") / (high - low)
     return Spectrum(_Limited(_Flat(level), low, high), quantity, low, high)
@@ -236,6 +278,13 @@ def sea_spectrum(height: float, period: float, gamma: float = 1.0) -> Spectrum:
     grid = np.geomspace(low, high, 20001)
     level = float(_square(H, "height") / 16 / np.trapezoid(_Waves(1.0, peak, gamma)(grid), grid))
     return Spectrum(_Limited(_Waves(level, peak, gamma), low, high), "displacement", low, high, "m")
+
+
+def _range(omega_min: float, omega_max: float) -> tuple[float, float]:
+    low, high = number(omega_min, "omega_min", "rad/s"), number(omega_max, "omega_max", "rad/s")
+    if not 0 < low < high:
+        raise ArgumentError(f"frequencies are {low} to {high} rad/s; the first must be > 0 and below the second.")
+    return low, high
 
 
 def _square(value: float, name: str) -> float:

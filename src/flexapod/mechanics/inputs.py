@@ -114,10 +114,10 @@ def _refuse(hexapod: Hexapod, length: Array, sine: Array) -> None:
 
 def as_joint(joint: str) -> _core.Joint:
     """The core's joint model of that name; raises ArgumentError for an unknown name."""
-    found = _JOINTS.get(joint)
+    found = _JOINTS.get(joint) if isinstance(joint, str) else None
     if found is None:
         raise ArgumentError(
-            f"joint is {joint!r}; it must be 'universal' (exact) or 'spin_free' (legs that do not spin)."
+            f"joint is {shown(joint)}; it must be 'universal' (exact) or 'spin_free' (legs that do not spin)."
         )
     return found
 

@@ -19,7 +19,7 @@ class Ensemble:
     """Designs whose uncertain parameters are functions of points in the unit cube."""
 
     def __init__(self, hexapod: Hexapod, uncertain: Sequence[Uncertain | Payload]) -> None:
-        uncertain = [uncertain] if isinstance(uncertain, Uncertain | Payload) else uncertain
+        uncertain = [uncertain] if isinstance(uncertain, Uncertain | Payload) else list(uncertain)
         wrong = [u for u in uncertain if not isinstance(u, Uncertain | Payload)]
         if wrong or not uncertain:
             raise ArgumentError(

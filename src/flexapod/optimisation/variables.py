@@ -75,7 +75,11 @@ class Variable:
         ArgumentError
             If this cannot be a variable of the design.
         """
+        if not isinstance(self.name, str):
+            raise ArgumentError(f"name is {shown(self.name)}; the name of a variable must be text.")
         one_of(self.kind, f"{self._name}: kind", get_args(Kind))
+        if not isinstance(self.log, bool):
+            raise ArgumentError(f"{self._name}: log is {shown(self.log)}; it must be True or False.")
         factors = self._factors()
         unit = layout.entries(next(iter(factors)))[2] if self.kind != "scale" else 1.0
         named = layout.unit_name(next(iter(factors))) if self.kind != "scale" else ""

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from flexapod.checks import positive
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.kinematics import leg_rates
@@ -42,8 +43,10 @@ class LegSpeed:
     acceleration: float = np.inf
 
     def __post_init__(self) -> None:
-        if not (self.rate > 0 and self.acceleration > 0):
-            raise ArgumentError(f"leg speed is {self.rate} m/s and {self.acceleration} m/s2; both must be > 0.")
+        for name, unit in (("rate", "m/s"), ("acceleration", "m/s2")):
+            value = getattr(self, name)
+            if not (isinstance(value, float) and value == np.inf):
+                positive(value, f"{name} of the leg speed", unit)
         if not (np.isfinite(self.rate) or np.isfinite(self.acceleration)):
             raise ArgumentError("leg speed has no bound; give a rate (m/s), an acceleration (m/s2), or both.")
 

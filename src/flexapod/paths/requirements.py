@@ -67,7 +67,7 @@ class PathRequirements:
 
     def __post_init__(self) -> None:
         for name, unit in (("index", "rad/s"), ("reach", "m"), ("turn", "rad"), ("clearance", "m")):
-            if getattr(self, name) is not None:
+            if getattr(self, name) is not None or name in {"index", "turn"}:
                 positive(getattr(self, name), name, unit)
         one_of(self.joint, "joint", JOINT_MODELS)
         if self.condition_number is not None and not number(self.condition_number, "condition_number") > 1:

@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import numbers, one_of, positive
+from flexapod.checks import numbers, one_of, positive, whole
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, PathError, PoseError
 from flexapod.paths.chart import Chart
@@ -122,6 +122,7 @@ class Trajectory:
 
     def grid(self, samples: int) -> Array:
         """Give at least `samples` times over the path, evenly within each piece, with every waypoint among them."""
+        whole(samples, "samples")
         share = np.diff(self.times) / self.duration
         counts = np.maximum(2, np.ceil(share * samples)).astype(int)
         pieces = zip(self.times[:-1], self.times[1:], counts, strict=True)
@@ -153,11 +154,12 @@ class Trajectory:
 
     def length(self, characteristic_length: float = 1.0) -> float:
         """Integrate the speed, m; one radian of rotation counts as `characteristic_length`, m."""
+        radius = positive(characteristic_length, "characteristic_length", "m")
         nodes, weights = np.polynomial.legendre.leggauss(12)
         a, b = self.times[:-1, None], self.times[1:, None]
         motion = self(((a + b) + (b - a) * nodes) / 2)
-        speed2 = (motion.velocity**2).sum(-1) + characteristic_length**2 * (motion.angular_velocity**2).sum(-1)
-        return float((np.sqrt(speed2) * weights * (b - a) / 2).sum())
+        speed, turning = (np.linalg.norm(v, axis=-1) for v in (motion.velocity, motion.angular_velocity))
+        return float((np.hypot(speed, radius * turning) * weights * (b - a) / 2).sum())
 
     def retimed(self, duration: float) -> Trajectory:
         """Give the same curve in space, run in another time, s."""

@@ -215,6 +215,8 @@ class _Film(NamedTuple):
         travel = max(_travel(self.top, self.pose, self.platform), _travel(self.feet, self.base_pose, self.base))
         if travel == 0:
             raise ArgumentError("nothing moves in what is to be shown; choose a window or a simulation with motion")
+        if not np.isfinite(travel):
+            raise ArgumentError("the motion is larger than numbers can be; give a smaller one")
         size = float(np.ptp(np.vstack([self.top, self.feet]), axis=0).max())
         factor = (
             float(f"{_TRAVEL * size / travel:.2g}") if exaggeration is None else positive(exaggeration, "exaggeration")

@@ -88,7 +88,7 @@ def integrate(
     go on is data (`status`), not an error. An interrupt stops it. `progress` is called with the fraction done, about 20
     times a second.
     """
-    if not runs:
+    if len(runs) == 0:
         raise ArgumentError("there is nothing to simulate: `runs` is empty.")
     t = _times(times, len(runs))
     prepared = [prepare(run, until, joint) for run, until in zip(runs, t[:, -1], strict=True)]

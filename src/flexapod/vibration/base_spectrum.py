@@ -56,7 +56,7 @@ def ready_made(psd: Spectrum | Mapping[str, Spectrum], axis: str | None, omega: 
     grid = np.unique(inner[(inner >= low) & (inner <= high)])
 
     def density(w: Array) -> Complex:
-        parts = [item.density(w)[:, None] * unit for item, unit in zip(spectra, axes, strict=True)]
+        parts = [item.values(w)[:, None] * unit for item, unit in zip(spectra, axes, strict=True)]
         return _checked(np.sum(parts, axis=0), w, None)
 
     return BaseSpectrum(density, grid, spectra[0].quantity)

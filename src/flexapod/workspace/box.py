@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import floats
+from flexapod.checks import floats, not_negative, numbers
 from flexapod.conventions import AXES, Array, unit_of
 from flexapod.errors import ArgumentError, PoseError, shown
 from flexapod.pose import Pose, as_pose
@@ -78,6 +78,8 @@ class Box:
 
         Raises
         ------
+        ArgumentError
+            If half a range is negative or not finite.
         PoseError
             If a batch of poses is given.
         """
@@ -85,7 +87,7 @@ class Box:
         if middle.shape:
             raise PoseError(f"a box lies about one pose; this one has batch axes {middle.shape}. Index it first.")
         six = np.concatenate([middle.position, middle.rpy])
-        half = np.repeat([position, angle], 3)
+        half = _half_widths(position, angle)
         return cls(*zip(six - half, six + half, strict=True))
 
     @property
@@ -118,8 +120,16 @@ class Box:
         -------
         ndarray, shape (..., 6)
             x, y, z (m), roll, pitch, yaw (rad).
+
+        Raises
+        ------
+        ArgumentError
+            If the points are no finite numbers, or have other than six coordinates.
         """
-        return np.asarray(points, dtype=np.float64) * (self.high - self.low) + self.low
+        given = numbers(points, "points", None)
+        if given.shape[-1:] != (6,):
+            raise ArgumentError(f"points has shape {given.shape}; its last axis must hold six coordinates.")
+        return given * (self.high - self.low) + self.low
 
     def ranges(self) -> dict[str, list[float]]:
         """Return the least and the largest value of each coordinate."""
@@ -128,6 +138,11 @@ class Box:
     def __repr__(self) -> str:
         ranges = (f"{name}={a:.6g}" + (f"..{b:.6g}" if b > a else "") for name, (a, b) in self.ranges().items())
         return f"Box({', '.join(ranges)})"
+
+
+def _half_widths(position: float, angle: float) -> Array:
+    """(6,) half the ranges of a box about a pose, m and rad."""
+    return np.repeat([not_negative(position, "position", "m"), not_negative(angle, "angle", "rad")], 3)
 
 
 def _range(name: str, value: ArrayLike) -> tuple[float, float]:
@@ -190,8 +205,13 @@ class Workspace:
         ----------
         position, angle : float
             Half the range of x, y, z (m) and of roll, pitch, yaw (rad).
+
+        Raises
+        ------
+        ArgumentError
+            If half a range is negative or not finite, or both are 0.
         """
-        half = np.repeat([float(position), float(angle)], 3)
+        half = _half_widths(position, angle)
         return cls(Box(*zip(-half, half, strict=True)), from_home=True)
 
     def box(self, home: Array) -> Box:

@@ -14,7 +14,7 @@ from flexapod.checks import one_of
 from flexapod.conventions import AXES, Array, JointModel, Unit, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.parts import Limits
-from flexapod.errors import ArgumentError
+from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.inputs import as_joint
 from flexapod.mechanics.joint_limits import neutral_directions
 from flexapod.tables import normal_unit
@@ -85,9 +85,11 @@ def chosen(quantities: str | Iterable[str] | None, hexapod: Hexapod) -> tuple[st
     """
     if quantities is None:
         return (*_DEFAULT, *(("within_limits",) if hexapod.limits.given else ()))
+    if not isinstance(quantities, Iterable):
+        raise ArgumentError(f"quantities is {shown(quantities)}; it must be the name of a quantity, or several.")
     names = (quantities,) if isinstance(quantities, str) else tuple(quantities)
     for name in names:
-        if name in COMMON_NAMES:
+        if isinstance(name, str) and name in COMMON_NAMES:
             raise ArgumentError(f"there is no quantity {name!r}. Did you mean {COMMON_NAMES[name]!r}?")
         one_of(name, "quantity", QUANTITIES)
     if not names:

@@ -7,7 +7,7 @@ the home pose.
 
 from __future__ import annotations
 
-from typing import Any, Protocol, TypeAlias, runtime_checkable
+from typing import Any, Protocol, TypeAlias, TypeGuard, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -92,11 +92,11 @@ def as_region(value: RegionLike, name: str = "region") -> Region:
     if isinstance(value, Box):
         return Workspace(value) if value.free else PoseList(value.low[None])
     if isinstance(value, PoseSet):
-        return PoseList(six_numbers(value.rows(0, value.count)))
-    if isinstance(value, Curve):
+        return _listed(six_numbers(value.rows(0, value.count)), name)
+    if _is_curve(value):
         value = value.poses(PATH_SAMPLES)
     if isinstance(value, Pose):
-        return PoseList(np.concatenate([value.position, value.rpy], axis=-1).reshape(-1, 6))
+        return _listed(np.concatenate([value.position, value.rpy], axis=-1).reshape(-1, 6), name)
     try:
         rows = floats(value)
     except (TypeError, ValueError):
@@ -107,6 +107,17 @@ def as_region(value: RegionLike, name: str = "region") -> Region:
             "roll, pitch, yaw (rad)."
         )
     return PoseList(rows.reshape(-1, 6))
+
+
+def _listed(rows: Array, name: str) -> PoseList:
+    if not len(rows):
+        raise PoseError(f"{name} holds no pose; at least one is needed.")
+    return PoseList(rows)
+
+
+def _is_curve(value: Any) -> TypeGuard[Curve]:
+    """Whether poses can be taken along a value; a Dataset has an attribute of this name that is no function."""
+    return isinstance(value, Curve) and callable(value.poses)
 
 
 def poses_of(hexapod: Hexapod, region: RegionLike, samples: int, seed: int = 0) -> PoseSet:
@@ -125,7 +136,7 @@ def poses_of(hexapod: Hexapod, region: RegionLike, samples: int, seed: int = 0) 
     if region is None or isinstance(region, PoseList):
         listed = as_region(region)
         return given_poses(listed.rows(home_of(hexapod, listed), samples))
-    given: Any = region.poses(samples) if isinstance(region, Curve) else region
+    given: Any = region.poses(samples) if _is_curve(region) else region
     return given_poses(given)
 
 

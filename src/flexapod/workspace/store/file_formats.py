@@ -12,7 +12,7 @@ import numpy as np
 from flexapod.conventions import AXES, unit_of
 from flexapod.errors import OutputError
 from flexapod.optional import needed
-from flexapod.output_files import check_file, completed, write_netcdf
+from flexapod.output_files import check_file, completed, netcdf
 from flexapod.workspace.pose_sets import in_words
 from flexapod.workspace.quantities import QUANTITIES, memory, table_titles, titled
 
@@ -56,7 +56,7 @@ def _writer(path: Path) -> Callable[[xr.Dataset, Path], None]:
 
 def _netcdf(sweep: xr.Dataset, path: Path) -> None:
     needed("h5netcdf", "sweep", "a .nc file needs h5netcdf")
-    write_netcdf(sweep, path, engine="h5netcdf")
+    path.write_bytes(netcdf(sweep, engine="h5netcdf"))
 
 
 def _parquet(sweep: xr.Dataset, path: Path) -> None:

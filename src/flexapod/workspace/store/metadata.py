@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from flexapod.checks import whole
 from flexapod.conventions import AXES
 from flexapod.errors import ArgumentError, OutputError
 from flexapod.output_files import passing
@@ -53,16 +54,17 @@ def attributes_of(job: Job) -> dict[str, Any]:
 def make_store(job: Job) -> None:
     """The whole tree of metadata under another name, then moved into place: there is a store or there is none."""
     path = Path(job.path)
-    if path.exists():
-        raise OutputError(f"{path} exists already. Go on with it (--resume), choose another name, or remove it.")
-    if not path.parent.is_dir():
-        raise OutputError(f"{path.parent} is no directory, so {path.name} cannot be written in it. Make it first.")
     try:
+        if path.exists():
+            raise OutputError(f"{path} exists already. Go on with it (--resume), choose another name, or remove it.")
+        if not path.parent.is_dir():
+            raise OutputError(f"{path.parent} is no directory, so {path.name} cannot be written in it. Make it first.")
         with passing(path.with_name(f".{path.name}.{job.token}")) as making:
             _write_metadata(making, job)
             os.replace(making, path)
-    except OSError as error:
-        raise OutputError(f"{path} cannot be written: {error.strerror or error}. Choose another place.") from error
+    except (OSError, ValueError) as error:  # ValueError: a name with a null character
+        words = getattr(error, "strerror", None) or error
+        raise OutputError(f"{path} cannot be written: {words}. Choose another place.") from error
 
 
 def _write_metadata(path: Path, job: Job) -> None:
@@ -222,7 +224,7 @@ def refuse_other(path: str | Path, old: dict[str, Any], new: dict[str, Any], chu
                 "Resume with what it was begun with, or write to another store."
             )
     stored = prod(map(int, old["chunk"].split()))
-    if chunk is not None and chunk != stored:
+    if chunk is not None and whole(chunk, "chunk") != stored:
         raise OutputError(f"{path} was begun with blocks of {stored} poses, not {chunk}. Leave --chunk out to resume.")
 
 

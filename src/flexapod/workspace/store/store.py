@@ -187,6 +187,7 @@ class SweepStore:
             processor's instructions are not those it was begun with; or if what it says of itself is damaged.
         """
         points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities, hexapod)
+        as_joint(joint)
         attrs, layout, done = read_description(path)
         keep = bool(attrs["keeps_poses"])
         job = _job(path, hexapod, points, wanted, joint, cut=Blocks(points.shape, layout.blocks.chunk), keep=keep)
