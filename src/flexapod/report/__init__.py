@@ -3,7 +3,7 @@
     report.gather(hexapod, pose)     # in a notebook: the report of the machine
     report.page(report.study(report.gather(hexapod, pose)))
 
-May import: design, mechanics, workspace, certificates, paths, optimisation, control, plots, paper.
+May import: design, mechanics, workspace, certificates, simulation, paths, optimisation, control, plots, paper.
 """
 
 from flexapod._suggestions import attach

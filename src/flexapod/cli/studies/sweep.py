@@ -65,7 +65,7 @@ def compute(options: Options) -> Study:
     if options.summary and "omega_1" in found:
         summary = judged(lambda: summarise(found, options.at_least, all_poses=everywhere))
     if options.worst and box is not None:
-        given = {"joint": options.joint, "seed": options.seed, "threads": options.threads}
+        given: dict[str, Any] = {"joint": options.joint, "seed": options.seed, "threads": options.threads}
         worst = judged(lambda: worst_pose(hexapod, box, **given, all_poses=everywhere))
     notes = list(dict.fromkeys(notes))
     return study(hexapod, found, options.out, summary, worst, all_poses=everywhere, notes=notes)
