@@ -65,3 +65,28 @@ def test_at_home_the_screws_are_as_stiff_as_the_plain_leg():
     stiffness = 1 / (1 / law.fixed + (length - law.zero_length) / law.axial_rigidity)
     np.testing.assert_allclose(stiffness, plain.legs.stiffness, rtol=1e-3)
     np.testing.assert_allclose(1 / (1 / plain.legs.stiffness + screws.legs.series_compliance), 24.23e6, rtol=1e-3)
+
+
+def frequencies(name):
+    """Those of a machine of this folder and of the packaged one, at home, rad/s."""
+    return fx.natural_modes(machine(name)).omega, fx.natural_modes(fx.load(PLAIN[name])).omega
+
+
+def test_at_home_the_oil_changes_no_frequency():
+    oil, plain = frequencies("motion-base-oil")
+    np.testing.assert_allclose(oil, plain, rtol=2e-5)  # home is 0.1 mm from the middle of the stroke
+
+
+def test_joints_in_series_lower_the_positioner_by_a_third():
+    screws, plain = frequencies("precision-positioner-screws")
+    np.testing.assert_allclose(screws / plain, np.sqrt(24.23 / 50), rtol=2e-3)  # its joints hardly resist
+
+
+def test_wires_raise_the_isolator_and_hold_it_more_firmly():
+    wires, plain = frequencies("cubic-isolator-flexures")
+    assert ((wires > 1.005 * plain) & (wires < 1.05 * plain)).all()
+    least = [
+        fx.linearise(design).modes().omega[0]
+        for design in (machine("cubic-isolator-flexures"), fx.load("cubic-isolator"))
+    ]
+    assert least[0] > 1.01 * least[1]
