@@ -237,3 +237,62 @@ def test_a_turned_and_moved_machine_bears_the_same(joint):
         np.testing.assert_allclose(b, a, rtol=1e-11, atol=1e-12 * np.abs(a).max())
     omegas = [fx.natural_modes(hexapod, p, base=b, joint=joint).omega for p, b in ((pose, None), (moved, base))]
     np.testing.assert_allclose(*omegas, rtol=1e-12)
+
+
+# --- closed forms ---------------------------------------------------------------------------------------------------
+
+
+def test_a_suspension_alone_holds_the_platform_at_its_own_frequencies():
+    """Legs of nearly no stiffness and no mass: the platform on the suspension, at its mass centre."""
+    hexapod = fx.load("cubic-isolator")
+    k = np.array([1e4, 2e4, 4e4, 50.0, 70.0, 90.0])
+    inertia = np.diag([0.02, 0.03, 0.05])
+    alone = hexapod.replace(
+        {
+            "legs.stiffness": 1e-9,
+            "legs.lower": None,
+            "legs.upper": None,
+            "platform.mass_center": [0, 0, 0],
+            "platform.inertia": inertia,
+            "suspension.stiffness": np.diag(k),
+        }
+    )
+    expected = np.sqrt(k / np.concatenate([[alone.platform_mass] * 3, np.diag(inertia)]))
+    np.testing.assert_allclose(fx.natural_modes(alone).omega, np.sort(expected), rtol=1e-10)
+
+
+def test_flexures_of_upright_legs_are_guided_beams():
+    """Six parallel legs: a platform that moves across them bends both joints of each, (k_u + k_s) / L^2 for each leg.
+
+    Turned about the legs it twists them and moves their ends across at the radius r, 6 (k_t + r^2 (k_u + k_s) / L^2).
+    """
+    angle = np.radians([0, 60, 120, 180, 240, 300])
+    ring = np.stack([0.3 * np.cos(angle), 0.3 * np.sin(angle), np.zeros(6)], axis=1)
+    L, mass, inertia, k_u, k_s, k_t = 0.5, 10.0, np.array([0.4, 0.5, 0.6]), 15.0, 20.0, 10.0
+    upright = fx.load("cubic-isolator").replace(
+        {
+            "base.joints": ring,
+            "platform.joints": ring,
+            "base.universal_axes": np.tile([1.0, 0.0, 0.0], (6, 1)),
+            "platform.mass": mass,
+            "platform.mass_center": [0, 0, 0],
+            "platform.inertia": np.diag(inertia),
+            "legs.lower": None,
+            "legs.upper": None,
+            "home.position": [0, 0, L],
+            "limits": None,
+            "legs.joint_stiffness.universal": k_u,
+            "legs.joint_stiffness.spherical": k_s,
+            "legs.joint_stiffness.torsion": k_t,
+        }
+    )
+    across = 6 * (k_u + k_s) / L**2
+    F = spring_matrix(upright)
+    K = F @ F.T
+    np.testing.assert_allclose(np.diag(K)[:2], across, rtol=1e-12)
+    about = 6 * k_t + 0.3**2 * across
+    np.testing.assert_allclose(K[5, 5], about, rtol=1e-12)
+    omega = fx.natural_modes(upright).omega
+    assert np.min(np.abs(omega / np.sqrt(about / inertia[2]) - 1)) < 1e-12
+    # Across, the platform also tilts by the bending at its joints; the legs' stretch holds that, and is far stiffer.
+    assert omega[0] == pytest.approx(np.sqrt(across / mass), rel=0.03)

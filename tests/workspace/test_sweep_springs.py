@@ -93,7 +93,7 @@ LAWS = {
 def with_law(kind: str, more=None) -> fx.Hexapod:
     law = {f"legs.stiffness_law.{key}": value for key, value in LAWS[kind].items()}
     return fx.load("motion-base").replace(
-        {"legs.stiffness": None, "legs.stiffness_law.kind": kind, **law, **(more or {})}
+        {"limits": None, "legs.stiffness": None, "legs.stiffness_law.kind": kind, **law, **(more or {})}
     )
 
 

@@ -32,9 +32,14 @@ template <class T, Swept kind> struct SweepModes {
   const MassAndForceMap<T, kind>& dynamics;
 
   template <bool all> FLEXAPOD_FLAT T frequencies() const {
-    const auto B = [this] { return dynamics.B(machine, Cholesky<T>(dynamics.J.matrix())); };
+    T others(0.0);  // of the other springs alone, the sum of the squares
+    const auto B = [&] {
+      auto B = dynamics.B(machine, Cholesky<T>(dynamics.J.matrix()));
+      if constexpr (kind == Swept::others) others = B.square_of_C();
+      return B;
+    };
     auto squares = singular_squares<all ? Wanted::all : Wanted::lowest, T>(B);
-    if constexpr (kind == Swept::others) replace_rounded(B().square_of_C(), squares);
+    if constexpr (kind == Swept::others) replace_rounded(others, squares);
     const T fault = worse(!(squares.sum < 1e300), sweep_task::no_inertia, dynamics.fault);
     const auto bad = fault > T(sweep_task::singular);
     for (int i = 0; i < (all ? 6 : 1); ++i) {
@@ -61,7 +66,7 @@ template <class T, Swept kind> struct SweepModes {
 
  private:
   /// The square root of the other springs' sum is right to a rounding of its own size, which may be more than a rounding
-  /// of omega_1 omega_6: there all columns are taken instead. `others`: the sum of the squares that they give alone.
+  /// of omega_1 omega_6: there all columns are taken instead.
   void replace_rounded(const T& others, SingularSquares<T>& found) const {
     const T part = others / found.sum;
     const auto rounded = (part * part > 16.0 * found.share[0]) & (found.sum < 1e300);

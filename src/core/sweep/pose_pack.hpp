@@ -102,6 +102,15 @@ template <class T, Swept kind> struct MassAndForceMap {
     fault = at.fault;
     for (int i = 0; i < 6; ++i) set_spring_directions(directions, i, at.g);
   }
+  /// With springs of all kinds as well.
+  void set_stiffness(const SweptMachine& m, const PosePack<T>& at) {
+    set_legs(at);
+    if constexpr (kind != Swept::constant) {
+      const auto axes = [&](int i) { return LegAxes<T>(at.g.S[i], at.g.k[i], m.machine.joint); };
+      const LegAxes<T> legs[6] = {axes(0), axes(1), axes(2), axes(3), axes(4), axes(5)};
+      set_springs(m, at, legs);
+    }
+  }
   void set(const SweptMachine& m, const PosePack<T>& at) {
     const auto axes = [&](int i) { return LegAxes<T>(at.g.S[i], at.g.k[i], m.machine.joint); };
     const LegAxes<T> legs[6] = {axes(0), axes(1), axes(2), axes(3), axes(4), axes(5)};  // together: six long chains

@@ -113,8 +113,7 @@ template <class T, Swept kind> struct SweepQuantities {
     Vec6<T> side[3];
     for (int i = 0; i < 3; ++i) side[i][i] = T(1.0);
     MassAndForceMap<T, kind> dynamics;
-    if constexpr (kind == Swept::constant) dynamics = legs();
-    else dynamics.set(machine, at);
+    dynamics.set_stiffness(machine, at);
     auto F = dynamics.F(machine);
     auto&& square = square_factor(F);
     const T weak = solve(square, side);
