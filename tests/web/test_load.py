@@ -141,6 +141,6 @@ def test_pages_have_their_turns_beside_jobs_and_a_hostile_client(monkeypatch: py
         assert max(owned) < OWN
         for job in jobs:
             job.close()
-        for page in workers:
+        for page in (*pages, *workers):
             page.server.close()
         assert until(lambda: not served.app.state.jobs.running())
