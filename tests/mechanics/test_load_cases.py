@@ -206,3 +206,34 @@ def test_what_is_refused(machine, more, error, words):
         fx.load_cases(machine.replace({"home": None}))
     with pytest.raises(fx.ArgumentError, match="magnitude is -1"):
         gravity_at(1.0, magnitude=-1)
+
+
+def test_derivatives_under_a_stiffness_law_and_springs_in_joints():
+    """Legs of screws, whose stiffness depends on their commanded lengths, with stiff joints and springs in series."""
+    machine = fx.load("precision-positioner").replace(
+        {
+            "legs.stiffness": None,
+            "legs.stiffness_law": {"kind": "screw", "fixed_N_per_um": 60, "axial_rigidity": 4e6, "zero_length": 0.1},
+            "legs.series_stiffness_N_per_um": [94, 94],
+            "legs.joint_stiffness": {"universal": 15, "spherical": 15, "torsion": 10},
+        }
+    )
+    given = {"gravity": gravity_at(np.radians([90, 25])), "force": [[0, 0, 0], [4.0, 3, 2]], "point": POINT / 10}
+    found = fx.load_cases(machine, **given, reference=0)
+    np.testing.assert_allclose(found.deflection[0], 0, atol=1e-12)
+    lengths = found.unstretched_length.values[1]
+    own = machine.replace({"gravity": given["gravity"][1]})
+    two = []
+    for sign in (1, -1):
+        pose = fx.static_equilibrium(own, lengths + sign * 1e-7 * np.eye(6)[2], force=given["force"][1]).pose
+        two.append(pose.position + pose.matrix @ (POINT / 10))
+    expected = (two[0] - two[1]) / 2e-7
+    np.testing.assert_allclose(found.deflection_by_leg_length[1, :3, 2], expected, rtol=1e-5, atol=1e-5)
+    mass, moved = machine.platform_mass, []
+    for sign in (1, -1):
+        case = fx.load_cases(machine.replace({"platform.mass": mass * (1 + sign * 1e-3)}), **given, reference=0).isel(
+            case=1
+        )
+        moved.append(np.concatenate([case.deflection, case.rotation]))
+    expected = (moved[0] - moved[1]) / (2e-3 * mass)
+    np.testing.assert_allclose(found.deflection_by_mass[1], expected, rtol=1e-4, atol=1e-4 * np.abs(expected).max())

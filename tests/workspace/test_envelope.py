@@ -273,3 +273,16 @@ def test_the_command(result, run, tmp_path, machine):
     code, _, err = run("envelope", "motion-base", "--set", "limits.leg_length=[1,2]")
     assert code == 2
     assert "Begin at another pose, or widen the limits" in err
+
+
+def test_moments_of_joints_stop_motions(machine):
+    springs = {"legs.joint_stiffness.universal": 2e4, "legs.joint_stiffness.spherical": 1e4}
+    limited = machine.replace({**springs, "limits.universal_moment": 2e3, "limits.spherical_moment": 1.5e3})
+    found = fx.envelope(limited, directions=8)
+    stops = {stop for axis in found.axes for stop in axis.stopped_at_most}
+    assert any(stop.startswith("moment of the") for stop in stops)
+    for k, axis in enumerate(found.axes):
+        far = bisected(lambda s, k=k: fx.check_limits(limited, displaced(machine, s * np.eye(6)[k])).ok.all(), 2.0)
+        assert axis.most == pytest.approx(far, abs=1e-9)
+    rows = np.random.default_rng(6).uniform(-1, 1, (5000, 6)) * found.box.half
+    assert fx.check_limits(limited, displaced(machine, rows)).ok.all()

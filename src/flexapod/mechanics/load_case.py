@@ -12,6 +12,7 @@ from flexapod.errors import KinematicsError
 from flexapod.mechanics.kinematics import force_transformation, inverse_kinematics
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.reactions import joint_reactions
+from flexapod.mechanics.springs import axial_stiffness
 from flexapod.mechanics.statics import Equilibrium, hold, static_equilibrium
 from flexapod.pose import Pose
 from flexapod.rotations import skew
@@ -84,14 +85,16 @@ def answer(case: Case, reference: Case | None, point: Array, section: float, joi
     flexible = to_point @ np.linalg.inv(K)  # displacement of the point for a wrench at the reference point
     stiffness = np.linalg.inv(flexible @ to_point.T)
     by_force = flexible @ tangent.H
-    k = case.machine.legs.stiffness
+    k, slope = axial_stiffness(case.machine, lengths)
+    push = k + slope * (lengths - rest.leg_length)  # force of a leg by its unstretched length
     moved = rest.pose.position + rest.pose.matrix @ point - case.pose.position - case.pose.matrix @ point
     weights = _weights(case.machine, rest.pose)
     if reference is not None:
         settings = np.linalg.solve(
             force_transformation(reference.machine, reference.pose), _weights(reference.machine, reference.pose)
         )
-        weights = weights - tangent.H @ settings
+        as_set = k + slope * (lengths - inverse_kinematics(reference.machine, reference.pose))
+        weights = weights - (tangent.H * (push / as_set)) @ settings
     by_weight = flexible @ weights
     return Answer(
         "ok",
@@ -106,7 +109,7 @@ def answer(case: Case, reference: Case | None, point: Array, section: float, joi
         carried.universal_moment,
         stiffness,
         flexible @ to_point.T,
-        by_force * k,
+        by_force * push,
         by_force * (rest.leg_force - zero_force) / k,
         by_weight[:, 0],
         by_weight[:, 1:],

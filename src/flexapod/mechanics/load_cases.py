@@ -14,6 +14,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, KinematicsError, PoseError, SingularPoseError
 from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, pose_or_home
 from flexapod.mechanics.load_case import Answer, Case, answer, unanswered
+from flexapod.mechanics.springs import axial_stiffness
 from flexapod.pose import Pose, PoseLike, vectors
 
 if TYPE_CHECKING:
@@ -122,8 +123,9 @@ def load_cases(
         (N, positive: compression), leg_length, unstretched_length (m), deflection of the point (m) and rotation
         (rotation vector, rad) in base axes, spherical_force, universal_force (N), leg_moment, universal_moment (N m),
         stiffness and compliance at the point (base axes; N, m, rad), deflection_by_leg_length,
-        deflection_by_stiffness, deflection_by_mass and deflection_by_mass_center (derivatives of deflection and
-        rotation), force_within_limits, and status: "ok", or why there is no equilibrium, with NaN elsewhere.
+        deflection_by_stiffness (of a leg, with all that is in series), deflection_by_mass and deflection_by_mass_center
+        (derivatives of deflection and rotation), force_within_limits, and status: "ok", or why there
+        is no equilibrium, with NaN elsewhere.
 
     Raises
     ------
@@ -254,5 +256,5 @@ def _dataset(hexapod: Hexapod, given: _Given, answers: list[Answer], point: Arra
         design=hexapod.name,
         digest=hexapod.digest,
         point_m=[float(x) for x in point],
-        leg_stiffness=[float(k) for k in hexapod.legs.stiffness],
+        leg_stiffness=[float(k) for k in axial_stiffness(hexapod, answers[0].unstretched_length)[0]],
     )

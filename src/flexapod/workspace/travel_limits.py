@@ -13,7 +13,7 @@ from flexapod.conventions import LEG_PAIRS, LEGS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.dynamics import inverse_dynamics
 from flexapod.mechanics.inputs import States, states
-from flexapod.mechanics.joint_limits import leg_distances, neutral_directions
+from flexapod.mechanics.joint_limits import leg_distances, moment_excess, neutral_directions
 from flexapod.mechanics.kinematics import platform_size
 from flexapod.pose import Pose
 from flexapod.rotations import rpy_matrix
@@ -70,8 +70,9 @@ class TravelLimits:
     """Margins of all limits at displacements: >= 0 where they are kept. `names` says what each column limits.
 
     A margin is in the unit of what it limits. How fast lengths, angles and distances can change at most is known, so
-    that `free` can say how far on a way none of them can be exceeded. Singular poses, cond(H), the index and static leg
-    forces are looked at in small steps instead; a singular pose is noticed by the sign of det H on its other side.
+    that `free` can say how far on a way none of them can be exceeded. Singular poses, cond(H), the index, moments of
+    joints and static leg forces are looked at in small steps instead; a singular pose is noticed by the sign of det H
+    on its other side.
     """
 
     def __init__(self, hexapod: Hexapod, displacements: Displacements, bounds: Bounds, joint: JointModel) -> None:
@@ -125,6 +126,10 @@ class TravelLimits:
             steep = None if slope is None else slope.joint
             yield length - least, steep
             yield most - length, steep
+        if self.hexapod.legs.stiffness_law is not None:
+            least, most = self.hexapod.legs.stiffness_law.range.T
+            yield length - least, None if slope is None else slope.joint
+            yield most - length, None if slope is None else slope.joint
         if limits.universal_angle is not None or limits.spherical_angle is not None:
             angles = _core.joint_angles(packed, s.platform, s.base, self._neutral)
             for most, found, name in (
@@ -158,6 +163,8 @@ class TravelLimits:
         if self.bounds.index is not None:
             found = evaluate(self.hexapod, poses.packed, ("omega_1",), self.joint, 1, self._kernel)["omega_1"]
             yield found[:, None] - self.bounds.index
+        for moment in moment_excess(self.hexapod, poses):
+            yield moment.most - moment.value.reshape(-1, 6)
         if limits.leg_compression is not None or limits.leg_tension is not None:
             force = inverse_dynamics(self.hexapod, poses, joint=self.joint)
             if limits.leg_compression is not None:
@@ -180,6 +187,8 @@ def _names(hexapod: Hexapod, bounds: Bounds) -> Iterator[str]:
     by_leg: list[str] = []
     if limits.leg_length is not None:
         by_leg += ["least length of leg", "greatest length of leg"]
+    if hexapod.legs.stiffness_law is not None:
+        by_leg += ["least length of the stiffness law of leg", "greatest length of the stiffness law of leg"]
     by_leg += ["universal joint of leg"] * (limits.universal_angle is not None)
     by_leg += ["spherical joint of leg"] * (limits.spherical_angle is not None)
     yield from (f"{words} {leg}" for words in by_leg for leg in LEGS)
@@ -190,6 +199,9 @@ def _names(hexapod: Hexapod, bounds: Bounds) -> Iterator[str]:
         yield "bound of cond(H)"
     if bounds.index is not None:
         yield "bound of the index"
+    for limit, words in ((limits.universal_moment, "universal"), (limits.spherical_moment, "spherical")):
+        if limit is not None:
+            yield from (f"moment of the {words} joint of leg {leg}" for leg in LEGS)
     for limit, words in ((limits.leg_compression, "compression"), (limits.leg_tension, "tension")):
         if limit is not None:
             yield from (f"greatest {words} of leg {leg}" for leg in LEGS)
