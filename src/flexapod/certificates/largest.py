@@ -16,7 +16,7 @@ from flexapod.checks import positive, thread_count
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
-from flexapod.mechanics.inputs import as_hexapod
+from flexapod.mechanics.inputs import as_hexapod, as_joint
 from flexapod.workspace.box import Box, Workspace
 from flexapod.workspace.region import as_region, home_of
 
@@ -119,6 +119,7 @@ def certified_box(
     ('proved', True)
     """
     as_hexapod(hexapod)
+    as_joint(joint)
     tolerance = positive(tolerance, "tolerance")
     until = np.inf if time_limit is None else time.monotonic() + positive(time_limit, "time_limit", "s")
     given = {"joint": joint, "uncertain": uncertain, "within_limits": within_limits}
