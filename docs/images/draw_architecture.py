@@ -75,7 +75,7 @@ def _row(ax: Axes, rooms: list[str], top: float, color: str) -> None:
             top - ROW / 2 + 0.04,
             name,
             family="monospace",
-            fontsize=9,
+            fontsize=9 if len(rooms) < 10 else 7.8,
             ha="center",
             va="center",
         )

@@ -65,7 +65,8 @@ def test_a_check_cuts_the_boxes_elsewhere():
     box = np.stack([HARD.low, HARD.high], axis=-1)[None]
     ends = []
     for cut in (proof.CUT, checking.CUT):
-        options = _core.CertificateOptions(max_boxes=40, cut=cut)
+        options = _core.CertificateOptions()
+        options.max_boxes, options.cut = 40, cut
         left = _core.certify(II.packed, _core.Joint.universal, box, _core.CertificateKind.index, 300.0, options, None)
         ends.append(left.remaining)
     inner = [set(np.unique(parts)) - set(np.unique(box)) for parts in ends]
