@@ -56,6 +56,14 @@ def test_packaged_designs_are_plausible(name):
         ({"legs.joint_stiffness.universal": [0, 15e6]}, "joint_stiffness", "universal_N_mm_per_rad"),
         ({"legs.joint_stiffness.spherical": 15e6}, "joint_stiffness", "times the leg's axial stiffness of 2e+07 N/m"),
         ({"legs.joint_stiffness.spherical_N_mm_per_rad": 0.015}, "joint_stiffness", "which is nothing"),
+        (
+            {
+                "legs.joint_stiffness.spherical": 15e6,
+                "legs.stiffness_law": {"kind": "table", "lengths": [0.4, 0.8], "stiffnesses": [2e7, 2e7]},
+            },
+            "joint_stiffness",
+            "times the leg's axial stiffness of 2e+07 N/m",
+        ),
         ({"limits.universal_moment": 1}, "idle_limit", "Give legs.joint_stiffness.universal, or leave it out"),
         ({"suspension.stiffness": [1, 1, 1, 100, 100, 100]}, "suspension", "springs 10 m from their centre"),
         ({"legs.loss_factor": 2}, "loss_factor", "2 % is 0.02"),

@@ -14,6 +14,7 @@ from flexapod.design.universal_axes import legs_at
 from flexapod.mechanics.inputs import states
 from flexapod.mechanics.joint_limits import leg_distances
 from flexapod.mechanics.kinematics import condition_number, home_pose, inverse_kinematics
+from flexapod.mechanics.springs import axial_stiffness
 from flexapod.mechanics.statics import Equilibrium
 from flexapod.pose import Pose
 
@@ -161,7 +162,8 @@ def _joint_springs(hexapod: Hexapod) -> list[Caution]:
     """Joints that make a leg stiffer across than along it, that hold nothing, or whose moment is limited to no end."""
     joints, found = hexapod.legs.joint_stiffness, []
     leg = _leg_length(hexapod)
-    along = hexapod.legs.stiffness / (1.0 + hexapod.legs.stiffness * hexapod.legs.series_compliance)
+    home = home_pose(hexapod)
+    along = np.zeros(6) if home is None else axial_stiffness(hexapod, inverse_kinematics(hexapod, home))[0]
     for name, each in (("universal", joints.universal.max(axis=1)), ("spherical", joints.spherical)):
         key = f"legs.joint_stiffness.{name}"
         if leg and each.any():
