@@ -107,6 +107,18 @@ def test_new_names_the_file(result, tmp_path, monkeypatch, given, written):
     assert [path.name for path in tmp_path.iterdir()] == [written]
 
 
+def test_designs_are_found_by_words(run, result):
+    assert list(result("designs", "--search", "ISOLATOR")) == ["cubic-isolator"]
+    every = result("designs")
+    for name, one in every.items():
+        word = next(word for word in one["about"].split() if word.isalpha())
+        assert name in result("designs", "--search", f"{name} {word}")
+    code, _, err = run("designs", "--search", "isolator submarine")
+    assert code == 2
+    assert "no packaged design has all of the words isolator, submarine" in err
+    assert run("designs", "--search", " ")[0] == 2
+
+
 def test_designs_lists_the_packaged_ones(run, result):
     assert list(result("designs")) == fx.packaged_designs()
     assert all(name in run("designs")[1] for name in fx.packaged_designs())
