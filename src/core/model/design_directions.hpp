@@ -15,6 +15,10 @@ struct ValueGradient {
   Array<double> value, derivative;
 
   ValueGradient(size_t n, size_t width, size_t m) : value({n, width}), derivative({n, width, m}) {}
+  void clear() {
+    std::fill_n(value.data(), value.size(), 0.0);
+    std::fill_n(derivative.data(), derivative.size(), 0.0);
+  }
   void put(size_t row, size_t column, const Seed& x, size_t first, int count) {
     const size_t width = value.shape()[1], m = derivative.shape()[2];
     value.data()[row * width + column] = x.v;
@@ -51,8 +55,12 @@ class DesignDirections {
         n_(platforms.size()),
         m_(directions.size() / design_size),
         features_(machine.features) {
-    for (size_t k = 0; k < m_; ++k)  // a spring that is not there yet may come with a direction
-      features_ = features_ | Features(*reinterpret_cast<const Design<double>*>(directions_.data() + k * design_size));
+    for (size_t k = 0; k < m_; ++k) {  // a spring that is not there yet may come with a direction
+      const auto& change = *reinterpret_cast<const Design<double>*>(directions_.data() + k * design_size);
+      if (used_size(change) == plain_size) continue;
+      features_ = features_ | Features(change);
+      numbers_ = design_size;
+    }
   }
 
   FrequencyGradient frequencies() const {
@@ -102,6 +110,7 @@ class DesignDirections {
 
   LegGradient legs() const {
     LegGradient found{{n_, 6, m_}, {n_, leg_pairs, m_}, {n_, 12, m_}, {n_, 12, m_}};
+    if (!features_.joints) found.joint_moment.clear();
     const SharedJoints shared(machine_.design);
     for_each([&](const Block& block, const Machine<Seed>& machine, const Geometry<Seed>& g, const Pose<Seed>& pose,
                  size_t i) {
@@ -111,12 +120,10 @@ class DesignDirections {
       });
       Seed angles[2][6];
       joint_cosines(block.seeded, pose, home_.empty() ? nullptr : &block.home, angles);
-      Seed squares[2][6];
-      if (machine.features.joints) squared_moments(machine, g, pose.R, squares);
-      for (size_t a = 0; a < 12; ++a) {
-        found.joint_cosine.put(i, a, angles[a / 6][a % 6], block.first, block.count);
-        found.joint_moment.put(i, a, squares[a / 6][a % 6], block.first, block.count);
-      }
+      for (size_t a = 0; a < 12; ++a) found.joint_cosine.put(i, a, angles[a / 6][a % 6], block.first, block.count);
+      if (!machine.features.joints) return;
+      squared_moments(machine, g, pose.R, angles);
+      for (size_t a = 0; a < 12; ++a) found.joint_moment.put(i, a, angles[a / 6][a % 6], block.first, block.count);
     });
     return found;
   }
@@ -126,20 +133,21 @@ class DesignDirections {
   struct Block {
     size_t first;
     int count;
-    SeededDesign seeded;
+    const SeededDesign& seeded;
     Pose<Seed> home;
   };
 
   /// Calls work(block, machine, geometry, pose, i) for every block of directions at every pose i.
   template <class Work> void for_each(Work&& work) const {
+    SeededDesign seeded(machine_.joint, features_, numbers_);
     for (size_t first = 0; first < m_; first += gradient_lanes) {
       const int count = static_cast<int>(std::min<size_t>(gradient_lanes, m_ - first));
-      Block block{first, count, {machine_.design, directions_.data() + first * design_size, count}, {}};
-      const Machine<Seed> machine(block.seeded.design, machine_.joint, features_);
-      if (!home_.empty()) block.home = block.seeded.pose(home_[0].pose, home_displacements_.data() + first * 6);
+      seeded.set(machine_.design, directions_.data() + first * design_size, count);
+      Block block{first, count, seeded, {}};
+      if (!home_.empty()) block.home = seeded.pose(home_[0].pose, home_displacements_.data() + first * 6);
       for (size_t i = 0; i < n_; ++i) {
-        const Pose<Seed> pose = block.seeded.pose(platforms_[i].pose, displacements_.data() + (i * m_ + first) * 6);
-        work(block, machine, Geometry<Seed>(block.seeded.design, pose, Pose<Seed>()), pose, i);
+        const Pose<Seed> pose = seeded.pose(platforms_[i].pose, displacements_.data() + (i * m_ + first) * 6);
+        work(block, seeded.machine, Geometry<Seed>(seeded.machine.design, pose, Pose<Seed>()), pose, i);
       }
     }
   }
@@ -149,6 +157,7 @@ class DesignDirections {
   std::vector<double> directions_, displacements_, home_displacements_;
   size_t n_, m_;
   Features features_;
+  int numbers_ = used_size(machine_.design);
 };
 
 }  // namespace flexapod

@@ -10,19 +10,23 @@ namespace flexapod {
 inline constexpr int gradient_lanes = 8;
 using Seed = Dual<gradient_lanes>;
 
-/// The design, and poses, with the derivatives along `count` directions.
+/// The machine, and poses, with the derivatives along directions, some at a time.
 struct SeededDesign {
-  Design<Seed> design;
-  int count;
+  Machine<Seed> machine;
+  int count = 0;
 
+  /// numbers: how many of the design's are used.
+  SeededDesign(Joint joint, const Features& features, int numbers) : machine(joint, features), numbers_(numbers) {}
   /// directions: rows of `design_size`.
-  SeededDesign(const Design<double>& d, const double* directions, int count_) : count(count_) {
+  void set(const Design<double>& d, const double* directions, int count_) {
+    count = count_;
     const double* value = &d.gravity.x;
-    Seed* number = &design.gravity.x;
-    for (int i = 0; i < design_size; ++i) {
+    Seed* number = &machine.design.gravity.x;
+    for (int i = 0; i < numbers_; ++i) {
       number[i] = value[i];
       for (int k = 0; k < count; ++k) number[i].d[k] = directions[k * design_size + i];
     }
+    machine.refresh();
   }
   /// displacements: rows of translation and rotation vector.
   Pose<Seed> pose(const Pose<double>& at, const double* displacements) const {
@@ -31,6 +35,9 @@ struct SeededDesign {
       for (int k = 0; k < count; ++k) x[i].d[k] = displacements[k * 6 + i];
     return displaced(at, Vec3<Seed>(x[0], x[1], x[2]), Vec3<Seed>(x[3], x[4], x[5]));
   }
+
+ private:
+  int numbers_;
 };
 
 /// v_a^T (dK - lambda dJ) v_b for all pairs of modes, lambda the mean of the two. The diagonal are the derivatives of
@@ -82,7 +89,9 @@ inline void squared_moments(const Machine<Seed>& machine, const Geometry<Seed>& 
 /// z axes of base and platform.
 inline void joint_cosines(const SeededDesign& seeded, const Pose<Seed>& at, const Pose<Seed>* home, Seed (&out)[2][6]) {
   for (int i = 0; i < 6; ++i) {
-    const auto leg = [&](const Pose<Seed>& pose) { return pose.t + pose.R * seeded.design.p[i] - seeded.design.b[i]; };
+    const auto leg = [&](const Pose<Seed>& pose) {
+      return pose.t + pose.R * seeded.machine.design.p[i] - seeded.machine.design.b[i];
+    };
     Vec3<Seed> in_base(0.0, 0.0, 1.0), in_platform(0.0, 0.0, 1.0);
     if (home != nullptr) {
       const Vec3<Seed> S = leg(*home);

@@ -31,29 +31,37 @@ inline std::vector<int> dual_places(const Design<double>& d, const Features& fea
   return places;
 }
 
-/// Derivatives of a mode's omega^2 by stiffnesses and compliances that need not be there, from how the mode's shape v
-/// moves the springs.
+/// Derivatives of the six omega^2 by stiffnesses and compliances that need not be there, from how the modes' shapes move
+/// the springs: added to rows of zeros.
 inline void spring_derivatives(const Machine<double>& machine, const Geometry<double>& g, const Pose<double>& platform,
-                               const Pose<double>& base, const Vec6<double>& v, double (&out)[design_size]) {
+                               const Pose<double>& base, const Modes& modes, double (*out)[design_size]) {
   const Design<double>& d = machine.design;
-  double stretch[spring_count];
-  spring_rates(spring_directions(g), v, stretch);
+  Vec6<double> shape[6];
+  for (int m = 0; m < 6; ++m)
+    for (int i = 0; i < 6; ++i) shape[m][i] = modes.shape[i][m];
   for (int i = 0; i < 6; ++i) {
     const LegSprings<double>& s = d.springs[i];
-    const double force = machine.stiffness(i, norm(g.S[i])) * stretch[i];
-    out[place_of(d, s.series_compliance)] = -force * force;
-    const JointDirections<double> joint(LegAxes<double>(g.S[i], g.k[i], machine.joint), g.q_p[i], machine.joint);
+    const LegAxes<double> leg(g.S[i], g.k[i], machine.joint);
+    const Vec6<double> along = leg_wrench(g.q_p[i], leg.s());
+    const double k = machine.stiffness(i, leg.L);
+    const JointDirections<double> joint(leg, g.q_p[i], machine.joint);
     const int place[springs_of_joints] = {place_of(d, s.k_u[0]), place_of(d, s.k_u[1]), place_of(d, s.k_s),
                                           place_of(d, s.k_s), place_of(d, s.k_t)};
-    for (int j = 0; j < springs_of_joints; ++j) {
-      const double rate = dot(joint.d[j], v);
-      out[place[j]] += rate * rate;
+    for (int m = 0; m < 6; ++m) {
+      const double force = k * dot(along, shape[m]);
+      out[m][place_of(d, s.series_compliance)] = -force * force;
+      for (int j = 0; j < springs_of_joints; ++j) {
+        const double rate = dot(joint.d[j], shape[m]);
+        out[m][place[j]] += rate * rate;
+      }
     }
   }
-  const Vec6<double> twist = suspension_twist(base.R, platform.R * d.suspension_point, v);
-  for (int r = 0; r < 6; ++r)
-    for (int c = 0; c <= r; ++c)
-      out[place_of(d, d.suspension_stiffness.at(r, c))] = (r == c ? 1.0 : 2.0) * twist[r] * twist[c];
+  for (int m = 0; m < 6; ++m) {
+    const Vec6<double> twist = suspension_twist(base.R, platform.R * d.suspension_point, shape[m]);
+    for (int r = 0; r < 6; ++r)
+      for (int c = 0; c <= r; ++c)
+        out[m][place_of(d, d.suspension_stiffness.at(r, c))] = (r == c ? 1.0 : 2.0) * twist[r] * twist[c];
+  }
 }
 
 /// Derivatives of the six omega^2 by the numbers of the design: row m, one column a number.
@@ -65,13 +73,8 @@ inline void design_derivatives(const Machine<double>& machine, const Pose<double
   const std::vector<int> places = dual_places(design, machine.features);
   Machine<D> seeded(machine);
   D* number = &seeded.design.gravity.x;
-  const Geometry<double> g(design, platform, base);
-  for (int m = 0; m < 6; ++m) {
-    std::fill_n(out[m], design_size, 0.0);
-    Vec6<double> v;
-    for (int i = 0; i < 6; ++i) v[i] = modes.shape[i][m];
-    spring_derivatives(machine, g, platform, base, v, out[m]);
-  }
+  for (int m = 0; m < 6; ++m) std::fill_n(out[m], design_size, 0.0);
+  spring_derivatives(machine, Geometry<double>(design, platform, base), platform, base, modes, out);
   const Pose<D> p = constant<D>(platform), b = constant<D>(base);
   for (size_t first = 0; first < places.size(); first += lanes) {
     const int count = static_cast<int>(std::min<size_t>(lanes, places.size() - first));

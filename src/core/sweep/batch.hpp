@@ -66,7 +66,8 @@ inline SweepRows sweep(const sweep_task::Kernel& kernel, sweep_task::Task task, 
 inline Features features_of(const double* designs, std::size_t n) {
   Features all;
   for (std::size_t i = 0; i < n; ++i) {
-    const Features one(*reinterpret_cast<const Design<double>*>(designs + i * design_size));
+    const auto& design = *reinterpret_cast<const Design<double>*>(designs + i * design_size);
+    const Features one = used_size(design) == plain_size ? Features() : Features(design);
     if (i > 0 && one.law != all.law) throw std::invalid_argument("designs must have stiffness laws of one kind");
     all = all | one;
   }
