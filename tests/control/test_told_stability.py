@@ -3,7 +3,7 @@
 import pytest
 
 import flexapod as fx
-from flexapod.control.active_damping import ASSUMPTIONS
+from flexapod.control.active_damping import assumptions
 from flexapod.control.closed_loop_poles import assess, loop_sampling_time
 from flexapod.control.plant import Plant
 
@@ -64,8 +64,8 @@ def test_the_command_and_the_page_say_it(run, result):
 
 def test_control_says_what_its_model_leaves_out(run):
     out = " ".join(run("control", "cubic-isolator", "velocity", "--gain", 300)[1].split())
-    assert ASSUMPTIONS in out
-    assert fx.control.root_locus(ISOLATOR, gains=[1.0, 2.0]).attrs["assumptions"] == ASSUMPTIONS
+    assert assumptions(ISOLATOR) in out
+    assert fx.control.root_locus(ISOLATOR, gains=[1.0, 2.0]).attrs["assumptions"] == assumptions(ISOLATOR)
 
 
 def test_the_sampling_time_follows_a_loop_that_is_faster_than_the_machine():

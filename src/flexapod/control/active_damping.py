@@ -21,15 +21,28 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import response_attributes
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import Linearisation, linearise
+from flexapod.mechanics.viscous_losses import has_losses
 from flexapod.pose import PoseLike
 
-#: What the model of control leaves out, and what that does to its numbers.
-ASSUMPTIONS = (
-    "The machine without control has the friction of its design and no structural loss, and its joints no stiffness. "
-    "Real legs lose energy by themselves, so that control gains less than is told here; with joints that resist "
-    "turning the zeros of force feedback lie above 0 and damping ends below 1: a damping ratio of 1 and zeros at 0 "
-    "are limits of the model."
+_NO_LOSS = (
+    "The machine without control has the friction of its design and no structural loss. Real legs lose energy by "
+    "themselves, so that control gains less than is told here."
 )
+_LOSS = (
+    "The loss factors of the design are left out here: the states of a controlled machine have viscous friction only. "
+    "mechanics.viscous_equivalent, or --loss-frequency of the command, gives the friction that takes as much at one "
+    "frequency."
+)
+_NO_JOINTS = (
+    "Its joints have no stiffness; with joints that resist turning the zeros of force feedback lie above 0 and damping "
+    "ends below 1: a damping ratio of 1 and zeros at 0 are limits of the model."
+)
+
+
+def assumptions(hexapod: Hexapod) -> str:
+    """What the model of control leaves out of a machine, and what that does to its numbers."""
+    joints = hexapod.legs.joint_stiffness
+    return " ".join(filter(None, (_LOSS if has_losses(hexapod) else _NO_LOSS, "" if joints.any else _NO_JOINTS)))
 
 
 def open_zeros(linear: Linearisation, feedback: Feedback, legs: Sequence[int] = ALL_LEGS) -> Array:
@@ -58,7 +71,9 @@ def open_zeros(linear: Linearisation, feedback: Feedback, legs: Sequence[int] = 
     Notes
     -----
     Friction is left out. The zeros are the natural frequencies of the hexapod without the stiffness of the legs that
-    have a force loop, or with the legs locked that have a velocity loop [1]_.
+    have a force loop, or with the legs locked that have a velocity loop [1]_. Joints and a suspension with stiffness
+    lift the zeros of force loops above 0, and integral force feedback then damps a mode at omega with its zero at z by
+    (omega - z) / (2 z) at most.
 
     References
     ----------
@@ -180,7 +195,7 @@ def root_locus(
             "leak_rad_s": leak,
             "best_gain": gain,
             "best_damping": damping,
-            "assumptions": ASSUMPTIONS,
+            "assumptions": assumptions(hexapod),
             **response_attributes(plant.linear),
         },
     )

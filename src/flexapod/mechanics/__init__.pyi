@@ -48,3 +48,4 @@ from .state_space import StateSpace as StateSpace
 from .statics import Equilibrium as Equilibrium
 from .statics import hold as hold
 from .statics import static_equilibrium as static_equilibrium
+from .viscous_losses import viscous_equivalent as viscous_equivalent

@@ -12,6 +12,7 @@ from flexapod.errors import ArgumentError
 from flexapod.excitation.excitation import Excitation, Term
 from flexapod.mechanics.joint_limits import LimitedQuantity, limit_excess
 from flexapod.mechanics.kinematics import inverse_kinematics
+from flexapod.mechanics.viscous_losses import LEFT_OUT, has_losses
 from flexapod.pose import Pose
 from flexapod.simulation.run import SimulationRun
 
@@ -62,8 +63,13 @@ def _of_recording(run: SimulationRun, use: str, term: Term, name: str, highest: 
 
 
 def of_results(run: SimulationRun, result: xr.Dataset) -> list[str]:
-    """Limits of the machine that the motion exceeds, and an energy balance that is off."""
-    return [*_of_limits(run, result), *_of_balance(result)]
+    """Losses left out, limits of the machine that the motion exceeds, and an energy balance that is off."""
+    return [*_of_losses(run), *_of_limits(run, result), *_of_balance(result)]
+
+
+def _of_losses(run: SimulationRun) -> list[str]:
+    """Loss factors that the run leaves out; with a loss frequency its machine has none any more."""
+    return [LEFT_OUT] if has_losses(run.hexapod) else []
 
 
 def _of_limits(run: SimulationRun, result: xr.Dataset) -> list[str]:

@@ -11,6 +11,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, shown
 from flexapod.excitation.excitation import Excitation
 from flexapod.mechanics.inputs import as_hexapod, single_base, single_pose
+from flexapod.mechanics.viscous_losses import viscous_equivalent
 from flexapod.pose import Motion, Pose
 
 Load = Excitation | ArrayLike | None
@@ -44,6 +45,9 @@ class SimulationRun:
     unstretched_length : array_like, optional
         Unstretched lengths of the legs, (6,) m, in place of those that hold the platform. The leg lengths at the pose
         let the platform ring under gravity.
+    loss_frequency : float, optional
+        Frequency, rad/s, at which viscous friction takes as much as the loss factors of the design, which it stands for
+        (see `mechanics.viscous_equivalent`). Left out, loss factors are left out, with a warning.
 
     Raises
     ------
@@ -74,6 +78,7 @@ class SimulationRun:
     start: Start = "rest"
     base: Pose | ArrayLike | None = None
     unstretched_length: ArrayLike | None = None
+    loss_frequency: float | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "pose", single_pose(as_hexapod(self.hexapod), self.pose))
@@ -82,6 +87,9 @@ class SimulationRun:
                 "base is an Excitation; it must be the pose of the base at rest. Did you mean base_motion?"
             )
         object.__setattr__(self, "base", single_base(self.hexapod, self.base))
+        if self.loss_frequency is not None:
+            machine = viscous_equivalent(self.hexapod, self.loss_frequency, self.pose, base=self.base)
+            object.__setattr__(self, "hexapod", machine)
         for name in ("base_motion", "leg_command"):
             value = getattr(self, name)
             if not (value is None or isinstance(value, Excitation)):

@@ -46,6 +46,7 @@ def simulate(
     start: Start = "rest",
     base: Pose | ArrayLike | None = None,
     unstretched_length: ArrayLike | None = None,
+    loss_frequency: float | None = None,
     joint: JointModel = "universal",
     rtol: float = 1e-9,
     atol: float | None = None,
@@ -90,6 +91,9 @@ def simulate(
         Pose of the base at rest; the inertial frame by default.
     unstretched_length : array_like, optional
         Unstretched lengths of the legs, (6,) m, in place of those that hold the platform.
+    loss_frequency : float, optional
+        Frequency, rad/s, at which viscous friction takes as much as the design's loss factors, which it stands for (see
+        `mechanics.viscous_equivalent`). Left out, loss factors are left out, with a warning.
     joint : {"universal", "spin_free"}, optional
         Model of the joint between a leg and the base.
     rtol : float, optional
@@ -145,8 +149,8 @@ def simulate(
     Warns
     -----
     UserWarning
-        If a recording is sampled too coarsely for the machine, drifts, or begins off zero; if the motion exceeds a
-        limit of the machine, or the energy balance is off.
+        If a recording is sampled too coarsely for the machine, drifts, or begins off zero; if the design's loss factors
+        are left out; if the motion exceeds a limit of the machine, or the energy balance is off.
 
     See Also
     --------
@@ -183,6 +187,7 @@ def simulate(
         start=start,
         base=base,
         unstretched_length=unstretched_length,
+        loss_frequency=loss_frequency,
     )
     dataset = simulate_many(
         [run],
@@ -200,6 +205,8 @@ def simulate(
         threads=threads,
         progress=progress,
     )
+    if loss_frequency is not None:
+        dataset.attrs["loss_frequency_rad_s"] = float(loss_frequency)
     return _complete(dataset.isel(run=0))
 
 

@@ -15,7 +15,7 @@ from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.pose import Pose, PoseLike
 from flexapod.rotations import skew
 from flexapod.vibration.grid import asked, grid_around
-from flexapod.vibration.harmonic import SteadyResponse, complex_poles, loss_factors, steady_response
+from flexapod.vibration.harmonic import SteadyResponse, complex_poles, leg_losses, losses, steady_response
 
 MOTION_UNITS = [unit_of(axis) for axis in AXES]
 WRENCH_UNITS = [unit_of(axis, "N", "N m") for axis in AXES]
@@ -28,7 +28,7 @@ def transmissibility(
     omega: ArrayLike | None = None,
     frequency: ArrayLike | None = None,
     point: ArrayLike = ZERO,
-    loss_factor: ArrayLike = 0.0,
+    loss_factor: ArrayLike | None = None,
     base: PoseLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
@@ -49,8 +49,8 @@ def transmissibility(
     point : array_like, optional
         Output point, (3,) m, in the platform's frame.
     loss_factor : float or array_like, optional
-        Structural damping of the legs' springs, one number or (6,): their stiffness is K (1 + i loss_factor). It adds
-        to the viscous friction of the design.
+        Structural damping of the legs' springs, one number or (6,), in place of `legs.loss_factor` of the design: their
+        stiffness is K (1 + i loss_factor). It adds to the viscous friction. The joints have their own of the design.
     base : Pose or array_like, optional
         Pose of the base at rest; the inertial frame by default.
     force, moment : array_like, optional
@@ -105,9 +105,11 @@ def transmissibility(
     >>> abs(response.absolute.sel(output="z", base="z")).values.round(3)
     array([1.048, 0.015])
     """
-    w, eta = asked(omega, frequency), loss_factors(loss_factor)
+    w = asked(omega, frequency)
+    leg_losses(hexapod, loss_factor)
     pose = single_pose(hexapod, pose)
     linear = linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
+    eta = losses(hexapod, linear, loss_factor)
     if w is None:
         w = grid_around(complex_poles(linear, eta))
     to_point = shift(pose, point)
@@ -157,7 +159,7 @@ def shift(pose: Pose, point: ArrayLike) -> Array:
 
 def leg_forces(linear: Linearisation, steady: SteadyResponse, eta: Array) -> Complex:
     """(n, 6, 6) N: change of the legs' spring forces per base displacement."""
-    stiffness = linear.leg_stiffness * (1 + 1j * eta)
+    stiffness = linear.leg_stiffness * (1 + 1j * eta[:6])
     return -stiffness[:, None] * (linear.H.T @ steady.relative)
 
 
@@ -169,6 +171,7 @@ def attributes(hexapod: Hexapod, pose: Pose, point: ArrayLike, eta: Array, linea
         "position_m": pose.position.tolist(),
         "rpy_rad": pose.rpy.tolist(),
         "point_m": np.asarray(point, dtype=float).tolist(),
-        "loss_factor": eta.tolist(),
+        "loss_factor": eta[:6].tolist(),
+        "joint_loss_factor": hexapod.legs.joint_stiffness.loss_factor.tolist(),
         **response_attributes(linear),
     }

@@ -12,7 +12,7 @@ from flexapod.errors import ArgumentError, shown, told_apart
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import linearise
 from flexapod.pose import PoseLike
-from flexapod.vibration.harmonic import complex_poles
+from flexapod.vibration.harmonic import complex_poles, losses
 
 SAMPLES = 500
 _BELOW, _ABOVE = 0.2, 1.5  # of the lowest and the highest mode: the default band
@@ -26,7 +26,7 @@ def frequency_grid(
     omega_min: float | None = None,
     omega_max: float | None = None,
     samples: int = SAMPLES,
-    loss_factor: ArrayLike = 0.0,
+    loss_factor: ArrayLike | None = None,
     base: PoseLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
@@ -47,7 +47,8 @@ def frequency_grid(
     samples : int, optional
         Number of frequencies spaced equally by logarithm over the band. Up to 13 more lie around each resonance.
     loss_factor : float or array_like, optional
-        Structural damping of the legs' springs, one number or (6,).
+        Structural damping of the legs' springs, one number or (6,), in place of `legs.loss_factor` of the design. The
+        joints have their own of the design.
     base : Pose or array_like, optional
         Pose of the base; the inertial frame by default.
     force, moment : array_like, optional
@@ -82,7 +83,7 @@ def frequency_grid(
     array([ 5.7, 75.3])
     """
     linear = linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
-    return grid_around(complex_poles(linear, loss_factor), omega_min, omega_max, samples)
+    return grid_around(complex_poles(linear, losses(hexapod, linear, loss_factor)), omega_min, omega_max, samples)
 
 
 def band(poles: Complex, omega_min: float | None = None, omega_max: float | None = None) -> tuple[float, float]:

@@ -10,6 +10,7 @@ from scipy.linalg import eigh
 
 from flexapod.checks import floats
 from flexapod.conventions import Array, Complex
+from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import Linearisation
 
@@ -30,8 +31,13 @@ class SteadyResponse(NamedTuple):
     command: Complex
 
 
-def loss_factors(value: ArrayLike) -> Array:
-    """One loss factor for all legs or one for each, as (6,); raises ArgumentError unless finite and not negative."""
+def leg_losses(hexapod: Hexapod, value: ArrayLike | None) -> Array:
+    """Loss factors of the springs along the legs, (6,): those given, one or six, or those of the design.
+
+    Raises ArgumentError unless they are finite and not negative.
+    """
+    if value is None:
+        return hexapod.legs.loss_factor
     try:
         eta = np.broadcast_to(floats(value), (6,))
     except (TypeError, ValueError) as error:
@@ -44,15 +50,22 @@ def loss_factors(value: ArrayLike) -> Array:
     return eta
 
 
-def steady_response(linear: Linearisation, omega: Array, loss_factor: ArrayLike = 0.0) -> SteadyResponse:
+def losses(hexapod: Hexapod, linear: Linearisation, value: ArrayLike | None) -> Array:
+    """Loss factors of all springs, the columns of `linear.springs`, (m,); value: of the legs, None for the design's."""
+    eta = linear.losses.copy()
+    eta[:6] = leg_losses(hexapod, value)
+    return eta
+
+
+def steady_response(linear: Linearisation, omega: Array, losses: ArrayLike = 0.0) -> SteadyResponse:
     """Steady response at omega (n,) rad/s; infinite at an undamped resonance.
 
-    The legs' springs are K_i (1 + i eta_i), against base motion and against commands alike. Solved in the undamped
-    modes, where K - omega^2 M is (omega_m - omega)(omega_m + omega): its cancellation near resonance costs no digits.
+    losses: of each spring, (m,) or one number. A spring's stiffness is k (1 + i eta), against base motion and against
+    commands alike. Solved in the undamped modes, where K - omega^2 M is (omega_m - omega)(omega_m + omega): its
+    cancellation near resonance costs no digits.
     """
-    eta = loss_factors(loss_factor)
     out = SteadyResponse(*(np.empty((omega.size, 6, 6), dtype=np.complex128) for _ in range(4)))
-    basis = _Modes(linear, eta)
+    basis = _Modes(linear, losses)
     # Below the highest resonance the motion is near the base's, above it nearly none is left: what is small is solved
     # for, and the other is found from it without a small difference.
     fast = omega**2 > basis.square[-1]
@@ -68,14 +81,14 @@ def steady_response(linear: Linearisation, omega: Array, loss_factor: ArrayLike 
 class _Modes:
     """The dynamic stiffness and its right-hand sides in undamped modes."""
 
-    def __init__(self, linear: Linearisation, eta: Array) -> None:
+    def __init__(self, linear: Linearisation, losses: ArrayLike) -> None:
         square, self.shape = eigh(0.5 * (linear.K + linear.K.T), linear.M)
         left = self.shape.T
         self.square = square
         self.skew = left @ (0.5 * (linear.K - linear.K.T)) @ self.shape  # only a wrench that turns makes K unsymmetric
-        F = linear.springs
-        losses = np.concatenate([eta, linear.losses[6:]])  # of the legs as asked for, of the joints as designed
-        self.loss = left @ (F * losses) @ F.T @ self.shape
+        eta = np.broadcast_to(losses, linear.springs.shape[1])
+        along, others = linear.H * (eta[:6] * linear.leg_stiffness), linear.springs[:, 6:]
+        self.loss = left @ (along @ linear.H.T + (others * eta[6:]) @ others.T) @ self.shape
         self.friction = left @ linear.C @ self.shape
         # Rigid motion with the base meets no spring, and a turned base turns gravity: K carry + K_b is known without
         # the cancellation, which would drown slow motion. It meets no friction either, but in the model "spin_free".
@@ -90,7 +103,7 @@ class _Modes:
             left @ linear.C_b,
             left @ linear.K_b - 1j * self.loss @ left @ linear.M @ linear.carry,
         )
-        command = linear.H * (linear.command_stiffness * (1 + 1j * eta))  # wrench of unit commands
+        command = linear.H * (linear.command_stiffness + 1j * eta[:6] * linear.leg_stiffness)  # wrench of unit commands
         self.given = np.hstack([left, left @ command])
 
     def solve(self, omega: Array, absolute: NDArray[np.bool_]) -> Complex:
@@ -119,12 +132,11 @@ def _solve(Z: Complex, right: Complex) -> Complex:
         return out
 
 
-def complex_poles(linear: Linearisation, loss_factor: ArrayLike = 0.0) -> Complex:
-    """Six poles (rad/s) with Im > 0 by size, of a motion e^{pt}, with the legs' loss factor: as seen at omega > 0."""
-    eta = loss_factors(loss_factor)
-    if not eta.any():
+def complex_poles(linear: Linearisation, losses: ArrayLike = 0.0) -> Complex:
+    """Six poles (rad/s) with Im > 0 by size, of a motion e^{pt}, with the springs' losses: as seen at omega > 0."""
+    if not np.any(losses):
         return linear.modes().pole.astype(np.complex128)
-    modes = _Modes(linear, eta)
+    modes = _Modes(linear, losses)
     zero, scale = np.zeros((6, 6)), np.sqrt(np.abs(modes.square).max())
     stiffness = np.diag(modes.square) + modes.skew + 1j * modes.loss
     A = np.block([[zero, scale * np.eye(6)], [-stiffness / scale, -modes.friction]])

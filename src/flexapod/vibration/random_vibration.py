@@ -20,7 +20,7 @@ from flexapod.pose import PoseLike
 from flexapod.vibration.base_spectrum import Density, ready_made, tabulated
 from flexapod.vibration.frequency_response import MOTION_UNITS, attributes, leg_forces, shift
 from flexapod.vibration.grid import asked, grid_around
-from flexapod.vibration.harmonic import complex_poles, loss_factors, steady_response
+from flexapod.vibration.harmonic import complex_poles, leg_losses, losses, steady_response
 from flexapod.vibration.quadrature import Panels, graded
 
 QUANTITIES = {
@@ -42,7 +42,7 @@ def random_response(
     of: Quantity = "acceleration",
     axis: str | None = None,
     point: ArrayLike = ZERO,
-    loss_factor: ArrayLike = 0.0,
+    loss_factor: ArrayLike | None = None,
     base: PoseLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
@@ -78,7 +78,8 @@ def random_response(
     point : array_like, optional
         Output point, (3,) m, in the platform's frame.
     loss_factor : float or array_like, optional
-        Structural damping of the legs' springs, one number or (6,).
+        Structural damping of the legs' springs, one number or (6,), in place of `legs.loss_factor` of the design. The
+        joints have their own of the design.
     base : Pose or array_like, optional
         Pose of the base at rest; the inertial frame by default.
     force, moment : array_like, optional
@@ -129,9 +130,10 @@ def random_response(
     >>> round(1e6 * float(response.rms_displacement.sel(output="z")), 1)  # micrometres
     4.6
     """
-    eta = loss_factors(loss_factor)
+    leg_losses(hexapod, loss_factor)
     pose = single_pose(hexapod, pose)
     linear = linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
+    eta = losses(hexapod, linear, loss_factor)
     _check_stands(linear)
     poles = complex_poles(linear, eta)
     given = asked(omega, frequency)

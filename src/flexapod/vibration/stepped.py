@@ -25,7 +25,7 @@ from flexapod.pose import Motion, Pose, PoseLike, unpack
 from flexapod.simulation.integrator import IntegratorOptions, integrate
 from flexapod.simulation.run import SimulationRun
 from flexapod.vibration.grid import asked, grid_around
-from flexapod.vibration.harmonic import complex_poles, steady_response
+from flexapod.vibration.harmonic import complex_poles, losses, steady_response
 
 _STEPS = 100  # of the default grid, beside the points around resonances
 _SAMPLES = 64  # of a period
@@ -108,7 +108,8 @@ def stepped_sine(
     steady state, one period of the full equations of motion (Eq. 35) is integrated, and the twelve start values are
     corrected by the period's closing error through I - exp(A T) of the linearised machine, improved by Broyden's
     updates [2]_, until the correction is below `tolerance` or shrinks no more. So there is no transient for friction to
-    end. All frequencies run at once on all threads.
+    end. All frequencies run at once on all threads. Loss factors of the design act as the viscous friction that takes
+    as much at the frequency of the base (see `mechanics.viscous_equivalent`), and exactly in `linear`.
 
     References
     ----------
@@ -127,12 +128,13 @@ def stepped_sine(
     positive(amplitude, "amplitude", unit_of(axis))
     pose = single_pose(hexapod, pose)
     tangent = linearise(hexapod, pose, joint=joint)
+    eta = losses(hexapod, tangent, None)
     w = asked(omega, frequency)
     if w is None:
-        w = grid_around(complex_poles(tangent), samples=_STEPS)
+        w = grid_around(complex_poles(tangent, eta), samples=_STEPS)
     if (w == 0).any():
         raise ArgumentError("omega holds zero; a stepped sine needs frequencies > 0. Use transmissibility at zero.")
-    shaker = _Shaker(hexapod, pose, tangent, float(amplitude), axis, joint)
+    shaker = _Shaker(hexapod, pose, tangent, eta, float(amplitude), axis, joint)
     linear = shaker.linear_response(w)
     positive(tolerance, "tolerance")
     found = _shoot(shaker, w, linear, tolerance, progress)
@@ -151,6 +153,7 @@ class _Shaker:
     hexapod: Hexapod
     pose: Pose
     tangent: Linearisation
+    losses: Array
     amplitude: float
     axis: str
     joint: JointModel
@@ -158,7 +161,7 @@ class _Shaker:
     def linear_response(self, omega: Array) -> Complex:
         """(n, 6): absolute motion per base motion."""
         j = AXES.index(self.axis)
-        return steady_response(self.tangent, omega).absolute[:, :, j]
+        return steady_response(self.tangent, omega, self.losses).absolute[:, :, j]
 
     def travel(self, response: Complex) -> Array:
         """(n,): largest motion of a platform joint by a linear response, over the leg's length."""
@@ -171,8 +174,8 @@ class _Shaker:
         """Displacements (n, _SAMPLES, 6), state (n, 12) after a period, and which runs came so far."""
         shaken = [harmonic(self.axis, self.amplitude, w) for w in omega]
         runs = [
-            SimulationRun(self.hexapod, self.pose, base_motion=motion, start=self._motion(z))
-            for motion, z in zip(shaken, state, strict=True)
+            SimulationRun(self.hexapod, self.pose, base_motion=motion, start=self._motion(z), loss_frequency=w)
+            for motion, z, w in zip(shaken, state, omega, strict=True)
         ]
         times = (TWO_PI / omega)[:, None] * np.arange(_SAMPLES + 1) / _SAMPLES
         path = integrate(runs, times, joint=self.joint, options=IntegratorOptions(rtol=1e-11))
@@ -188,18 +191,22 @@ class _Shaker:
 class _ModalState:
     """States as modal amplitudes: omega_m q and its rate, in which the free motion of every mode is a circle."""
 
-    def __init__(self, tangent: Linearisation) -> None:
+    def __init__(self, tangent: Linearisation, losses: Array) -> None:
         square, shape = eigh(0.5 * (tangent.K + tangent.K.T), tangent.M)
         natural = np.sqrt(np.abs(square))
         stiffness, friction = (shape.T @ m @ shape for m in (tangent.K, tangent.C))
         zero = np.zeros((6, 6))
         self.rate = np.block([[zero, np.diag(natural)], [-stiffness / natural, -friction]])
+        stretched = shape.T @ tangent.springs
+        self.lost = np.zeros((12, 12))  # what losses add to the rates, times the frequency
+        self.lost[6:, 6:] = -(stretched * losses) @ stretched.T
         inverse = shape.T @ tangent.M
         self.from_state = np.block([[natural[:, None] * inverse, zero], [zero, inverse]])
 
     def closing(self, omega: Array) -> Array:
         """(n, 12, 12): the change of start values that closes a period, per closing error, by the tangent."""
-        free = expm(self.rate * (TWO_PI / omega)[:, None, None])
+        w = omega[:, None, None]
+        free = expm((self.rate + self.lost / w) * (TWO_PI / w))
         return np.linalg.pinv(np.eye(12) - free, rcond=1e-15)
 
 
@@ -211,7 +218,7 @@ def _shoot(
     possible = shaker.travel(linear) < _LARGEST  # false where infinite
     found.status[~possible] = STATUS[2]
     active = np.flatnonzero(possible)
-    modal = _ModalState(shaker.tangent)
+    modal = _ModalState(shaker.tangent, shaker.losses)
     to_state = np.linalg.inv(modal.from_state)
     start = shaker.amplitude * np.concatenate([linear.imag, (1j * omega[:, None] * linear).imag], axis=1)[active]
     z, gain = start @ modal.from_state.T, modal.closing(omega[active])

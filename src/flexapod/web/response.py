@@ -10,7 +10,7 @@ from flexapod.conventions import AXES, LEGS, Array
 from flexapod.mechanics.linearisation import linearise
 from flexapod.vibration.frequency_response import transmissibility
 from flexapod.vibration.grid import grid_around
-from flexapod.vibration.harmonic import complex_poles
+from flexapod.vibration.harmonic import complex_poles, losses
 from flexapod.web import requests
 from flexapod.web.answers import FrequencyResponse, ShakenBase
 from flexapod.web.geometry import farthest
@@ -25,10 +25,14 @@ DRAWN = 0.15  #: greatest displacement drawn, as a share of the platform's size
 def response(asked: dict[str, Any]) -> FrequencyResponse:
     """Magnitude and phase of one quantity by output, input and frequency."""
     question, quantity = requests.question(asked), requests.choice(asked, "quantity", QUANTITIES)
-    loss = requests.number(asked, "loss_factor", 0.0, 0.0, 2.0)
+    loss = requests.number(asked, "loss_factor", 0.0, 0.0, 2.0) or None  # 0: those of the design
     linear = linearise(question.hexapod, question.pose, joint=question.joint)
     modes = linear.modes()
-    omega = grid_around(complex_poles(linear, loss), omega_max=ABOVE * modes.omega.max(), samples=POINTS)
+    omega = grid_around(
+        complex_poles(linear, losses(question.hexapod, linear, loss)),
+        omega_max=ABOVE * modes.omega.max(),
+        samples=POINTS,
+    )
     data = transmissibility(question.hexapod, question.pose, omega=omega, loss_factor=loss, joint=question.joint)
     values = data[quantity]
     _, outputs, inputs = values.dims

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.shell_completion import CompletionItem
 
-from flexapod.cli.options.quantities import LENGTH, POSITIVE_LENGTH, SIX
+from flexapod.cli.options.quantities import FREQUENCY, LENGTH, POSITIVE_LENGTH, SIX
 from flexapod.conventions import JOINT_MODELS
 from flexapod.errors import OutputError
 from flexapod.output_files import check_directory, check_file
@@ -204,6 +204,13 @@ exaggeration_option = click.option(
     default=None,
     metavar="FACTOR",
     help="How many times larger a moving picture shows the motion. Default: so that it is seen well.",
+)
+loss_frequency_option = click.option(
+    "--loss-frequency",
+    type=FREQUENCY,
+    default=None,
+    metavar="RAD/S",
+    help="Frequency at which viscous friction takes as much as the design's loss factors. Default: no losses.",
 )
 json_option = click.option("--json", "as_json", is_flag=True, help="Print the results as JSON, in SI units.")
 

@@ -46,6 +46,7 @@ class Options:
     duration: float | None
     force_limit: float | None
     sensor_noise: float | None
+    loss_frequency: float | None
     seed: int
     out: Path | None
 
@@ -106,6 +107,7 @@ run_options = common.stack(
         "--force-limit", type=Quantity("force", need="> 0"), metavar="N", help="Largest force of an actuator."
     ),
     click.option("--sensor-noise", type=common.POSITIVE, help="RMS noise of the first measurement, in its unit."),
+    common.loss_frequency_option,
     click.option("--seed", type=common.SEED, default=0, show_default=True, help="Of shaking and noise."),
     common.out_option("Where to write the report and figures. Default: nothing is written."),
 )

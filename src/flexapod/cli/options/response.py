@@ -44,7 +44,9 @@ response_options = common.stack(
         help="Output point, m, platform frame.",
     ),
     click.option(
-        "--loss-factor", type=common.NOT_NEGATIVE, default=0.0, show_default=True, help="Of the legs' springs."
+        "--loss-factor",
+        type=common.NOT_NEGATIVE,
+        help="Of the legs' springs, in place of the design's legs.loss_factor.",
     ),
     click.option(
         "--amplitude",

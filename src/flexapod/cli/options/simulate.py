@@ -28,6 +28,7 @@ simulate_options = common.stack(
         show_default=True,
         help="The platform is at rest in the room, or moves with the base, when it begins.",
     ),
+    common.loss_frequency_option,
     click.option("--unloaded", is_flag=True, help="Let gravity ring: the legs are unstretched at the pose."),
     click.option("--samples", type=common.count(2), default=None, help="Default: 20 a period of the highest mode."),
     click.option("--rtol", type=common.NUMBER, default=1e-9, show_default=True, help="Relative error of a step."),

@@ -14,7 +14,7 @@ import xarray as xr
 from flexapod.cli.options import common
 from flexapod.cli.options.control import Options
 from flexapod.cli.output.stages import Report
-from flexapod.control.active_damping import root_locus
+from flexapod.control.active_damping import assumptions, root_locus
 from flexapod.control.closed_loop_poles import loop_sampling_time
 from flexapod.control.controlled_response import controlled_transmissibility
 from flexapod.control.controllers import GAIN_UNIT, PID, damping_law, pid_units
@@ -32,6 +32,7 @@ from flexapod.excitation.random_phases import random_motion
 from flexapod.excitation.spectra import flat_spectrum
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.modes import natural_modes
+from flexapod.mechanics.viscous_losses import viscous_equivalent
 from flexapod.pose import Pose
 from flexapod.report.studies.control import ControlFindings, Fact, study
 from flexapod.report.study import Study
@@ -69,7 +70,9 @@ def compute(options: Options, report: Report) -> Study:
     hexapod, pose = common.machine(options.design, options.changes, options.pose)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the study says what the library warns of
-        return study(hexapod, _find(hexapod, pose, options, report))
+        omega = options.loss_frequency
+        machine = hexapod if omega is None else viscous_equivalent(hexapod, omega, pose)
+        return study(hexapod, _find(machine, pose, options, report))
 
 
 def _find(hexapod: Hexapod, pose: Pose, options: Options, report: Report) -> ControlFindings:
@@ -95,6 +98,7 @@ def _find(hexapod: Hexapod, pose: Pose, options: Options, report: Report) -> Con
         run, shaking = _run(hexapod, pose, sampled, shaken, options, report), _shaking(shaken, options)
     return ControlFindings(
         pose=pose,
+        assumptions=assumptions(hexapod),
         ideal=ideal,
         sampled=real,
         recommended=recommended,

@@ -22,7 +22,7 @@ from flexapod.report.studies.response import ResponseFindings, study
 from flexapod.report.study import Study
 from flexapod.vibration.frequency_response import transmissibility
 from flexapod.vibration.grid import band, grid_around
-from flexapod.vibration.harmonic import complex_poles
+from flexapod.vibration.harmonic import complex_poles, losses
 from flexapod.vibration.random_vibration import random_response
 from flexapod.vibration.stepped import stepped_sine
 
@@ -33,7 +33,8 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
     quiet: without progress.
     """
     _check(given)
-    poles = complex_poles(linearise(hexapod, pose, joint=given["joint"]), given["loss_factor"])
+    linear = linearise(hexapod, pose, joint=given["joint"])
+    poles = complex_poles(linear, losses(hexapod, linear, given["loss_factor"]))
     ends = given["omega_min"], given["omega_max"]
     try:
         low, high = band(poles, *ends)
@@ -82,10 +83,12 @@ def _check(given: dict[str, Any]) -> None:
             "loads and leg commands are simulated in time: flexapod simulate --random force:z flat:10N:1Hz:100Hz. In "
             "Python abs(transmissibility(...).compliance)**2 turns the density of a force into that of the motion."
         )
-    if given["amplitude"] is not None and (given["source"] != "base" or given["loss_factor"] or any(given["point"])):
+    if given["amplitude"] is not None and (
+        given["source"] != "base" or given["loss_factor"] is not None or any(given["point"])
+    ):
         raise click.UsageError(
-            "--amplitude shakes the base of the non-linear machine, whose friction is viscous: use it with --from base "
-            "and without --loss-factor and --point."
+            "--amplitude shakes the base of the non-linear machine, whose loss factors are those of the design: use it "
+            "with --from base and without --loss-factor and --point."
         )
 
 

@@ -12,7 +12,6 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from flexapod import plots
-from flexapod.control.active_damping import ASSUMPTIONS
 from flexapod.control.closed_loop_poles import ClosedLoop
 from flexapod.conventions import TWO_PI, printed_unit
 from flexapod.design.hexapod import Hexapod
@@ -38,11 +37,12 @@ class Fact(NamedTuple):
 class ControlFindings:
     """What was computed about a control law.
 
-    ideal, sampled: its closed loops; gains, locus, run: where made. law, shaking: what was given or chosen. gain: of a
-    decentralised law. axis: the one drawn in time.
+    assumptions: what its model leaves out. ideal, sampled: its closed loops; gains, locus, run: where made. law,
+    shaking: what was given or chosen. gain: of a decentralised law. axis: the one drawn in time.
     """
 
     pose: Pose
+    assumptions: str
     ideal: ClosedLoop
     sampled: ClosedLoop
     recommended: float
@@ -98,7 +98,7 @@ def _drawing(name: str, title: str, plot: str, data: xr.Dataset | None, words: s
 
 def cautions(f: ControlFindings) -> list[Caution]:
     """What to beware of in the loop."""
-    found = [Caution("model", ASSUMPTIONS)]
+    found = [Caution("model", f.assumptions)]
     if f.response.attrs["caution"]:
         found.insert(0, Caution("unstable", f.response.attrs["caution"]))
     if f.dt > f.recommended * (1 + 1e-9):
