@@ -54,7 +54,7 @@ class Pinocchio:
     def __init__(self, model, chosen: list[str], size: float) -> None:
         self.model, self.data = model, model.createData()
         self.springs: list[tuple[int, float, float]] = []  # joint, stiffness, rest
-        self.closures: list[tuple[int, int, float]] = []  # frame, frame, friction
+        self.closures: list[tuple[int, int, float, np.ndarray, np.ndarray]] = []  # frames, friction, springs
         first = [model.joints[model.getJointId(name)] for name in chosen]
         self.chosen = np.concatenate([np.arange(joint.idx_v, joint.idx_v + joint.nv) for joint in first])
         self.start = pin.neutral(model)
@@ -63,15 +63,18 @@ class Pinocchio:
     def spring(self, joint: str, stiffness: float, rest: float) -> None:
         self.springs.append((self.model.getJointId(joint), stiffness, rest))
 
-    def close(self, ends, friction: float) -> None:
-        """Two ends of a loop that meet: for each, a link and a point of it."""
+    def close(self, ends, friction: float, stiffness=0, rest=0) -> None:
+        """Two ends of a loop that meet: for each, a link and a point of it.
+
+        stiffness, rest: of springs about the axes of the first link against turns of the second.
+        """
         frames = []
         for link, point in ends:
             frame = self.model.frames[self.model.getFrameId(link)]
             placement = frame.placement * pin.SE3(np.eye(3), np.array(point))
             name = f"end {len(self.model.frames)}"
             frames.append(self.model.addFrame(pin.Frame(name, frame.parentJoint, placement, pin.OP_FRAME)))
-        self.closures.append((*frames, friction))
+        self.closures.append((*frames, friction, np.broadcast_to(stiffness, 3), np.broadcast_to(rest, 3)))
 
     def tree(self, q) -> Tree:
         model = self.model
@@ -81,15 +84,26 @@ class Pinocchio:
         upper = np.triu(pin.crba(model, data, q))
         force = -pin.computeGeneralizedGravity(model, data, q)
         for joint, stiffness, rest in self.springs:
-            force[model.joints[joint].idx_v] -= stiffness * (q[model.joints[joint].idx_q] - rest)
+            at = model.joints[joint].idx_q
+            turned = np.arctan2(q[at + 1], q[at]) if model.joints[joint].nq == 2 else q[at]  # a hinge without limits
+            force[model.joints[joint].idx_v] -= stiffness * (turned - rest)
         damping, closure, gap = np.diag(model.damping), [], []
-        for a, b, friction in self.closures:
+        for a, b, friction, stiffness, rest in self.closures:
             between = self._jacobian(a) - self._jacobian(b)
+            if np.any(stiffness):
+                turned = data.oMf[a].rotation.T @ data.oMf[b].rotation @ self._started(a, b).T
+                force += between[3:].T @ data.oMf[a].rotation @ (stiffness * (pin.log3(turned) - rest))
             closure.append(between[:3])
             gap.append(data.oMf[a].translation - data.oMf[b].translation)
             damping = damping + friction * between[3:].T @ between[3:]
         platform = self._jacobian(model.getFrameId("platform"))
         return Tree(upper + np.triu(upper, 1).T, force, damping, np.vstack(closure), np.concatenate(gap), platform)
+
+    def _started(self, a: int, b: int) -> np.ndarray:
+        """Rotation of one frame against another at the start."""
+        data = self.model.createData()
+        pin.framesForwardKinematics(self.model, data, self.start)
+        return data.oMf[a].rotation.T @ data.oMf[b].rotation
 
     def _jacobian(self, frame: int) -> np.ndarray:
         return pin.getFrameJacobian(self.model, self.data, frame, WORLD_AXES)
@@ -108,7 +122,8 @@ def urdf(file: Path, size: float, gravity: bool = True) -> Pinocchio:
         loaded.spring(spring["joint"], spring["stiffness"], spring["rest_position"] * gravity)
     for closure in beside["closures"]:
         ends = [(closure[f"link_{side}"], closure[f"point_{side}"]) for side in "ab"]
-        loaded.close(ends, closure["spherical_damping"])
+        stiffness, rest = (np.array(closure.get(f"spherical_{key}", np.zeros(3))) for key in ("stiffness", "rest"))
+        loaded.close(ends, closure["spherical_damping"], stiffness, rest * gravity)
     return loaded
 
 
@@ -121,6 +136,7 @@ def sdf(file: Path, size: float, gravity: bool = True) -> Pinocchio:
     placed = {name: _pose(link) if name != "base" else pin.SE3.Identity() for name, link in links.items()}
     carrier = {"base": 0}
     damping: list[float] = [0.0] * 6
+    hinges = []
     carrier["platform"] = model.addJoint(0, pin.JointModelFreeFlyer(), placed["platform"], "platform_free")
     for joint in world.iter("joint"):
         kind, name, parent, child = (
@@ -138,6 +154,8 @@ def sdf(file: Path, size: float, gravity: bool = True) -> Pinocchio:
             index = model.addJoint(index, make(_numbers(axis, "xyz")), between, f"{name}_{axis.tag}")
             between = pin.SE3.Identity()
             damping.append(float(axis.findtext("dynamics/damping")))
+            if axis.find("dynamics/spring_stiffness") is not None and kind == "universal":
+                hinges.append((f"{name}_{axis.tag}", axis.find("dynamics")))
         carrier[child] = index
     for name, index in carrier.items():
         if index:
@@ -146,6 +164,9 @@ def sdf(file: Path, size: float, gravity: bool = True) -> Pinocchio:
     model.damping = np.array(damping)
     loaded = Pinocchio(model, ["platform_free"], size)
     loaded.steps = STEP * np.array([size, size, size, 1, 1, 1])
+    for name, dynamics in hinges:
+        stiffness, rest = (float(dynamics.findtext(f"spring_{key}")) for key in ("stiffness", "reference"))
+        loaded.spring(name, stiffness, rest * gravity)
     for joint in world.iter("joint"):
         if joint.get("type") == "prismatic":
             stiffness, rest = (joint.findtext(f"axis/dynamics/spring_{key}") for key in ("stiffness", "reference"))

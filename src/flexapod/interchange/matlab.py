@@ -14,6 +14,7 @@ from scipy.io import savemat
 from flexapod import __version__
 from flexapod.conventions import ROTATIONS, JointModel
 from flexapod.design.hexapod import Hexapod
+from flexapod.interchange.multibody import left_out
 from flexapod.mechanics.inputs import ZERO, single_pose
 from flexapod.mechanics.linearisation import linearise
 from flexapod.output_files import output_path, write_file
@@ -47,8 +48,8 @@ def write_mat(
     The file has version 5. It holds the matrices ``A`` (12, 12), ``B`` (12, 24),
     ``C`` (24, 12) and ``D`` (24, 24) in SI units and radians; cell arrays of text ``state_names``, ``state_units`` and
     the same for ``input`` and ``output``; ``design``, ``digest``, ``joint`` and ``flexapod`` (the version);
-    ``pose_position`` (3, 1) in m, ``pose_rotation`` (3, 3) and ``pose_rpy`` (3, 1) in rad; and ``rest_leg_force``
-    (6, 1) in N.
+    ``pose_position`` (3, 1) in m, ``pose_rotation`` (3, 3) and ``pose_rpy`` (3, 1) in rad; ``rest_leg_force`` (6, 1) in
+    N; and ``left_out``, a cell array of text that says what of the design the states leave out.
 
     Parameters
     ----------
@@ -114,6 +115,7 @@ def write_mat(
         "pose_rotation": where.matrix,
         "pose_rpy": where.rpy,
         "rest_leg_force": tangent.rest.leg_force,
+        "left_out": _cells(left_out(hexapod, where, "mat")),
     }
     for kind, names in (("state", system.states), ("input", system.inputs), ("output", system.outputs)):
         content |= {f"{kind}_names": _cells(names), f"{kind}_units": _cells([_unit(name) for name in names])}

@@ -16,7 +16,7 @@ from flexapod.conventions import TWO_PI, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import DesignError
 from flexapod.interchange.multibody import Body, Leg, Machine, at_rest
-from flexapod.interchange.xml_files import add, document
+from flexapod.interchange.xml_files import add, document, note_left_out
 from flexapod.mechanics.modes import natural_modes
 from flexapod.output_files import output_path, write_file
 from flexapod.pose import PoseLike
@@ -84,7 +84,9 @@ def write_mjcf(
 
     The loops are closed by ``connect`` constraints. Where a spherical joint has friction, a ball joint with this
     friction carries a small piece cut out of the platform, and a ``weld`` joins the piece to the rest: together they
-    have the platform's mass and inertia. The joints between base and legs are universal joints, as in the exact model.
+    have the platform's mass and inertia. Where it has stiffness, three hinges along the leg's axes stand for the ball
+    joint, for a ball joint has one stiffness and a flexure two. The joints between base and legs are universal joints,
+    as in the exact model. What the file leaves out of a design is said in a comment in it.
 
     Examples
     --------
@@ -113,6 +115,7 @@ def mjcf(hexapod: Hexapod, pose: PoseLike | None = None, timestep: float | None 
         )
     root = ET.Element("mujoco", model=machine.name)
     root.append(ET.Comment(f" Written by Flexapod {__version__} for {machine.pose!r}; {units}, base frame. "))
+    note_left_out(root, machine.left_out)
     add(root, "compiler", angle="radian", autolimits="true")
     option = add(
         root,
@@ -168,14 +171,19 @@ def _divided(machine: Machine) -> tuple[Body, list[Body | None]]:
     whole = _moments(machine.platform)
     size = float(np.linalg.eigvalsh(machine.platform.inertia)[0])
     ball = Body(machine.platform.mass, np.zeros(3), size * np.eye(3))
-    pieces = [ball._replace(center=leg.platform_joint) for leg in machine.legs if leg.spherical]
+    pieces = [ball._replace(center=leg.platform_joint) for leg in machine.legs if _socketed(leg)]
     if not pieces:
         return machine.platform, [None] * 6
     taken = np.sum([_moments(piece) for piece in pieces], axis=0)
     root = np.linalg.inv(np.linalg.cholesky(whole))
     share = min(SOCKET, (1 - LEFT) / float(np.linalg.eigvalsh(root @ taken @ root.T)[-1]))
     piece = ball._replace(mass=share * ball.mass, inertia=share * ball.inertia)
-    return _of_moments(whole - share * taken), [piece if leg.spherical else None for leg in machine.legs]
+    return _of_moments(whole - share * taken), [piece if _socketed(leg) else None for leg in machine.legs]
+
+
+def _socketed(leg: Leg) -> bool:
+    """Whether the spherical joint carries a piece of the platform: it has friction or stiffness."""
+    return leg.spherical > 0 or leg.sprung
 
 
 def _moments(body: Body) -> Array:
@@ -212,8 +220,10 @@ def _bodies(world: ET.Element, machine: Machine, rest: Body, sockets: list[Body 
 
 def _leg(base: ET.Element, leg: Leg, socket: Body | None) -> None:
     lower = add(base, "body", name=f"{leg.name}_lower", pos=leg.base_joint, xyaxes=leg.axes.T[:2])
-    add(lower, "joint", name=f"{leg.name}_universal_k", type="hinge", axis=leg.axis, damping=leg.universal)
-    add(lower, "joint", name=f"{leg.name}_universal_y", type="hinge", axis=[0.0, 1.0, 0.0], damping=leg.universal)
+    for n, (name, axis) in enumerate((("k", leg.axis), ("y", np.array([0.0, 1.0, 0.0])))):
+        springs = _spring(leg.universal_stiffness[n], leg.universal_rest[n])
+        joint = {"name": f"{leg.name}_universal_{name}", "axis": axis, "damping": leg.universal, **springs}
+        add(lower, "joint", type="hinge", **joint)
     _inertial(lower, leg.lower)
     half = leg.length / 2
     add(lower, "geom", type="capsule", fromto=[0.0, 0.0, 0.0, half, 0.0, 0.0], size=THICK * leg.length)
@@ -233,13 +243,29 @@ def _leg(base: ET.Element, leg: Leg, socket: Body | None) -> None:
     add(upper, "geom", type="capsule", fromto=[-half, 0.0, 0.0, 0.0, 0.0, 0.0], size=0.6 * THICK * leg.length)
     if socket is not None:
         piece = add(upper, "body", name=f"{leg.name}_socket")
-        add(piece, "joint", name=f"{leg.name}_spherical", type="ball", damping=leg.spherical)
+        _ball(piece, leg)
         _inertial(piece, socket)
+
+
+def _ball(piece: ET.Element, leg: Leg) -> None:
+    """The spherical joint: a ball, or with stiffness three hinges along the leg's axes."""
+    if not leg.sprung:
+        add(piece, "joint", name=f"{leg.name}_spherical", type="ball", damping=leg.spherical)
+        return
+    for n, axis in enumerate("xyz"):
+        springs = _spring(leg.spherical_stiffness[n], leg.spherical_rest[n])
+        joint = {"name": f"{leg.name}_spherical_{axis}", "axis": np.eye(3)[n], "damping": leg.spherical, **springs}
+        add(piece, "joint", type="hinge", **joint)
+
+
+def _spring(stiffness: float, rest: float) -> dict[str, float]:
+    """Attributes of a hinge's spring, none without stiffness."""
+    return {"stiffness": float(stiffness), "springref": float(rest)} if stiffness else {}
 
 
 def _close(equality: ET.Element, leg: Leg) -> None:
     name, anchor = f"{leg.name}_closed", [0.0, 0.0, 0.0]
-    if leg.spherical:
+    if _socketed(leg):
         add(equality, "weld", name=name, body1="platform", body2=f"{leg.name}_socket", anchor=anchor)
     else:
         add(equality, "connect", name=name, body1=f"{leg.name}_upper", body2="platform", anchor=anchor)

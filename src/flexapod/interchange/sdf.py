@@ -12,7 +12,7 @@ from flexapod import __version__
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.interchange.multibody import Body, Leg, Machine, at_rest
-from flexapod.interchange.xml_files import add, document, say
+from flexapod.interchange.xml_files import add, document, note_left_out, say
 from flexapod.output_files import output_path, write_file
 from flexapod.pose import Pose, PoseLike
 
@@ -55,21 +55,22 @@ def write_sdf(path: str | PathLike[str], hexapod: Hexapod, pose: PoseLike | None
 
     Notes
     -----
-    The format is SDF 1.9. It has no friction of ball joints, which is left out. The joints between base and legs are
-    universal joints, as in the exact model.
+    The format is SDF 1.9. It has no friction and no stiffness of ball joints, which are left out: a comment in the file
+    says what is. The joints between base and legs are universal joints, as in the exact model.
 
     Examples
     --------
     >>> fx.interchange.write_sdf("motion-base.sdf", fx.load("motion-base")).name
     'motion-base.sdf'
     """
-    return write_file(output_path(path), sdf(at_rest(hexapod, pose)))
+    return write_file(output_path(path), sdf(at_rest(hexapod, pose, "sdf")))
 
 
 def sdf(machine: Machine) -> str:
     """The text of the SDF file."""
     root = ET.Element("sdf", version=VERSION)
     root.append(ET.Comment(f" Written by Flexapod {__version__} for {machine.pose!r}; SI units, base frame. "))
+    note_left_out(root, machine.left_out)
     world = add(root, "world", name="hexapod")
     say(world, "gravity", machine.gravity)
     model = add(world, "model", name=machine.name)
@@ -87,8 +88,11 @@ def _leg(model: ET.Element, leg: Leg) -> None:
     _link(model, lower, leg.base_joint, leg.axes, leg.lower)
     _link(model, upper, end, leg.axes, leg.upper)
     universal = _joint(model, "universal", f"{leg.name}_universal", "base", lower)
-    for tag, axis in (("axis", leg.axis), ("axis2", np.array([0.0, 1.0, 0.0]))):
-        _axis(universal, tag, axis, leg.universal)
+    for n, (tag, axis) in enumerate((("axis", leg.axis), ("axis2", np.array([0.0, 1.0, 0.0])))):
+        dynamics = _axis(universal, tag, axis, leg.universal)
+        if leg.universal_stiffness[n]:
+            say(dynamics, "spring_reference", leg.universal_rest[n])
+            say(dynamics, "spring_stiffness", leg.universal_stiffness[n])
     slide = _joint(model, "prismatic", f"{leg.name}_slide", lower, upper)
     dynamics = _axis(slide, "axis", np.array([1.0, 0.0, 0.0]), leg.prismatic, leg.travel)
     say(dynamics, "spring_reference", leg.force / leg.stiffness)

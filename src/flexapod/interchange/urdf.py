@@ -14,7 +14,7 @@ from flexapod import __version__
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.interchange.multibody import Body, Leg, Machine, at_rest
-from flexapod.interchange.xml_files import add, document
+from flexapod.interchange.xml_files import add, document, note_left_out
 from flexapod.output_files import output_path, write_file
 from flexapod.pose import Pose, PoseLike
 
@@ -26,9 +26,9 @@ def write_urdf(path: str | PathLike[str], hexapod: Hexapod, pose: PoseLike | Non
     """Write the hexapod at rest as URDF, with a JSON file for what URDF cannot hold.
 
     URDF describes a tree: the platform hangs on leg 1 by three hinges through its spherical joint. The file
-    ``NAME.loops.json`` names the five point constraints that close the other legs, the six springs with their rest
-    positions, the friction of the spherical joints, and gravity. At joint positions zero the platform stands at the
-    pose, at rest. All numbers are in SI units.
+    ``NAME.loops.json`` names the five point constraints that close the other legs, the springs of legs and joints with
+    their rest positions, the friction of the spherical joints, gravity, and what both files leave out. At joint
+    positions zero the platform stands at the pose, at rest. All numbers are in SI units.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def write_urdf(path: str | PathLike[str], hexapod: Hexapod, pose: PoseLike | Non
     ['motion-base.urdf', 'motion-base.loops.json']
     """
     file = output_path(path)
-    machine = at_rest(hexapod, pose)
+    machine = at_rest(hexapod, pose, "urdf")
     write_file(file, urdf(machine))
     beside = json.dumps(loops(machine, file.name), indent=2)
     return file, write_file(file.with_suffix(".loops.json"), beside + "\n")
@@ -79,6 +79,7 @@ def urdf(machine: Machine) -> str:
     robot.append(
         ET.Comment(f" Written by Flexapod {__version__} for {machine.pose!r}; loops, springs: .loops.json beside it. ")
     )
+    note_left_out(robot, machine.left_out)
     add(robot, "link", name="base")
     for leg in machine.legs:
         _leg(robot, leg)
@@ -104,6 +105,7 @@ def loops(machine: Machine, name: str) -> dict[str, Any]:
                 "link_b": "platform",
                 "point_b": leg.platform_joint.tolist(),
                 "spherical_damping": leg.spherical,
+                **_closing_springs(leg),
             }
             for leg in others
         ],
@@ -115,8 +117,32 @@ def loops(machine: Machine, name: str) -> dict[str, Any]:
                 "force_here": leg.force,
             }
             for leg in machine.legs
-        ],
+        ]
+        + [spring for leg in machine.legs for spring in _hinge_springs(leg, leg is first)],
+        "not_here": list(machine.left_out),
         "platform_joints": [f"{first.name}_spherical_{axis}" for axis in _ALONG],
+    }
+
+
+def _hinge_springs(leg: Leg, carries_platform: bool) -> list[dict[str, Any]]:
+    """Springs about the hinges of the base joint, and of the platform joint where it is three hinges of the tree."""
+    names = ["universal_k", "universal_y", *([f"spherical_{axis}" for axis in _ALONG] if carries_platform else [])]
+    stiffness = np.concatenate([leg.universal_stiffness, leg.spherical_stiffness])
+    rest = np.concatenate([leg.universal_rest, leg.spherical_rest])
+    return [
+        {"joint": f"{leg.name}_{name}", "stiffness": float(k), "rest_position": float(at), "force_here": float(k * at)}
+        for name, k, at in zip(names, stiffness, rest, strict=False)
+        if k
+    ]
+
+
+def _closing_springs(leg: Leg) -> dict[str, Any]:
+    """Springs of a platform joint that closes a loop: about the axes of link_a, from here."""
+    if not leg.sprung:
+        return {}
+    return {
+        "spherical_stiffness": leg.spherical_stiffness.tolist(),
+        "spherical_rest": leg.spherical_rest.tolist(),
     }
 
 
@@ -136,9 +162,13 @@ def _leg(robot: ET.Element, leg: Leg) -> None:
 
 
 def _platform(robot: ET.Element, machine: Machine) -> None:
-    """Three hinges through the first leg's end, along the platform's axes, and the platform fixed to the last."""
+    """Three hinges through the first leg's end, and the platform fixed to the last.
+
+    They lie along the platform's axes, or where they have springs along the leg's, in which bending and torsion differ.
+    """
     first = machine.legs[0]
-    turn = first.axes.T @ machine.pose.matrix
+    between = first.axes.T @ machine.pose.matrix
+    turn, last = (np.eye(3), between) if first.sprung else (between, np.eye(3))
     parent = f"{first.name}_upper"
     for axis, along in _ALONG.items():
         child = f"socket_{axis}"
@@ -147,7 +177,7 @@ def _platform(robot: ET.Element, machine: Machine) -> None:
         _joint(robot, "continuous", name, [parent, child], np.zeros(3), turn, axis=along, damping=first.spherical)
         parent, turn = child, np.eye(3)
     _inertial(add(robot, "link", name="platform"), machine.platform)
-    _joint(robot, "fixed", "platform_fixed", [parent, "platform"], -first.platform_joint, np.eye(3))
+    _joint(robot, "fixed", "platform_fixed", [parent, "platform"], -(last @ first.platform_joint), last)
 
 
 def _joint(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,13 @@ def text(value: Any) -> str:
     if isinstance(value, str):
         return value
     return " ".join(repr(float(number) + 0.0) for number in np.ravel(value))
+
+
+def note_left_out(root: ET.Element, left_out: Iterable[str]) -> None:
+    """A comment in the file that names what the file leaves out of the design, if anything."""
+    words = "; ".join(left_out)
+    if words:
+        root.append(ET.Comment(f" Not in this file: {words}. "))
 
 
 def document(root: ET.Element) -> str:

@@ -62,6 +62,7 @@ def command(
     \b
     flexapod export motion-base --to mjcf --out motion-base.xml
     """
+    from flexapod.interchange.multibody import left_out
     from flexapod.interchange.rigid_bodies import nearest_physical as nearest
     from flexapod.mechanics.modes import natural_modes
 
@@ -87,11 +88,14 @@ def command(
         "frequency_change": float(abs(omega / before - 1).max()),
         "omega_rad_s": omega,
         "warnings": told,
+        "left_out": list(left_out(hexapod, where, kind)),
     }
     if as_json:
         common.print_json(found)
         return
     click.echo(f"Wrote {' and '.join(written)}: {hexapod.name} at {where!r}.")
+    if found["left_out"]:
+        click.echo(f"Not in the file: {'; '.join(found['left_out'])}.")
     if found["bodies_replaced"]:
         click.echo(f"Bodies were replaced; its natural frequencies change by {found['frequency_change']:.3g} at most.")
     common.print_warnings(told)
