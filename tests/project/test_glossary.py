@@ -72,6 +72,7 @@ SINGLE = {
     *("number", "dataset", "window", "frames", "exaggeration", "sensitivity", "sampler", "verify", "on_trial", "stop"),
     "pose_samples",
     *("at_most", "within_limits", "time_limit", "cluster", "resume", "certified", "certify"),
+    "loss_frequency",
     *(
         "length",
         "radius",

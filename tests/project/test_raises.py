@@ -60,6 +60,7 @@ CALLS = {
     "joint_moments": fx.joint_moments,
     "joint_reactions": fx.joint_reactions,
     "leg_distance": fx.mechanics.leg_distance,
+    "leg_bending": fx.mechanics.leg_bending,
     "leg_rates": fx.leg_rates,
     "linearise": fx.linearise,
     "lqg": fx.control.lqg,
@@ -74,6 +75,7 @@ CALLS = {
     "stability_index": fx.stability_index,
     "stepped_sine": lambda h, p: fx.stepped_sine(h, p, omega=[100.0], amplitude=1e-6, axis="z"),
     "transmissibility": lambda h, p: fx.transmissibility(h, p, omega=[1.0]),
+    "viscous_equivalent": lambda h, p: fx.mechanics.viscous_equivalent(h.replace({"legs.loss_factor": 0.1}), 1.0, p),
     "write_mat": lambda h, p: fx.interchange.write_mat("no-such-folder/machine.mat", h, p),
     "write_mjcf": lambda h, p: fx.interchange.write_mjcf("no-such-folder/machine.xml", h, p),
     "write_sdf": lambda h, p: fx.interchange.write_sdf("no-such-folder/machine.sdf", h, p),
@@ -145,6 +147,7 @@ PROVOKED = {
     ("leaf", "ArgumentError"): lambda: fx.design.flexures.leaf(1.0, 2.0, 3.0, STEEL),
     ("leg_keys", "ArgumentError"): lambda: fx.design.flexures.leg_keys(1.0, 2.0),
     ("round_notch", "ArgumentError"): lambda: fx.design.flexures.round_notch(1e-3, -1.0, STEEL),
+    ("viscous_equivalent", "ArgumentError"): lambda: fx.mechanics.viscous_equivalent(MACHINE, 0.0),
     ("wire", "ArgumentError"): lambda: fx.design.flexures.wire(1.0, 2.0, STEEL),
     ("closed_loop", "ArgumentError"): lambda: fx.control.closed_loop(MACHINE, HOME, "pid"),
     ("closed_loop", "UnstableError"): lambda: fx.control.closed_loop(

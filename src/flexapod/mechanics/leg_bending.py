@@ -85,14 +85,14 @@ def leg_bending(hexapod: Hexapod, pose: PoseLike | None = None) -> LegBending:
     >>> round(bends.lowest)
     161
     """
-    pose = single_pose(hexapod, pose)
+    lengths = inverse_kinematics(hexapod, single_pose(hexapod, pose))
     lower, upper = _rod(hexapod, "lower"), _rod(hexapod, "upper")
     omega, unknown = np.full(6, np.nan), ""
     if isinstance(lower, str):
         return LegBending(omega, lower)
     if isinstance(upper, str):
         return LegBending(omega, upper)
-    for leg, length in enumerate(inverse_kinematics(hexapod, pose)):
+    for leg, length in enumerate(lengths):
         misfit = _misfit(leg, length, lower.length[leg], upper.length[leg])
         unknown = unknown or misfit
         if not misfit:
