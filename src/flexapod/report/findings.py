@@ -93,6 +93,8 @@ class Findings:
             "mode_shapes": self.shape,
             "descriptions": [mode.text for mode in self.descriptions],
             "strain_energy_share_legs_modes": self.shares.strain,
+            "strain_energy_share_joints_modes": self.shares.joints,
+            "strain_energy_share_suspension_modes": self.shares.suspension,
             "kinetic_energy_share_platform_legs_modes": self.shares.kinetic,
             "leg_bending_rad_s": self.bending.omega,
             "condition_number": self.conditioning.metres,

@@ -7,9 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.conventions import LEGS, ROTATIONS, TRANSLATIONS, Array
+from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.schema import KEYS
+from flexapod.design.stiffness_laws import TableLaw
 from flexapod.design.units import printed, si_unit
 from flexapod.pose import Pose
 from flexapod.report.study import Column, Section, Table
@@ -24,7 +25,7 @@ _INERTIA = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2)
 
 def section(hexapod: Hexapod) -> Section:
     """The part of a page that lists a design."""
-    tables = [_joints(hexapod), _legs(hexapod), _bodies(hexapod), _further(hexapod)]
+    tables = [_joints(hexapod), _legs(hexapod), *_springs(hexapod), _bodies(hexapod), _further(hexapod)]
     return Section("Inputs", tables, [WORDS])
 
 
@@ -51,15 +52,42 @@ def _joints(hexapod: Hexapod) -> Table:
 
 def _legs(hexapod: Hexapod) -> Table:
     """Every number that each leg has for itself."""
-    values = hexapod.values()
-    keys = [key for key, value in values.items() if key.startswith("legs.") and np.shape(value) == (6,)]
-    keys = [key for key in keys if not key.endswith(".mass")]  # those stand with the bodies
-    rows, names = _alike([values[key] for key in keys], LEGS)
+    values = {
+        key: value
+        for key, value in hexapod.values().items()
+        if key.startswith("legs.") and not key.endswith((".mass", ".mass_center"))  # those stand with the bodies
+    }
+    named: dict[str, tuple[str, Array]] = {}  # title -> its key and a number of each leg
+    for key, value in values.items():
+        title = key.removeprefix("legs.").replace(".", ", ")
+        if np.shape(value) == (6,):
+            named[title] = key, value
+        elif np.ndim(value) == 2 and len(value) == 6:
+            named |= {f"{title} {k + 1}": (key, value[:, k]) for k in range(value.shape[1])}
+    rows, names = _alike([value for _, value in named.values()], LEGS)
     columns = [Column("leg", names)]
-    for key, column in zip(keys, rows, strict=True):
-        unit = printed(si_unit(KEYS[key].dimension)).replace("m2", "m\u00b2")
-        columns.append(Column(key.removeprefix("legs.").replace(".", ", "), _texts(column), unit))
+    for title, (key, _), column in zip(named, named.values(), rows, strict=True):
+        columns.append(Column(title.replace("_", " "), _texts(column), _unit(key)))
     return Table(columns, title="Legs", style="narrow", on="page")
+
+
+def _unit(key: str) -> str:
+    return printed(si_unit(KEYS[key].dimension)).replace("m2", "m\u00b2")
+
+
+def _springs(hexapod: Hexapod) -> list[Table]:
+    """The table of a stiffness law, and the suspension."""
+    found = []
+    law, suspension = hexapod.legs.stiffness_law, hexapod.suspension
+    if isinstance(law, TableLaw):
+        columns = [Column("length", _texts(law.lengths), "m"), Column("stiffness", _texts(law.stiffnesses), "N/m")]
+        found.append(Table(columns, title="Stiffness of the legs by their length", style="narrow", on="page"))
+    if suspension is not None:
+        for title, matrix in (("Stiffness", suspension.stiffness), ("Damping", suspension.damping)):
+            columns = [Column("", list(AXES)), *(Column(axis, _texts(matrix[:, k])) for k, axis in enumerate(AXES))]
+            words = f"{title} of the suspension, SI units, axes of the base"
+            found.append(Table(columns, title=words, style="narrow", on="page"))
+    return found
 
 
 def _alike(columns: Sequence[Array], names: Sequence[str]) -> tuple[list[Array], list[str]]:
@@ -88,6 +116,13 @@ def _bodies(hexapod: Hexapod) -> Table:
 def _further(hexapod: Hexapod) -> Table:
     facts = {"gravity": f"({', '.join(_texts(hexapod.gravity))}) m/s\u00b2"}
     facts["home"] = "none" if hexapod.home is None else _pose(hexapod.home)
+    law, suspension = hexapod.legs.stiffness_law, hexapod.suspension
+    if law is not None:
+        facts["stiffness law"] = law.kind.name
+    if suspension is not None:
+        facts["suspension at"] = f"({', '.join(_texts(suspension.point))}) m, platform frame"
+    if hexapod.legs.joint_rest is not None:
+        facts["joints at rest"] = _pose(hexapod.legs.joint_rest)
     facts["limits"] = "; ".join(limits(hexapod)) or "none"
     columns = [Column("", list(facts)), Column("", list(facts.values()))]
     return Table(columns, title="Gravity, home and limits", style="facts", on="page")
@@ -109,6 +144,9 @@ def limits(hexapod: Hexapod) -> list[str]:
     for name, most in (("universal", given.universal_angle), ("spherical", given.spherical_angle)):
         if most is not None:
             found.append(f"{name} joint {number(round(float(np.degrees(most)), 9))}\u00b0")
+    for name, moment in (("universal", given.universal_moment), ("spherical", given.spherical_moment)):
+        if moment is not None:
+            found.append(f"moment of {name} joints {number(moment)} N m")
     if given.leg_distance is not None:
         found.append(f"distance of leg axes at least {number(round(1e3 * given.leg_distance, 9))} mm")
     return found

@@ -14,7 +14,9 @@ from flexapod.conventions import LEGS, TWO_PI, Array
 from flexapod.mechanics.cautions import Tangent, grows, other_than_vibration
 from flexapod.mechanics.joint_limits import limit_excess
 from flexapod.mechanics.modes import NaturalModes
+from flexapod.mechanics.viscous_losses import has_losses
 from flexapod.plots.style import SHORTENED, STRETCHED
+from flexapod.report import springs
 from flexapod.report.findings import Findings
 from flexapod.report.influence import MOVE, leading
 from flexapod.report.numbers import DASH, brief, file_name, percent, pose_words, shown
@@ -28,7 +30,7 @@ IN_TERMINAL = {"geometry": 2, "mass": 2, "stiffness": 1}
 
 MEANING = (
     "The dynamic stability index is the lowest natural frequency: near zero, the machine cannot hold a load or follow "
-    "a path. Legs are axial springs, the plates are rigid, the base is fixed.",
+    "a path.",
     "The condition number of the force transformation H compares the largest and the least leg force for loads of one "
     "size. H mixes forces and moments, so the number depends on the unit of length: in metres it is that of the "
     "literature, with moments divided by a characteristic length it has none.",
@@ -38,8 +40,8 @@ MEANING = (
     "vibration analysis of a flexible Stewart platform\u201d, Journal of Sound and Vibration (2007), corrected.",
 )
 ENERGY = (
-    "A leg that stores much of a mode's strain energy is the one to stiffen for it; a body that carries much of its "
-    "kinetic energy is the one to lighten."
+    "A leg or joint that stores much of a mode's strain energy is the one to stiffen for it; a body that carries much "
+    "of its kinetic energy is the one to lighten."
 )
 
 
@@ -47,6 +49,7 @@ def study(f: Findings) -> Study:
     """The report of a machine at a pose."""
     sections = (_machine(f), _frequencies(f), _modes(f), _legs(f), _shares(f), _influences(f))
     model = "exact universal joints" if f.joint == "universal" else "legs that do not spin (the paper's W\u00b7s = 0)"
+    meaning = (f"{MEANING[0]} {springs.assumptions(f.hexapod)}", *MEANING[1:])
     changed = f", with {', '.join(f.changes)}" if f.changes else ""
     return Study(
         hexapod=f.hexapod,
@@ -54,7 +57,7 @@ def study(f: Findings) -> Study:
         about=f"Dynamic stability of a flexible hexapod at {pose_words(f.pose)}; {model}{changed}.",
         data=f.to_dict(),
         rows=_rows(f),
-        sections=[*filter(None, sections), inputs.section(f.hexapod), Section("What the numbers mean", (), MEANING)],
+        sections=[*filter(None, sections), inputs.section(f.hexapod), Section("What the numbers mean", (), meaning)],
         cautions=f.cautions,
         files={f"{file_name(f.hexapod.name)}.html": None},
     )
@@ -106,9 +109,9 @@ def _machine(f: Findings) -> Section:
     h, c = f.hexapod, f.conditioning
     facts = {
         "Platform with payload": f"{brief(h.platform_mass)} kg",
-        "Legs, each": _range(h.legs.lower.mass + h.legs.upper.mass, 1.0, "kg"),
-        "Leg stiffness": _range(h.legs.stiffness, 1e-6, "N/\u00b5m"),
-        "Leg length here": _range(f.leg_length, 1e3, "mm"),
+        "Legs, each": springs.spread(h.legs.lower.mass + h.legs.upper.mass, 1.0, "kg"),
+        **springs.facts(h, f.leg_length),
+        "Leg length here": springs.spread(f.leg_length, 1e3, "mm"),
         "Least distance of leg axes": f"{shown(1e3 * f.leg_distance)} mm",
         "Condition number of H, in metres": shown(c.metres),
         f"the same, moments over {shown(c.length, 3)} m": shown(c.scaled),
@@ -149,6 +152,10 @@ def _frequencies(f: Findings) -> Section:
     if tangent is None:
         note = "Eq. 5, undamped, without weight or preload. The exact tangent needs a static equilibrium; here is none."
 
+    if has_losses(f.hexapod):
+        note += (
+            " Damping ratios are of viscous friction; loss factors are not in them: one of all springs adds half of it."
+        )
     note = f"{note} {_bending(f)}"
 
     def draw() -> Figure:
@@ -244,7 +251,7 @@ def _legs(f: Findings) -> Section:
         f"Forces hold the machine at rest under its weight; positive is compression. Angles are from {neutral}. "
         f"{_limits(f)}"
     )
-    return Section("Legs", [Table(columns, note)])
+    return Section("Legs", [Table(columns, note), *springs.moments(f.hexapod, f.pose, beyond)])
 
 
 def _limits(f: Findings) -> str:
@@ -260,7 +267,13 @@ def _shares(f: Findings) -> Section:
     legs = [f"leg {leg}" for leg in LEGS]
     odd = (f.shares.kinetic < -5e-4).any()
     note = "A part below zero comes from a leg inertia that no rigid body has." if odd else ""
-    tables = [heat("strain", legs, f.shares.strain), heat("kinetic", ["platform", *legs], f.shares.kinetic, note)]
+    names, strain = legs, f.shares.strain
+    if f.hexapod.legs.joint_stiffness.any:
+        names = [*names, *(f"joints of leg {leg}" for leg in LEGS)]
+        strain = np.concatenate([strain, f.shares.joints])
+    if f.hexapod.suspension is not None:
+        names, strain = [*names, "suspension"], np.concatenate([strain, f.shares.suspension[None]])
+    tables = [heat("strain", names, strain), heat("kinetic", ["platform", *legs], f.shares.kinetic, note)]
     return Section("Where the energy is", tables, [ENERGY])
 
 
@@ -292,8 +305,3 @@ def _in_3d(draw: Callable[..., Any], size: tuple[float, float]) -> Figure:
     figure = Figure(figsize=size)
     draw(ax=figure.add_subplot(projection="3d"))
     return figure
-
-
-def _range(values: Array, scale: float, unit: str) -> str:
-    low, high = brief(scale * float(values.min())), brief(scale * float(values.max()))
-    return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"
