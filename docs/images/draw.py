@@ -14,6 +14,7 @@ PICTURES = {
     "better.png": "draw_guides.py",
     "certificates.png": "draw_certificates.py",
     "envelope.png": "draw_guides.py",
+    "flexures.png": "draw_flexures.py",
     "frames.svg": "draw_conventions.py",
     "house.svg": "draw_architecture.py",
     "importance.png": "draw_guides.py",
