@@ -114,3 +114,38 @@ def test_files_of_machines_without_springs_hold_none(tmp_path):
     hinges = [joint for joint in ET.parse(file).getroot().iter("joint") if joint.get("type") == "hinge"]
     assert all("stiffness" not in joint.attrib for joint in hinges)
     assert "Not in this file" not in file.read_text()
+
+
+def test_smaller_units_of_mass_are_those_of_the_springs_too(tmp_path):
+    """A machine of some millimetres, which MuJoCo takes in g or mg: the joints' springs are scaled as the legs' are."""
+    small, light = 2e-3, 1e-9
+    plain = sprung(1)
+    joints = plain.legs.joint_stiffness
+    parts = {
+        f"legs.{name}": {
+            "mass": light * part.mass,
+            "mass_center": small * part.mass_center,
+            "inertia": light * small**2 * part.inertia,
+        }
+        for name, part in (("lower", plain.legs.lower), ("upper", plain.legs.upper))
+    }
+    hexapod = plain.replace(
+        {
+            "gravity": [0, 0, 0],
+            "base.joints": small * plain.base_joints,
+            "platform.joints": small * plain.platform_joints,
+            "platform.mass": light * plain.platform_mass,
+            "platform.mass_center": small * plain.platform_mass_center,
+            "platform.inertia": light * small**2 * plain.platform_inertia,
+            "home.position": small * plain.home.position,
+            "legs.stiffness": light * plain.legs.stiffness,
+            "legs.damping": None,
+            "legs.joint_stiffness.universal": light * small**2 * joints.universal,
+            "legs.joint_stiffness.spherical": light * small**2 * joints.spherical,
+            "legs.joint_stiffness.torsion": light * small**2 * joints.torsion,
+            **parts,
+        }
+    )
+    with pytest.warns(UserWarning, match="MuJoCo takes no moments of inertia as small"):
+        found = tangent(opened(tmp_path, "mjcf", hexapod, hexapod.home, False)).omega
+    assert np.abs(found / fx.natural_modes(hexapod, hexapod.home).omega - 1).max() < 1e-6
