@@ -17,7 +17,16 @@ PAGE = Path(__file__).parents[2] / "docs" / "notation.md"
 BATCH = (2,)
 OF_POSES = (
     *("inverse_kinematics", "leg_rates", "force_transformation", "condition_number", "joint_angles", "leg_distance"),
-    *("equations_of_motion", "joint_reactions", "energy", "hold", "natural_modes", "stability_index", "energy_shares"),
+    *(
+        "equations_of_motion",
+        "joint_reactions",
+        "energy",
+        "hold",
+        "natural_modes",
+        "stability_index",
+        "energy_shares",
+        "joint_moments",
+    ),
 )
 
 

@@ -53,7 +53,8 @@ def sweep(
         the home pose.
     quantities : str or iterable of str, optional
         Which of ``omega_1``, ``omega``, ``cond_H``, ``leg_length``, ``universal_angle``, ``spherical_angle``,
-        ``leg_distance``, ``leg_force``, ``lowest_stiffness``, ``within_limits``. Default: ``omega_1`` and ``cond_H``,
+        ``universal_moment``, ``spherical_moment``, ``leg_distance``, ``leg_force``, ``lowest_stiffness``,
+        ``within_limits``. Default: ``omega_1`` and ``cond_H``,
         and ``within_limits`` of a design that has limits.
     samples : int, optional
         Number of poses of a Box or a Workspace (a Sobol sequence), and least number along a Trajectory.
@@ -73,6 +74,7 @@ def sweep(
         - omega (rad/s), along mode: natural frequencies
         - cond_H (1): condition number of the force transformation H
         - leg_length (m), universal_angle, spherical_angle (rad), along leg: joint angles from neutral
+        - universal_moment, spherical_moment (N m), along leg: bending moments of springs in the joints
         - leg_distance (m): least distance between two leg axes
         - leg_force (N): largest static leg force under gravity
         - lowest_stiffness (N/m): lowest stiffness against displacement of the reference point
@@ -96,8 +98,9 @@ def sweep(
 
     Notes
     -----
-    Section 3 of [1]_, for any set of poses. A pose that cannot be computed is NaN; at a singular one omega_1 is zero to
-    rounding. The coordinates of poses given as an array are views of it, not copies.
+    Section 3 of [1]_, for any set of poses. A pose that cannot be computed is NaN, and so are the frequencies and
+    stiffnesses of one outside the design's stiffness law; at a singular one omega_1 is zero to rounding. The
+    coordinates of poses given as an array are views of it, not copies.
 
     References
     ----------
