@@ -80,7 +80,7 @@ def worst_pose(
     all_poses: bool = False,
     certified: bool = False,
 ) -> WorstPose:
-    """Search the pose of a region with the least stability index.
+    """Search for the pose of a region with the least stability index.
 
     Parameters
     ----------
