@@ -230,12 +230,15 @@ def test_half_requests_are_closed(served: Served, monkeypatch: pytest.MonkeyPatc
         with socket.create_connection(("127.0.0.1", served.port), timeout=20) as page:
             page.sendall(begun.encode())
             assert answer in page.recv(4096)
-    with socket.create_connection(("127.0.0.1", served.port), timeout=20) as page:
-        page.sendall(whole.encode())
-        assert b"200 OK" in page.recv(65536)
-        page.sendall(head.encode())  # on a connection that was used before
-        while page.recv(65536):
-            pass
+    for early in (head, ""):  # on a connection that was used before, begun with the answer or after it
+        with socket.create_connection(("127.0.0.1", served.port), timeout=20) as page:
+            page.sendall((whole + early).encode())
+            assert b"200 OK" in page.recv(65536)
+            if not early:
+                assert until(lambda: all(one.idle() for one in served.server.server_state.connections))
+                page.sendall(head.encode())
+            while page.recv(65536):
+                pass
 
 
 def test_of_too_many_connections_the_oldest_idle_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:

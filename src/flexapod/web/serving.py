@@ -94,6 +94,8 @@ class Connection(H11Protocol):
     def on_response_complete(self) -> None:
         self.answered += 1
         super().on_response_complete()
+        if self.conn.their_state is h11.IDLE and self.conn.trailing_data[0] and self._timer is None:
+            self._wait()  # a request that began to arrive during the answer
 
     def data_received(self, data: bytes) -> None:
         super().data_received(data)
