@@ -63,7 +63,7 @@ def unanswered(status: str) -> Answer:
     """NaN for a case without an equilibrium."""
     six, legs, both = (np.full(shape, np.nan) for shape in ((6,), (6, 3), (6, 6)))
     three = six[:3]
-    return Answer(status, six, six, six, three, three, *[legs] * 4, *[both] * 4, six, legs)
+    return Answer(status, six, six, six, three, three, legs, legs, legs, legs, both, both, both, both, six, legs)
 
 
 def answer(case: Case, reference: Case | None, point: Array, section: float, joint: JointModel) -> Answer:
@@ -83,7 +83,7 @@ def answer(case: Case, reference: Case | None, point: Array, section: float, joi
     to_point = np.eye(6)
     to_point[:3, 3:] = -skew(rest.pose.matrix @ point)  # from motions of the reference point to those of the point
     flexible = to_point @ np.linalg.inv(K)  # displacement of the point for a wrench at the reference point
-    stiffness = np.linalg.inv(flexible @ to_point.T)
+    stiffness = np.linalg.inv(flexible @ to_point.T).astype(np.float64)
     by_force = flexible @ tangent.H
     k, slope = axial_stiffness(case.machine, lengths)
     push = k + slope * (lengths - rest.leg_length)  # force of a leg by its unstretched length

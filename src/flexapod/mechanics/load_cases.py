@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.checks import number, numbers, one_of
-from flexapod.conventions import AXES, LEGS, Array, JointModel, in_mixed_units, in_unit
+from flexapod.conventions import AXES, LEGS, Array, JointModel, Unit, in_mixed_units, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, KinematicsError, PoseError, SingularPoseError
 from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, pose_or_home
@@ -215,7 +215,7 @@ def _dataset(hexapod: Hexapod, given: _Given, answers: list[Answer], point: Arra
         return np.stack([getattr(one, name) for one in answers])
 
     legs, place, six = ("case", "leg"), ("case", "axis"), ("case", "displacement")
-    found = {
+    found: dict[str, tuple[Any, ...]] = {
         "gravity": (place, given.gravity, in_unit("m/s^2", "gravity, base frame")),
         "leg_force": (legs, stacked("leg_force"), in_unit("N", "leg force, positive in compression")),
         "leg_length": (legs, stacked("leg_length"), in_unit("m", "leg length")),
@@ -223,13 +223,14 @@ def _dataset(hexapod: Hexapod, given: _Given, answers: list[Answer], point: Arra
         "deflection": (place, stacked("deflection"), in_unit("m", "deflection of the point, base axes")),
         "rotation": (place, stacked("rotation"), in_unit("rad", "rotation vector of the platform, base axes")),
     }
-    for name, unit in (
+    carried: tuple[tuple[str, Unit], ...] = (
         ("spherical_force", "N"),
         ("universal_force", "N"),
         ("leg_moment", "N m"),
         ("universal_moment", "N m"),
-    ):
-        found[name] = (("case", "leg", "axis"), stacked(name), in_unit(unit, name.replace("_", " ")))  # type: ignore[arg-type]
+    )
+    for name, unit in carried:
+        found[name] = (("case", "leg", "axis"), stacked(name), in_unit(unit, name.replace("_", " ")))
     mixed = in_mixed_units("units_of_displacement", "at the point")
     for name in ("stiffness", "compliance"):
         found[name] = ((*six, "by"), stacked(name), mixed)

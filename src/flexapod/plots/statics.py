@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
@@ -36,12 +38,12 @@ def load_cases(found: xr.Dataset, elevation: Array | None = None) -> Figure:
     figure = new_figure(12.0, 4.6)
     forces, moved, turned = figure.subplots(1, 3)
     over = found.case.values + 1 if elevation is None else np.degrees(elevation)
-    marks = {"marker": "o", "ms": 4, "lw": 0} if elevation is None else {"lw": 1.4}
+    marks: dict[str, Any] = {"marker": "o", "ms": 4, "lw": 0} if elevation is None else {"lw": 1.4}
     for i in range(6):
-        forces.plot(over, found.leg_force.values[:, i], color=SIX[i], ls=STYLES[i], label=f"leg {i + 1}", **marks)  # type: ignore[arg-type]
+        forces.plot(over, found.leg_force.values[:, i], color=SIX[i], ls=STYLES[i], label=f"leg {i + 1}", **marks)
     for k, (axis, color) in enumerate(TRIAD):
-        moved.plot(over, found.deflection.values[:, k], color=color, label=axis, **marks)  # type: ignore[arg-type]
-        turned.plot(over, found.rotation.values[:, k], color=color, label=f"about {axis}", **marks)  # type: ignore[arg-type]
+        moved.plot(over, found.deflection.values[:, k], color=color, label=axis, **marks)
+        turned.plot(over, found.rotation.values[:, k], color=color, label=f"about {axis}", **marks)
     forces.axhline(0, color=FAINT, lw=0.8)
     forces.set(ylabel="leg force, N (positive: compression)")
     moved.set(ylabel="deflection, m")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod.conventions import LEGS, Array
 from flexapod.design.hexapod import Hexapod
@@ -62,7 +63,7 @@ def spread(values: Array, scale: float = 1.0, unit: str = "") -> str:
     return f"{low if low == high else f'{low} to {high}'} {unit}".rstrip()
 
 
-def moments(hexapod: Hexapod, pose: Pose, beyond: dict[str, Array]) -> list[Table]:
+def moments(hexapod: Hexapod, pose: Pose, beyond: dict[str, NDArray[np.bool_]]) -> list[Table]:
     """The moments of the joints' springs, leg by leg; beyond: which are above a limit, by quantity."""
     if not hexapod.legs.joint_stiffness.any:
         return []

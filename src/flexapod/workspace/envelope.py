@@ -245,9 +245,9 @@ def _check_start(limits: TravelLimits) -> None:
     if not broken:
         return
     words = list(check_limits(hexapod, where).exceeded) or broken
-    if bounds.index is not None and broken == ["bound of the index"]:
-        found = bounds.index + margins[limits.names.index("bound of the index")]
-        told, bound = told_apart(float(found), bounds.index, (5, 5))
+    if bounds.least_index is not None and broken == ["bound of the index"]:
+        found = bounds.least_index + margins[limits.names.index("bound of the index")]
+        told, bound = told_apart(float(found), bounds.least_index, (5, 5))
         words = [f"its lowest natural frequency is {told} rad/s, below the bound of {bound} rad/s"]
     raise PoseError(
         f"motions cannot begin at {where!r}, which is beyond limits: {'; '.join(words)}. Begin at another pose, or "

@@ -113,7 +113,7 @@ def _beyond(
         own = np.flatnonzero(which == box)
         least, most = margins[own].min(axis=0), margins[own].max(axis=0)
         for column in np.flatnonzero(~(least > _NEAR * (most - least))):
-            starts += [(k, column) for k in own[np.argsort(margins[own, column])[:_STARTS]]]
+            starts += [(int(k), int(column)) for k in own[np.argsort(margins[own, column])[:_STARTS]]]
     if not starts:
         return which[:0], np.zeros((0, 6))
     place, column = np.array(starts).T

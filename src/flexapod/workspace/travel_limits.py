@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod import _core
 from flexapod.conventions import LEG_PAIRS, LEGS, Array, JointModel
@@ -30,7 +32,7 @@ _COARSE = (
 class Bounds(NamedTuple):
     """Bounds beside those of the design: the index (rad/s), cond(H), and the length (m) that its moments are over."""
 
-    index: float | None
+    least_index: float | None
     condition_number: float | None
     characteristic_length: float | None
 
@@ -51,7 +53,8 @@ class Displacements:
         return Pose.trusted(self._place + rows[:, :3] - matrix @ self.point, matrix)
 
 
-class Ways(NamedTuple):
+@dataclass(frozen=True)
+class Ways:
     """How fast displacements change: of the point (n,), m, and of the angle (n,), rad, each by one of the way."""
 
     speed: Array
@@ -62,7 +65,7 @@ class Ways(NamedTuple):
         """Ways along straight lines of displacement, rows (n, 6); three turns at once are at most their sum."""
         return cls(np.linalg.norm(rows[:, :3], axis=1), np.abs(rows[:, 3:]).sum(axis=1))
 
-    def __getitem__(self, index: np.ndarray) -> Ways:  # type: ignore[override]
+    def __getitem__(self, index: NDArray[np.intp]) -> Ways:
         return Ways(self.speed[index], self.turn[index])
 
 
@@ -160,9 +163,9 @@ class TravelLimits:
             cond = evaluate(scaled, rows, ("cond_H",), self.joint, 1, kernel)["cond_H"]
             with np.errstate(divide="ignore"):
                 yield 1 / cond[:, None] - 1 / self.bounds.condition_number  # type: ignore[operator]
-        if self.bounds.index is not None:
+        if self.bounds.least_index is not None:
             found = evaluate(self.hexapod, poses.packed, ("omega_1",), self.joint, 1, self._kernel)["omega_1"]
-            yield found[:, None] - self.bounds.index
+            yield found[:, None] - self.bounds.least_index
         for moment in moment_excess(self.hexapod, poses):
             yield moment.most - moment.value.reshape(-1, 6)
         if limits.leg_compression is not None or limits.leg_tension is not None:
@@ -197,7 +200,7 @@ def _names(hexapod: Hexapod, bounds: Bounds) -> Iterator[str]:
     yield SINGULAR
     if bounds.condition_number is not None:
         yield "bound of cond(H)"
-    if bounds.index is not None:
+    if bounds.least_index is not None:
         yield "bound of the index"
     for limit, words in ((limits.universal_moment, "universal"), (limits.spherical_moment, "spherical")):
         if limit is not None:

@@ -77,7 +77,7 @@ def command(
         files = _write(kind, path, hexapod, where, joint)
     told = [str(warning.message) for warning in caught]
     omega, before = (natural_modes(machine, where, joint=joint).omega for machine in (hexapod, given))
-    written = [str(file) for file in files]
+    written, missing = [str(file) for file in files], list(left_out(hexapod, where, kind))
     found = {
         "design": hexapod.name,
         "digest": hexapod.digest,
@@ -88,14 +88,14 @@ def command(
         "frequency_change": float(abs(omega / before - 1).max()),
         "omega_rad_s": omega,
         "warnings": told,
-        "left_out": list(left_out(hexapod, where, kind)),
+        "left_out": missing,
     }
     if as_json:
         common.print_json(found)
         return
     click.echo(f"Wrote {' and '.join(written)}: {hexapod.name} at {where!r}.")
-    if found["left_out"]:
-        click.echo(f"Not in the file: {'; '.join(found['left_out'])}.")
+    if missing:
+        click.echo(f"Not in the file: {'; '.join(missing)}.")
     if found["bodies_replaced"]:
         click.echo(f"Bodies were replaced; its natural frequencies change by {found['frequency_change']:.3g} at most.")
     common.print_warnings(told)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from flexapod import plots
 from flexapod.conventions import LEGS, TWO_PI, Array
@@ -231,7 +232,7 @@ def _modes(f: Findings) -> Section:
 
 def _legs(f: Findings) -> Section:
     """Leg by leg: length, static force and joint angles; what is beyond a limit is marked."""
-    beyond = {}
+    beyond: dict[str, NDArray[np.bool_]] = {}
     for quantity in limit_excess(f.hexapod, f.pose):
         if np.size(quantity.value) == 6:
             beyond[f"{quantity.name} {quantity.unit}"] = (quantity.value < quantity.least) | (

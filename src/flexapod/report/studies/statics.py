@@ -61,7 +61,8 @@ def study(hexapod: Hexapod, f: StaticsFindings) -> Study:
 
 def _degrees(angle: Array) -> Array:
     """Degrees without what radians have rounded."""
-    return np.round(np.degrees(angle), 10)
+    rounded: Array = np.round(np.degrees(angle), 10).astype(np.float64)
+    return rounded
 
 
 def table(f: StaticsFindings) -> str:
@@ -225,7 +226,7 @@ def _data(hexapod: Hexapod, f: StaticsFindings) -> dict[str, Any]:
         **{f"{name}_N_m": name for name in ("leg_moment", "universal_moment")},
         **{f"{name}_m": name for name in ("leg_length", "unstretched_length", "deflection")},
         **{f"{name}_m_rad_N": name for name in ("stiffness", "compliance")},
-        **{name: name for name in c.data_vars if str(name).startswith("deflection_by")},
+        **{str(name): str(name) for name in c.data_vars if str(name).startswith("deflection_by")},
         "gravity_m_s2": "gravity",
         "rotation_rad": "rotation",
     }
