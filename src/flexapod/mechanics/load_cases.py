@@ -22,6 +22,12 @@ if TYPE_CHECKING:
 
 Axes = Literal["platform", "base"]
 AXES_OF_LOADS: tuple[Axes, ...] = ("platform", "base")
+_CARRIED: tuple[tuple[str, Unit], ...] = (
+    ("spherical_force", "N"),
+    ("universal_force", "N"),
+    ("leg_moment", "N m"),
+    ("universal_moment", "N m"),
+)
 _PLACE = ("x", "y", "z")
 
 
@@ -223,13 +229,7 @@ def _dataset(hexapod: Hexapod, given: _Given, answers: list[Answer], point: Arra
         "deflection": (place, stacked("deflection"), in_unit("m", "deflection of the point, base axes")),
         "rotation": (place, stacked("rotation"), in_unit("rad", "rotation vector of the platform, base axes")),
     }
-    carried: tuple[tuple[str, Unit], ...] = (
-        ("spherical_force", "N"),
-        ("universal_force", "N"),
-        ("leg_moment", "N m"),
-        ("universal_moment", "N m"),
-    )
-    for name, unit in carried:
+    for name, unit in _CARRIED:
         found[name] = (("case", "leg", "axis"), stacked(name), in_unit(unit, name.replace("_", " ")))
     mixed = in_mixed_units("units_of_displacement", "at the point")
     for name in ("stiffness", "compliance"):
