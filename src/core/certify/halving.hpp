@@ -12,7 +12,39 @@ template <int n> struct Piece {
   static constexpr int count = Monomials<n, 3>::count;
   double c[symmetric_size][count + 1];  // coefficients and radius
   int lane, depth;                      // of the box; how often halved
+
+  Piece() {}  // not set: it is large
 };
+
+/// What becomes of a monomial c u_i^power ... where u_i = side + u/2: c times scale[0] of the monomial itself, and c side
+/// times scale[1] of that divided by u_i, c times scale[2] of that divided twice, c side times scale[3] ... (side^2 is 1/4).
+struct Halved {
+  int from, power, monomial[4];
+  double scale[4];
+};
+template <int n> struct HalvingTable {
+  static constexpr int count = Piece<n>::count, moved = binomial(n + 2, 2);
+  double scale[n][count] = {};  // scale[0] of all
+  Halved each[n][moved] = {};   // those that hold u_i
+
+  constexpr HalvingTable() {
+    constexpr const auto& m = monomials<n, 3>;
+    constexpr double half[4] = {1.0, 0.5, 0.25, 0.125};
+    for (int i = 0; i < n; ++i)
+      for (int k = 0, held = 0; k < count; ++k) {
+        const int power = m.power[k][i];
+        scale[i][k] = half[power];
+        if (power == 0) continue;
+        Halved& to = each[i][held++];
+        to.from = k, to.power = power;
+        for (int q = 0; q <= power; ++q) {
+          to.monomial[q] = m.of_code[m.code[k] - q * m.code[m.at(i)]];
+          to.scale[q] = binomial(power, q) * half[power - q] * (q > 1 ? 0.25 : 1.0);
+        }
+      }
+  }
+};
+template <int n> inline constexpr HalvingTable<n> halving_table{};
 
 template <class Lane, int n, class Rules> class HalvingTest {
   using T = Taylor<Lane, n, 3, Rules>;
@@ -31,6 +63,18 @@ template <class Lane, int n, class Rules> class HalvingTest {
       const int taken = gather(lane, depth, positive);
       if (taken > 0) take_up(gathered, test(gathered), taken, lane, depth, positive);
     }
+  }
+
+  /// The polynomials on the two halves of u_axis.
+  static void halves(const double (&c)[Piece<n>::count], int axis, double* below, double* above) {
+    constexpr const HalvingTable<n>& table = halving_table<n>;
+    for (int k = 0; k < Piece<n>::count; ++k) below[k] = above[k] = c[k] * table.scale[axis][k];
+    for (const Halved& by : table.each[axis])
+      for (int q = 1; q <= by.power; ++q) {
+        const double part = c[by.from] * by.scale[q], side = q % 2 ? 0.5 * part : part;
+        above[by.monomial[q]] += side;
+        below[by.monomial[q]] += q % 2 ? -side : side;
+      }
   }
 
  private:
@@ -59,33 +103,14 @@ template <class Lane, int n, class Rules> class HalvingTest {
       const double halve = lane_of(verdict.halve[i], l);
       if (halve > most) most = halve, axis = i;
     }
-    for (const double side : {-0.5, 0.5}) {
-      pieces.emplace_back();
-      Piece<n>& piece = pieces.back();
-      piece.lane = lane, piece.depth = depth;
-      for (int k = 0; k < symmetric_size; ++k) {
-        double c[Piece<n>::count];
-        for (int i = 0; i < Piece<n>::count; ++i) c[i] = lane_of(A.a[k].c[i], l);
-        substitute(c, axis, side, piece.c[k]);
-        piece.c[k][Piece<n>::count] = lane_of(A.a[k].r, l);
-      }
-    }
-  }
-
-  /// u_i = side + u/2: u^p gives binomial(p, q) side^(p - q) (u/2)^q.
-  static void substitute(const double (&c)[Piece<n>::count], int axis, double side, double (&to)[Piece<n>::count + 1]) {
-    constexpr const auto& m = monomials<n, 3>;
-    for (int k = 0; k < Piece<n>::count; ++k) to[k] = 0.0;
-    for (int k = 0; k < Piece<n>::count; ++k) {
-      const int p = m.power[k][axis], unit = m.code[m.at(axis)];
-      double factor = c[k];
-      for (int q = p; q >= 0; --q) {
-        const int at = m.of_code[m.code[k] - (p - q) * unit];
-        double half = 1.0;
-        for (int i = 0; i < q; ++i) half *= 0.5;
-        to[at] += factor * half * binomial(p, q);
-        factor *= side;
-      }
+    pieces.resize(pieces.size() + 2);
+    Piece<n>&below = pieces[pieces.size() - 2], &above = pieces.back();
+    below.lane = above.lane = lane, below.depth = above.depth = depth;
+    for (int k = 0; k < symmetric_size; ++k) {
+      double c[Piece<n>::count];
+      for (int i = 0; i < Piece<n>::count; ++i) c[i] = lane_of(A.a[k].c[i], l);
+      halves(c, axis, below.c[k], above.c[k]);
+      below.c[k][Piece<n>::count] = above.c[k][Piece<n>::count] = lane_of(A.a[k].r, l);
     }
   }
 

@@ -68,7 +68,7 @@ template <class Lane, int n, class Rules = Sound> class Looking {
   HalvingTest<Lane, n, Rules> test_;
 
   Finding start(int l) const {
-    Finding f{Verdict::open, widest(*boxes_[l]), std::numeric_limits<double>::quiet_NaN(), 0, -1, -1, {}};
+    Finding f{Verdict::open, widest(*boxes_[l]), std::numeric_limits<double>::quiet_NaN(), 0, -1, -1, {}, false, {}};
     const Vec3<T>* rows[4] = {&pose_.t, &pose_.R.row[0], &pose_.R.row[1], &pose_.R.row[2]};
     for (int r = 0; r < 4; ++r) {
       f.pose[3 * r] = lane_of(rows[r]->x.c[0], l);
@@ -186,7 +186,9 @@ template <class Lane, int n, class Rules = Sound> class Looking {
         (task_.kind == Kind::index && f.value < level) || (task_.kind == Kind::condition && f.value > level);
     if (below && f.limit < 0) f.verdict = Verdict::broken;
     else if (proved) f.verdict = Verdict::proved;
-    if (!proved) f.axis = cut_along(l, f.axis);
+    if (proved) return;
+    f.axis = cut_along(l, f.axis);
+    if (!boxes_[l]->probe) probe(l, f);
   }
 
   /// sign C K C^T + factor C M C^T positive definite in all of a box?
@@ -195,6 +197,23 @@ template <class Lane, int n, class Rules = Sound> class Looking {
     add_springs(A_, C, directions_, sign, [this](int j) { return stiffness(j); });
     add_matrix(A_, C, M_, factor);
     test_(A_, count, proved);
+  }
+
+  /// A corner where a diagonal entry of the matrix, without its radius, is negative: downhill by its linear terms.
+  void probe(int l, Finding& f) const {
+    constexpr const auto& m = monomials<n, 3>;
+    for (int r = 0; r < 6 && !f.probe; ++r) {
+      const T& a = A_.a[entry(r, r)];
+      double u[n], value = 0.0;
+      for (int i = 0; i < n; ++i) u[i] = lane_of(a.c[m.at(i)], l) > 0.0 ? -1.0 : 1.0;
+      for (int k = 0; k < T::count; ++k) {
+        double term = lane_of(a.c[k], l);
+        for (int i = 0; i < n; ++i) term *= m.power[k][i] % 2 ? u[i] : 1.0;
+        value += term;
+      }
+      f.probe = value < 0.0;
+      for (int i = 0; i < n; ++i) f.corner[i] = u[i] > 0.0 ? boxes_[l]->high[i] : boxes_[l]->low[i];
+    }
   }
 
   /// Where the polynomial bends most.

@@ -2,10 +2,12 @@
 // that have none.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -72,11 +74,11 @@ class CertifySearch {
   // When all threads have ended:
   CertificateStatus status() const {
     if (refuted_) return CertificateStatus::refuted;
-    return shared_.empty() && stuck_.empty() ? CertificateStatus::proved : CertificateStatus::undecided;
+    return remaining().empty() ? CertificateStatus::proved : CertificateStatus::undecided;
   }
   std::vector<Box> remaining() const {
-    std::vector<Box> all = shared_;
-    all.insert(all.end(), stuck_.begin(), stuck_.end());
+    std::vector<Box> all = stuck_;
+    std::copy_if(shared_.begin(), shared_.end(), std::back_inserter(all), [](const Box& box) { return !box.probe; });
     return all;
   }
   double level() const { return target(); }
@@ -179,7 +181,9 @@ class CertifySearch {
 
   void settle(void* memory, const Box& box, const Finding& found, std::vector<Box>& mine) {
     if (found.value == found.value && found.limit < 0) note(found);
+    if (found.probe) mine.push_back(probe(box, found));
     if (box.sign * found.sign < 0 && task_.limits == nullptr) return refute(box, singular(memory, box, found));
+    if (box.probe && found.verdict != Verdict::broken) return;
     switch (found.verdict) {
       case Verdict::proved:
         proved_ += box.share;
@@ -191,9 +195,16 @@ class CertifySearch {
         cut(box, found, mine);
         break;
       case Verdict::broken:
-        if (options_.gap > 0.0) mine.push_back(box);  // once more, for the level that its centre has given
-        else refute(box, found);
+        if (options_.gap == 0.0) refute(box, found);
+        else if (!box.probe) mine.push_back(box);  // once more, for the level that its centre has given
     }
+  }
+
+  static Box probe(const Box& box, const Finding& found) {
+    Box point = box;
+    for (int k = 0; k < 6; ++k) point.low[k] = point.high[k] = found.corner[k];
+    point.share = 0.0, point.probe = true;
+    return point;
   }
 
   /// The worst value of all centres; with a gap, the level follows it.
@@ -214,7 +225,7 @@ class CertifySearch {
   void refute(const Box& box, const Finding& found) {
     {
       const std::lock_guard lock(mutex_);
-      shared_.push_back(box);
+      if (!box.probe) shared_.push_back(box);
       if (!refuted_) at_ = found, value_ = found.value;
       refuted_ = true;
     }

@@ -43,27 +43,26 @@ template <class Lane> FLEXAPOD_INLINE mask_t<Lane> positive_definite(const Lane 
 }
 
 /// A matrix N that is not negative, and so large that d + N is not negative either: d without its positive part, after
-/// two sweeps of Jacobi's rotations, with Gershgorin's bound of what they leave. It is near the smallest one; whether d +
+/// a sweep of Jacobi's rotations, with Gershgorin's bound of what they leave. It is near the smallest one; whether d +
 /// N is not negative must be looked at.
 template <class Lane> void negative_part(const Lane (&d)[symmetric_size], Lane (&N)[symmetric_size]) {
   Lane a[6][6], V[6][6];
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) a[i][j] = d[entry(i, j)], V[i][j] = Lane(i == j ? 1.0 : 0.0);
-  for (int sweep = 0; sweep < 2; ++sweep)
-    for (int p = 0; p < 5; ++p)
-      for (int q = p + 1; q < 6; ++q) {
-        const Lane off = a[p][q];
-        const auto open = abs(off) > 1e-280;
-        const Lane zeta = (a[q][q] - a[p][p]) / (2.0 * select(open, off, Lane(1.0)));
-        const Lane t = select(zeta < 0.0, Lane(-1.0), Lane(1.0)) / (abs(zeta) + sqrt(1.0 + zeta * zeta));
-        const Lane c = select(open, rsqrt(1.0 + t * t), Lane(1.0)), s = select(open, c * t, Lane(0.0));
-        turn(a[p], a[q], c, s);
-        for (int k = 0; k < 6; ++k) {
-          const Lane x = a[k][p], y = a[k][q];
-          a[k][p] = c * x - s * y, a[k][q] = s * x + c * y;
-        }
-        turn(V[p], V[q], c, s);
+  for (int p = 0; p < 5; ++p)
+    for (int q = p + 1; q < 6; ++q) {
+      const Lane off = a[p][q];
+      const auto open = abs(off) > 1e-280;
+      const Lane zeta = (a[q][q] - a[p][p]) / (2.0 * select(open, off, Lane(1.0)));
+      const Lane t = select(zeta < 0.0, Lane(-1.0), Lane(1.0)) / (abs(zeta) + sqrt(1.0 + zeta * zeta));
+      const Lane c = select(open, rsqrt(1.0 + t * t), Lane(1.0)), s = select(open, c * t, Lane(0.0));
+      turn(a[p], a[q], c, s);
+      for (int k = 0; k < 6; ++k) {
+        const Lane x = a[k][p], y = a[k][q];
+        a[k][p] = c * x - s * y, a[k][q] = s * x + c * y;
       }
+      turn(V[p], V[q], c, s);
+    }
   for (int k = 0; k < symmetric_size; ++k) N[k] = Lane(0.0);
   for (int i = 0; i < 6; ++i) {
     Lane least = a[i][i];

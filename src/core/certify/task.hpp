@@ -23,6 +23,7 @@ struct Box {
   int sign;        // of det H at `seen`, a point of a box that this one was cut from; 0 where none is known
   double seen[6];  // coordinates
   double share;    // of the volume of all
+  bool probe;      // a point that may break what is to be proved; not a part of what is asked for
 };
 
 struct Task {
@@ -51,6 +52,8 @@ struct Finding {
   int limit,
       leg;  // that the centre breaks: length, universal angle, spherical angle, distance; of a leg or a pair. Or -1
   double pose[12];  // the centre: position, matrix by rows
+  bool probe;       // whether `corner` may break what is to be proved
+  double corner[6];
 };
 
 /// A kernel compiled for one instruction set. `memory`, of `size` bytes at an address divisible by 64, belongs to one
