@@ -181,7 +181,6 @@ class CertifySearch {
 
   void settle(void* memory, const Box& box, const Finding& found, std::vector<Box>& mine) {
     if (found.value == found.value && found.limit < 0) note(found);
-    if (found.probe) mine.push_back(probe(box, found));
     if (box.sign * found.sign < 0 && task_.limits == nullptr) return refute(box, singular(memory, box, found));
     if (box.probe && found.verdict != Verdict::broken) return;
     switch (found.verdict) {
@@ -193,6 +192,7 @@ class CertifySearch {
         break;
       case Verdict::open:
         cut(box, found, mine);
+        if (found.probe) mine.push_back(probe(box, found));  // next
         break;
       case Verdict::broken:
         if (options_.gap == 0.0) refute(box, found);
