@@ -205,6 +205,8 @@ def limits_of(hexapod, poses, length=(0.0, 0.0), universal=None, spherical=None,
         universal_angle=np.inf,
         spherical_angle=np.inf,
         leg_distance=-np.inf,
+        universal_moment=np.inf,
+        spherical_moment=np.inf,
     )
     at = {name: swept(hexapod, poses, name, limits=free) for name in ("leg_length", "leg_distance")}
     angles = _core.sweep(hexapod.packed, UNIVERSAL, poses, _core.SweepQuantity.joint_angle, free, 1)
@@ -215,6 +217,8 @@ def limits_of(hexapod, poses, length=(0.0, 0.0), universal=None, spherical=None,
         universal_angle=np.inf if universal is None else angles["universal_angle"].max() * (1 + universal),
         spherical_angle=np.inf if spherical is None else angles["spherical_angle"].max() * (1 + spherical),
         leg_distance=-np.inf if distance is None else at["leg_distance"].min() * (1 - distance),
+        universal_moment=np.inf,
+        spherical_moment=np.inf,
     )
 
 
@@ -387,6 +391,21 @@ def test_a_design_with_other_springs_is_refused():
         _core.certify(packed, UNIVERSAL, around(hexapod, 0.01, 1), INDEX, 1.0, options(), None)
 
 
+def test_limits_of_moments_are_refused():
+    hexapod = fx.load("motion-base")
+    limits = _core.SweepLimits(
+        neutral=neutral_directions(hexapod),
+        leg_length=np.tile([0.0, 9.0], (6, 1)),
+        universal_angle=np.inf,
+        spherical_angle=np.inf,
+        leg_distance=-np.inf,
+        universal_moment=1.0,
+        spherical_moment=np.inf,
+    )
+    with pytest.raises(ValueError, match="moments"):
+        certify(hexapod, around(hexapod, 0.01, 1), LIMITS, limits=limits)
+
+
 def test_every_instruction_set_proves_it():
     code = (
         "import numpy as np, flexapod as fx; from flexapod import _core; from tests.core.test_certify import *\n"
@@ -408,8 +427,8 @@ def test_ball_arithmetic_proves_the_same(rng):
     """A second implementation, of other equations, on a small box."""
     exact_bounds = pytest.importorskip("tests.oracles.exact_bounds", reason="python-flint is not installed")
     hexapod = fx.load("motion-base")
-    box = around(hexapod, 0.01, 1)
-    found = certify(hexapod, box, INDEX, least(hexapod, box, rng)[0], gap=0.1)
+    box = around(hexapod, 0.005, 0.5)
+    found = certify(hexapod, box, INDEX, least(hexapod, box, rng)[0], gap=0.05)
     assert found.status == PROVED
-    assert exact_bounds.proved(hexapod, box[0], found.level, most=20) is not None
-    assert exact_bounds.proved(hexapod, box[0], found.level / 0.9 * 1.001, most=3) is None
+    assert exact_bounds.proved(hexapod, box[0], found.level, most=5) is not None
+    assert exact_bounds.proved(hexapod, box[0], found.level / 0.95 * 1.001, most=2) is None

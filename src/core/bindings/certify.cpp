@@ -33,6 +33,8 @@ Certification run(Task task, double level, const Options& options, std::vector<c
                   const nb::object& progress) {
   task.limits = options.limits ? &*options.limits : nullptr;
   if (task.kind == Kind::limits && task.limits == nullptr) throw std::invalid_argument("limits are not given");
+  if (options.limits && !(options.limits->universal_moment == INFINITY && options.limits->spherical_moment == INFINITY))
+    throw std::invalid_argument("there are limits of moments, which certificates do not cover");
   CertifySearch search(kernels().certify, task, level, options, std::move(boxes));
   {
     Crew crew(options.threads, options.threads, [&](size_t) { search.run(crew.stop); });
