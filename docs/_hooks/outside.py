@@ -27,7 +27,7 @@ def in_site(path: str) -> str:
         return PAGES[path]
     if path.startswith("docs/"):
         return path.removeprefix("docs/")
-    if path.startswith("examples/") and path.endswith(".py"):
+    if path.startswith("examples/") and path.endswith((".py", ".toml")):
         return f"examples.md#{Path(path).stem}"
     if path.startswith("src/core/"):
         return f"{path.removeprefix('src/')}.md"
@@ -45,7 +45,7 @@ def mended(markdown: str, folder: str, page: str = "") -> str:
 
 
 def examples() -> str:
-    """A page of all examples: their own introduction, then what each answers, and its lines."""
+    """A page of all examples: their own introduction, what each answers, and its lines; then the designs."""
     folder = ROOT / "examples"
     parts = [mended((folder / "README.md").read_text(encoding="utf-8"), "examples")]
     for path in sorted(folder.glob("[!_]*.py")):
@@ -55,6 +55,10 @@ def examples() -> str:
         code = "".join(source.splitlines(keepends=True)[tree.body[0].end_lineno :]).strip()
         head = f"## {title.rstrip('.')} {{ #{path.stem} }}"
         parts.append(f'{head}\n\n{more.strip()}\n\n```python title="examples/{path.name}"\n{code}\n```')
+    for path in sorted(folder.glob("machines/*.toml")):
+        head = f"## The design {path.stem} {{ #{path.stem} }}"
+        text = path.read_text(encoding="utf-8").strip()
+        parts.append(f'{head}\n\n```toml title="examples/machines/{path.name}"\n{text}\n```')
     return "\n\n".join(parts) + "\n"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import pi, sqrt
 from typing import NamedTuple
 
@@ -16,7 +17,8 @@ RECTANGLE, ROUND = 6 / 5, 10 / 9  # by how much shear strains a section more tha
 SLENDER = 1e5  # radius over thickness, beyond which a notch is no part that is made
 
 
-class Material(NamedTuple):
+@dataclass(frozen=True)
+class Material:
     """What a flexure is made of.
 
     Parameters
