@@ -1,6 +1,10 @@
 """Responses that assume small motions about rest say whether the machine, or its loop, stays there."""
 
+import dataclasses
+
+import numpy as np
 import pytest
+import scipy.linalg
 
 import flexapod as fx
 from flexapod.control.active_damping import assumptions
@@ -53,13 +57,26 @@ def test_an_unstable_loop_is_told_apart_from_its_machine():
 def test_the_command_and_the_page_say_it(run, result):
     heavy = ("--set", "platform.mass=4000")
     out = " ".join(run("response", "cubic-isolator", *heavy)[1].split())
-    assert "Not stable at rest: 5 modes of the machine grow" in out
+    assert "Not stable at rest: 6 modes of the machine grow" in out
     requests = pytest.importorskip("flexapod.web.response")
     told = requests.response(
         {"design": TOPPLES.to_toml(), "pose": [*TOPPLES.home.position, 0, 0, 0], "quantity": "absolute"}
     )
     assert told["caution"].startswith("Not stable at rest")
-    assert len(told["modes"]) == 1  # those that grow have no frequency
+    assert not told["modes"]  # those that grow have no frequency
+
+
+def test_modes_that_grow_alike_are_counted_each_however_they_are_rounded():
+    linear = fx.linearise(TOPPLES)
+    squares, shapes = scipy.linalg.eigh(linear.K, linear.M)
+    assert squares[0] == pytest.approx(squares[1])
+    a, b = linear.M @ shapes[:, :2].T[0], linear.M @ shapes[:, :2].T[1]
+    for parted in (-1e-15, 1e-15):  # a pair of equal poles leaves the real axis
+        turned = dataclasses.replace(linear, K=linear.K + parted * squares[0] * (np.outer(a, b) - np.outer(b, a)))
+        modes = turned.modes()
+        assert not modes.pole.imag.any()
+        assert (modes.pole.real > 0).all()
+        assert np.linalg.matrix_rank(modes.shape) == 6
 
 
 def test_control_says_what_its_model_leaves_out(run):

@@ -78,6 +78,8 @@ def test_every_dimension_has_its_article(dimension):
         "area": "legs.stiffness_law.area",
         "acceleration": "gravity",
         "angle": "limits.universal_angle",
+        "velocity": "limits.leg_rate",
+        "power": "limits.leg_power",
     }[dimension]
     wrong = "mm" if dimension != "length" else "kg"
     with pytest.raises(fx.DesignError) as caught:

@@ -6,7 +6,6 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import eigh
 
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
@@ -135,6 +134,8 @@ def _misfit(leg: int, length: float, lower: float, upper: float) -> str:
 
 def _first_frequency(length: float, lower: _Rod, upper: _Rod) -> float:
     """First frequency of a pinned beam, rad/s; the lower rod begins at 0, the upper one at the other end."""
+    from scipy.linalg import eigh
+
     steps = np.unique(np.clip([0.0, length - float(upper.length), float(lower.length), length], 0.0, length))
     steps = steps[np.append(True, np.diff(steps) > 1e-9 * length)]
     steps[-1] = length

@@ -54,7 +54,7 @@ class DampedModes(NamedTuple):
         return self.omega / TWO_PI
 
 
-_ROUNDING = 1e-13  # of the largest pole: a smaller real part is rounding, and 0
+_ROUNDING = 1e-13  # of the largest pole: a smaller real or imaginary part is rounding, and 0
 
 _WORDS = {
     "mass_matrix": "M",
@@ -134,6 +134,7 @@ class Linearisation:
         poles, vectors = np.linalg.eig(balanced)
         poles = poles.astype(np.complex128)  # where all are real, they come as real numbers
         poles.real[np.abs(poles.real) < _ROUNDING * np.abs(poles).max()] = 0.0
+        poles, vectors = _double_poles_joined(poles, vectors.astype(np.complex128))
         chosen = _one_of_each_pair(poles, vectors[:6], self.M)
         pole, shape = poles[chosen], vectors[:6, chosen]
         shape = shape / np.sqrt(np.einsum("im,ij,jm->m", shape, self.M, shape))
@@ -168,6 +169,17 @@ class Linearisation:
         return control.ss(
             s.A, s.B, s.C, s.D, states=list(s.states), inputs=list(s.inputs), outputs=list(s.outputs), name="hexapod"
         )
+
+
+def _double_poles_joined(poles: Complex, vectors: Complex) -> tuple[Complex, Complex]:
+    """Double real poles, which rounding may have made a pair beside the real axis, as two with real shapes."""
+    poles, vectors = poles.copy(), vectors.copy()
+    beside = (poles.imag != 0) & (np.abs(poles.imag) < _ROUNDING * np.abs(poles).max())
+    for i in np.flatnonzero(beside & (poles.imag > 0)):
+        (pair,) = np.flatnonzero(poles == poles[i].conj())
+        vectors[:, [i, pair]] = np.stack([vectors[:, i].real, vectors[:, i].imag], axis=1)
+    poles.imag[beside] = 0.0
+    return poles, vectors
 
 
 def _one_of_each_pair(poles: Complex, shapes: Complex, M: Array) -> list[int]:
