@@ -142,7 +142,7 @@ def contradiction_free(seed: int, count: int = 2000) -> str:
     rng = np.random.default_rng(1000 + seed)
     hexapod, model = machine(seed), _core.Joint[JOINTS[seed % 2]]
     middle = around(hexapod, 0, 0)[0, :, 0] + np.r_[0.05 * size(hexapod) * rng.normal(size=3), 0.1 * rng.normal(size=3)]
-    half = 10.0 ** rng.uniform(-3, -1.1) * np.r_[size(hexapod) * rng.random(3), rng.random(3)]
+    half = 10.0 ** rng.uniform(-2.5, -0.8) * np.r_[size(hexapod) * rng.random(3), rng.random(3)]
     box = np.stack([middle - half, middle + half], axis=-1)[None]
     poses = samples(box, count, rng)
     omega = np.nan_to_num(swept(hexapod, poses, joint=model))
