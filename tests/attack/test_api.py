@@ -14,6 +14,7 @@ from tests.helpers.public import FUNCTIONS, PUBLIC
 
 import flexapod as fx
 from flexapod import control, optimisation
+from flexapod.certificates.file import write_certificate
 from flexapod.simulation.run import SimulationRun
 
 pytest.importorskip("optuna")
@@ -31,6 +32,9 @@ SAMPLED = control.VelocityFeedback(1e3).on(LINEAR).sampled(1e-4)
 SWEPT = fx.sweep(H, BOX, samples=16, seed=0)
 
 #: Something right for a parameter of a name, in all functions that do not say otherwise below.
+STEEL = fx.design.flexures.Material(200e9, 400e6)
+WIRE = fx.design.flexures.wire(0.02, 1e-3, STEEL)
+PROVED = fx.certify(H, fx.Box.about(HOME, 1e-4, 1e-3), at_least=1.0)
 RIGHT = {
     "hexapod": H, "pose": HOME, "base": None, "joint": "universal", "force": (0.0, 0.0, 1.0), "moment": (0.0, 0.0, 0.1),
     "lengths": fx.inverse_kinematics(H, HOME), "unstretched_length": fx.inverse_kinematics(H, HOME), "leg_force": np.ones(6),
@@ -55,7 +59,13 @@ OWN = {
     ("sea_motion", "response"): {"z": lambda omega: omega * 0 + 1.0}, ("sea_motion", "spectrum"): fx.excitation.sea_spectrum(2, 8),
     ("simulate_control", "controller"): SAMPLED, ("load", "name_or_path"): "motion-base", ("template", "name"): "own",
     ("vc_curve", "name"): "VC-A", ("plan_slice", "plan"): None, ("plan_path", "start"): HOME, ("cluster", "address"): "tcp://127.0.0.1:1",
-    ("near_repeated", "omega"): np.arange(1.0, 7.0),
+    ("near_repeated", "omega"): np.arange(1.0, 7.0), ("gravity_at", "elevation"): 1.0, ("viscous_equivalent", "loss_frequency"): 10.0,
+    ("leaf", "length"): 0.02, ("leaf", "thickness"): 1e-3, ("leaf", "width"): 0.01, ("leaf", "material"): STEEL,
+    ("wire", "length"): 0.02, ("wire", "diameter"): 1e-3, ("wire", "material"): STEEL,
+    ("circular_notch", "radius"): 0.01, ("circular_notch", "thickness"): 1e-3, ("circular_notch", "width"): 0.01,
+    ("circular_notch", "material"): STEEL, ("round_notch", "radius"): 0.01, ("round_notch", "diameter"): 1e-3,
+    ("round_notch", "material"): STEEL, ("crossed", "first"): WIRE, ("crossed", "second"): WIRE,
+    ("leg_keys", "at_base"): WIRE, ("leg_keys", "at_platform"): WIRE, ("check_certificate", "certificate"): PROVED, ("read_certificate", "path"): "proved.json",
     ("random_response", "frequency"): None, ("optimise", "start"): None, ("sine_sweep", "law"): "logarithmic",
     ("gain_schedule", "samples"): 2, ("frequency_grid", "omega_min"): None, ("frequency_grid", "omega_max"): None,
     ("simulate", "times"): None, ("simulate_many", "times"): None, ("simulate", "start"): "rest", ("transmissibility", "omega"): [10.0],
@@ -106,6 +116,7 @@ def files(tmp_path, monkeypatch):
     rows = "".join(f"{leg},{leg},0,0,{leg},{leg},1\n" for leg in range(1, 7))
     (tmp_path / "joints.csv").write_text("leg,base_x,base_y,base_z,platform_x,platform_y,platform_z\n" + rows)
     (tmp_path / "way.csv").write_text("time,z_um\n" + "".join(f"{k / 10},{k % 2}\n" for k in range(9)))
+    write_certificate(PROVED, tmp_path / "proved.json")
     return tmp_path
 
 

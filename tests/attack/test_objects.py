@@ -65,6 +65,10 @@ def _with_legs(legs: Any) -> object:
     return fx.natural_modes(fx.Hexapod(**(WHOLE | {"legs": legs})))
 
 
+def _with_law(law: Any) -> object:
+    return _with_legs(design.Legs(None, stiffness_law=law))
+
+
 def _of_motion(motion: Any) -> object:
     return fx.equations_of_motion(H, motion)
 
@@ -78,7 +82,7 @@ MASS = fx.Variable("platform.mass", 20.0, 30.0)
 WHOLE = {
     "base_joints": H.base_joints, "platform_joints": H.platform_joints, "platform_mass": H.platform_mass,
     "platform_mass_center": H.platform_mass_center, "platform_inertia": H.platform_inertia, "legs": H.legs, "home": HOME,
-    "name": "own", "gravity": H.gravity, "limits": H.limits, "universal_axes": H.universal_axes, "short_forms": (),
+    "name": "own", "gravity": H.gravity, "limits": H.limits, "universal_axes": H.universal_axes, "short_forms": (), "suspension": None,
 }  # fmt: skip
 CIRCLES = {
     "base_radius": 0.2, "platform_radius": 0.15, "height": 0.2, "platform_mass": 3.0, "platform_inertia": [0.02, 0.02, 0.03],
@@ -100,18 +104,32 @@ MADE = {
     "Trajectory": Made(fx.Trajectory, {"waypoints": LINE.waypoints, "times": LINE.times, "ends": "rest", "weights": None, "origin": None},
                        lambda path: fx.path_index(H, path, samples=16)),
     "Hexapod": Made(fx.Hexapod, WHOLE, fx.natural_modes),
-    "Legs": Made(design.Legs, {"stiffness": 1e6, "damping": design.Damping(), "lower": H.legs.lower, "upper": H.legs.upper, "more": {}},
+    "Legs": Made(design.Legs, {"stiffness": 1e6, "damping": design.Damping(), "lower": H.legs.lower, "upper": H.legs.upper, "more": {},
+                                "series_stiffness": [9e7], "loss_factor": 0.01, "joint_stiffness": design.JointStiffness(1.0), "joint_rest": HOME,
+                                "stiffness_law": None},
                  _with_legs),
     "LegPart": Made(design.LegPart, {"mass": 1.0, "mass_center": [0.1, 0, 0], "inertia": [0.01, 0.02, 0.02]}, _body),
     "Damping": Made(design.Damping, {"prismatic": 1.0, "universal": 0.1, "spherical": 0.1},
                     lambda d: fx.linearise(H.replace({f"legs.damping.{k}": getattr(d, k) for k in ("prismatic", "universal")}), HOME).modes()),
-    "Limits": Made(design.Limits, {"leg_length": [0.1, 1.0], "universal_angle": 1.0, "spherical_angle": 1.0, "leg_distance": 0.001},
+    "Material": Made(design.flexures.Material, {"youngs_modulus": 2e11, "strength": 4e8, "poisson_ratio": 0.3},
+                     lambda material: design.flexures.wire(0.02, 1e-3, material)),
+    "JointStiffness": Made(design.JointStiffness, {"universal": [1.0, 2.0], "spherical": 1.0, "torsion": 1.0, "loss_factor": 0.01},
+                           lambda joints: _with_legs(design.Legs(1e6, joint_stiffness=joints))),
+    "ScrewLaw": Made(design.ScrewLaw, {"fixed": 8e7, "axial_rigidity": 4e7, "zero_length": 0.1}, _with_law),
+    "HydraulicLaw": Made(design.HydraulicLaw, {"bulk_modulus": 1.4e9, "area_1": 2e-3, "area_2": 1e-3, "dead_1": 0.05, "dead_2": 0.05,
+                                               "stroke": 1.0, "shortest": 0.05}, _with_law),
+    "TableLaw": Made(design.TableLaw, {"lengths": [0.1, 0.5, 1.0], "stiffnesses": [9e7, 7e7, 6e7]}, _with_law),
+    "Suspension": Made(design.Suspension, {"stiffness": 1e3 * np.eye(6), "damping": np.eye(6), "point": [0.0, 0.0, 0.01]},
+                       lambda s: fx.natural_modes(fx.Hexapod(**(WHOLE | {"suspension": s})))),
+    "Limits": Made(design.Limits, {"leg_length": [0.1, 1.0], "universal_angle": 1.0, "spherical_angle": 1.0, "leg_distance": 0.001,
+                                   "universal_moment": 10.0, "spherical_moment": 10.0, "leg_compression": 1e5, "leg_tension": 1e5,
+                                   "leg_rate": 1.0, "leg_acceleration": 1.0, "leg_power": 1e3},
                    lambda limits: fx.check_limits(fx.Hexapod(**(WHOLE | {"limits": limits})), HOME)),
     "Excitation": Made(fx.Excitation, {"terms": SHAKEN.terms, "rotation": "rpy"}, _shaken),
     "Spectrum": Made(fx.excitation.Spectrum, vars(fx.vc_curve("VC-C")),
                      lambda s: (s.rms(64), fx.random_motion("z", s, samples=20))),
     "SimulationRun": Made(SimulationRun, {"hexapod": H, "pose": HOME, "base_motion": SHAKEN, "force": None, "moment": None, "leg_command": None,
-                                          "start": "rest", "base": None, "unstretched_length": None},
+                                          "start": "rest", "base": None, "unstretched_length": None, "loss_frequency": None},
                           lambda run: fx.simulate_many([run], duration=2e-3, samples=3)),
     "PathRequirements": Made(fx.PathRequirements, {"index": 10.0, "condition_number": None, "clearance": None, "limits": True, "reach": None,
                                                    "turn": 0.5, "joint": "universal"}, lambda r: fx.plan_path(H, HOME, UP, r, seed=1)),
@@ -180,7 +198,7 @@ MADE = {
                               lambda store: store.run(1)),
 }  # fmt: skip
 #: What is given back by functions, or is a base of classes of one's own: no user calls their constructors.
-FOUND = {"Constraint", "ConstraintQuantity", "ControlLaw", "DesignDerivatives", "FoundPose", "Linearisation", "Objective", "OptimalDesign",
+FOUND = {"Certificate", "Constraint", "ConstraintQuantity", "ControlLaw", "DesignDerivatives", "FoundPose", "Linearisation", "Objective", "OptimalDesign",
          "ParetoFront", "PathIndex", "Plan", "PoseSet", "Requirement", "Robustness", "SweepStore", "UncertainParameter", "Verification",
          "Check"}  # fmt: skip
 

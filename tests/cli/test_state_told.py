@@ -10,7 +10,7 @@ HEAVY = ["cubic-isolator", "--set", "platform.mass=200"]
 STUDIES = {
     "sweep": ["--around", 0.002, 1, "--points", 64],
     "robust": ["--uncertain", "cubic.edge_mm=1", "--samples", 16, "--sensitivity", 0],
-    "robust --pose": ["--uncertain", "cubic.edge_mm=1", "--samples", 16, "--sensitivity", 0, "--pose", 0, 0, 0.03, 0, 0, 3],
+    "robust --pose": ["--uncertain", "cubic.edge_mm=1", "--samples", 16, "--sensitivity", 0, "--pose", 0, 0, 0.03, 0, 0, 3, "--all-poses"],
     "optimise": ["--around", 0.002, 1, "--trials", 1, "--points", 16, "--verify", 32, "--vary", "cubic.middle=0.3:0.7"],
 }  # fmt: skip
 

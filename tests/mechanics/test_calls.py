@@ -49,7 +49,7 @@ def test_pose_left_out_is_home_and_six_numbers_are_a_pose(name):
 @pytest.mark.parametrize("name", OF_A_POSE)
 def test_what_follows_the_pose_is_keyword_only(name):
     kinds = {p.kind for p in list(inspect.signature(PUBLIC[name]).parameters.values())[2:]}
-    assert kinds == {inspect.Parameter.KEYWORD_ONLY}
+    assert kinds <= {inspect.Parameter.KEYWORD_ONLY}
 
 
 @pytest.mark.parametrize("name", OF_A_POSE)

@@ -15,6 +15,7 @@ TWO_HOMES = fx.Pose(np.tile(MACHINE.home.position, (2, 1)))
 LAW = fx.control.VelocityFeedback(1e4)
 #: What the functions need besides a machine and a pose.
 NEEDS = {
+    "viscous_equivalent": {"loss_frequency": 10.0},
     "closed_loop": {"controller": LAW},
     "controlled_transmissibility": {"controller": LAW, "omega": [1.0]},
     "gain_map": {"kp": [1e6], "kd": [1e5]},

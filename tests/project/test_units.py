@@ -48,6 +48,9 @@ def _front():
 
 #: What returns a Dataset, and a call of it that returns it whole.
 CALLS = {
+    "load_cases": lambda folder: fx.load_cases(
+        H, gravity=fx.mechanics.gravity_at(np.radians([90.0, 60.0])), reference=0
+    ),
     "controlled_transmissibility": lambda folder: fx.control.controlled_transmissibility(
         H, HOME, controller=_law(), **BAND
     ),

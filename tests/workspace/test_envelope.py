@@ -250,7 +250,7 @@ def test_what_is_refused(machine, change, more, error, words):
         fx.envelope(machine.replace(change) if change else machine, **more)
 
 
-def test_the_command(result, run, tmp_path, machine):
+def test_the_command(result, run, tmp_path, machine, monkeypatch):
     expected = fx.envelope(machine, proportions=[0.25, 0.25, 0.2, *np.radians([20, 20, 25])], index=20.0)
     line = ["envelope", "motion-base", "--proportions", "250mm", 0.25, 0.2, 20, 20, 25, "--index", 20]
     found = result(*line, "--out", tmp_path / "here")
@@ -265,6 +265,7 @@ def test_the_command(result, run, tmp_path, machine):
     assert [float(row["least"]) for row in rows] == [axis.least for axis in expected.axes]
     pairs = list(csv.DictReader(io.StringIO((tmp_path / "here" / "envelope-pairs.csv").read_text())))
     assert len(pairs) == 15 * 48
+    monkeypatch.setenv("COLUMNS", "160")
     code, out, _ = run("envelope", "motion-base")
     assert "greatest length of legs 3, 4" in out
     code, out, _ = run("envelope", "mukherjee-i")

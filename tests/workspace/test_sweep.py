@@ -32,6 +32,7 @@ def test_every_quantity_is_that_of_the_single_pose_function(name, joint):
     angles = fx.joint_angles(design, pose)
     stiffness = design.legs.stiffness
     H = fx.force_transformation(design, pose)
+    moments = fx.joint_moments(design, pose, joint=joint)
     compliance = np.linalg.inv((H * stiffness) @ np.swapaxes(H, -1, -2))[..., :3, :3]
     expected = {
         "omega": omega,
@@ -43,6 +44,8 @@ def test_every_quantity_is_that_of_the_single_pose_function(name, joint):
         "leg_distance": fx.mechanics.leg_distance(design, pose),
         "leg_force": np.abs(fx.inverse_dynamics(design, pose, joint=joint)).max(axis=1),
         "lowest_stiffness": 1 / np.linalg.eigvalsh(compliance)[:, -1],
+        "universal_moment": np.linalg.norm(moments.universal_moment, axis=-1),
+        "spherical_moment": np.abs(moments.bending_moment),
         "within_limits": fx.check_limits(design, pose).ok,
     }
     assert set(expected) == set(QUANTITIES)

@@ -16,7 +16,7 @@ from flexapod.certificates.known import Known, lowered, six_numbers_of
 from flexapod.certificates.question import Question
 from flexapod.checks import positive, thread_count
 from flexapod.conventions import LEG_PAIRS, LEGS
-from flexapod.errors import ArgumentError, OutputError
+from flexapod.errors import ArgumentError, OutputError, shown
 from flexapod.output_files import check_file, output_path
 from flexapod.workspace.proof import Standing, Watch, closest, run
 from flexapod.workspace.store.dask_cluster import Cluster
@@ -51,8 +51,12 @@ class Setup:
         until = np.inf if time_limit is None else time.monotonic() + positive(time_limit, "time_limit", "s")
         if resume and path is None:
             raise ArgumentError("resume is True, but no path is given: what is to be gone on with? Give the file.")
+        if cluster is not None and not isinstance(cluster, Cluster):
+            raise ArgumentError(
+                f"cluster is {shown(cluster)}; it must be what flexapod.workspace.cluster gives, or None."
+            )
         take = None if cluster is None else cluster.take_turn
-        watch = Watch(progress=progress, stop=stop or (lambda: False), until=until, take=take)
+        watch = Watch(progress=progress, stop=(lambda: False) if stop is None else stop, until=until, take=take)
         place = None if path is None else check_file(output_path(path))
         return cls(thread_count(threads), watch, place, resume)
 

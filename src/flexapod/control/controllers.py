@@ -84,6 +84,8 @@ class PID:
 
     def on(self, linear: Linearisation) -> Controller:
         """Return the controller at a pose. Its states are the integral, then the filter of the derivative."""
+        if not isinstance(linear, Linearisation):
+            raise ArgumentError(f"linear is {shown(linear)}; it must be what flexapod.linearise gives.")
         kp, kd, ki = (self._force(getattr(self, name), name, linear) for name in ("kp", "kd", "ki"))
         position, rate = ("leg_length", "leg_rate") if self.space == "joint" else ("position", "velocity")
         measures: tuple[Measurement, ...] = (position,) if self.bandwidth is not None else (position, rate)  # type: ignore[assignment]

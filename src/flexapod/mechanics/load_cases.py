@@ -22,6 +22,13 @@ if TYPE_CHECKING:
 
 Axes = Literal["platform", "base"]
 AXES_OF_LOADS: tuple[Axes, ...] = ("platform", "base")
+#: What deflections are derived by, with its dimension, and its unit below theirs.
+_DERIVATIVES = (
+    ("leg_length", ("leg",), "/m"),
+    ("stiffness", ("leg",), "*m/N"),
+    ("mass", (), "/kg"),
+    ("mass_center", ("axis",), "/m"),
+)
 _CARRIED: tuple[tuple[str, Unit], ...] = (
     ("spherical_force", "N"),
     ("universal_force", "N"),
@@ -231,12 +238,11 @@ def _dataset(hexapod: Hexapod, given: _Given, answers: list[Answer], point: Arra
     }
     for name, unit in _CARRIED:
         found[name] = (("case", "leg", "axis"), stacked(name), in_unit(unit, name.replace("_", " ")))
-    mixed = in_mixed_units("units_of_displacement", "at the point")
-    for name in ("stiffness", "compliance"):
-        found[name] = ((*six, "by"), stacked(name), mixed)
-    for name, by in (("leg_length", "leg"), ("stiffness", "leg"), ("mass", ""), ("mass_center", "axis")):
-        dims = (*six, by) if by else six
-        found[f"deflection_by_{name}"] = (dims, stacked(f"by_{name}"), mixed)
+    for name, mixed in (("stiffness", "load_unit/by_unit"), ("compliance", "displacement_unit/wrench_unit")):
+        found[name] = ((*six, "by"), stacked(name), in_mixed_units(mixed, f"{name} at the point"))
+    for name, by, per in _DERIVATIVES:
+        dims, told = (*six, *by), in_mixed_units(f"displacement_unit{per}", f"deflection of the point by {name}")
+        found[f"deflection_by_{name}"] = (dims, stacked(f"by_{name}"), told)
     limits = hexapod.limits
     most = np.inf if limits.leg_compression is None else limits.leg_compression
     least = -np.inf if limits.leg_tension is None else -limits.leg_tension
@@ -244,14 +250,17 @@ def _dataset(hexapod: Hexapod, given: _Given, answers: list[Answer], point: Arra
     within = np.isfinite(force).all(axis=1) & (force <= most).all(axis=1) & (force >= least).all(axis=1)
     found["force_within_limits"] = ("case", within, in_unit("1", "whether leg forces keep the design's limits"))
     found["status"] = ("case", np.array([one.status for one in answers]), {})
-    units = np.array(["m"] * 3 + ["rad"] * 3)
+    moves, loads = np.array(["m"] * 3 + ["rad"] * 3), np.array(["N"] * 3 + ["N m"] * 3)
     coords = {
         "case": np.arange(len(answers)),
         "leg": list(LEGS),
         "axis": list(_PLACE),
         "displacement": list(AXES),
         "by": list(AXES),
-        "units_of_displacement": ("displacement", units),
+        "displacement_unit": ("displacement", moves),
+        "load_unit": ("displacement", loads),
+        "by_unit": ("by", moves),
+        "wrench_unit": ("by", loads),
     }
     return xr.Dataset(found, coords).assign_attrs(
         design=hexapod.name,

@@ -6,7 +6,7 @@ import numpy as np
 
 from flexapod.checks import positive
 from flexapod.design.hexapod import Hexapod
-from flexapod.mechanics.inputs import single_pose
+from flexapod.mechanics.inputs import single_base, single_pose
 from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.mechanics.springs import axial_stiffness
 from flexapod.pose import PoseLike
@@ -75,8 +75,8 @@ def viscous_equivalent(
     >>> bool(np.allclose(added, 0.02 * lossy.legs.stiffness / 50.0))
     True
     """
+    where, base = single_pose(hexapod, pose), single_base(hexapod, base)
     omega = positive(loss_frequency, "loss_frequency", "rad/s")
-    where = single_pose(hexapod, pose)
     if not has_losses(hexapod):
         return hexapod
     legs = hexapod.legs

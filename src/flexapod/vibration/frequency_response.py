@@ -10,7 +10,7 @@ from flexapod.checks import numbers
 from flexapod.conventions import AXES, LEGS, Array, Complex, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import response_attributes
-from flexapod.mechanics.inputs import ZERO, single_pose
+from flexapod.mechanics.inputs import ZERO, as_hexapod, single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.pose import Pose, PoseLike
 from flexapod.rotations import skew
@@ -106,7 +106,7 @@ def transmissibility(
     array([1.048, 0.015])
     """
     w = asked(omega, frequency)
-    leg_losses(hexapod, loss_factor)
+    leg_losses(as_hexapod(hexapod), loss_factor)
     pose = single_pose(hexapod, pose)
     linear = linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
     eta = losses(hexapod, linear, loss_factor)

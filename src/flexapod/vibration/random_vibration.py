@@ -14,7 +14,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.excitation.spectra import Quantity, Spectrum
 from flexapod.mechanics.cautions import grows
-from flexapod.mechanics.inputs import ZERO, single_pose
+from flexapod.mechanics.inputs import ZERO, as_hexapod, single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.pose import PoseLike
 from flexapod.vibration.base_spectrum import Density, ready_made, tabulated
@@ -130,7 +130,7 @@ def random_response(
     >>> round(1e6 * float(response.rms_displacement.sel(output="z")), 1)  # micrometres
     4.6
     """
-    leg_losses(hexapod, loss_factor)
+    leg_losses(as_hexapod(hexapod), loss_factor)
     pose = single_pose(hexapod, pose)
     linear = linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
     eta = losses(hexapod, linear, loss_factor)
