@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
+from flexapod.report import springs
 from flexapod.report.studies.machine import study
 from flexapod.report.study import Table
 
@@ -117,3 +118,13 @@ def test_the_stiffness_told_is_that_of_the_pose():
     told = 1e-6 / (1 / 5e7 + (length - 0.1) / 2e7)
     facts = _facts(SCREW, "")
     assert facts["Leg stiffness here, with springs in series"] == f"{told:.4g} N/\u00b5m"
+
+
+def test_moments_that_are_the_rounding_of_angles_are_not_shown():
+    flexible = fx.load("cubic-isolator").replace(
+        {"legs.joint_stiffness.spherical": 15.0, "legs.joint_stiffness.universal": 15.0}
+    )
+    for pose, zero in ((flexible.home, True), (fx.Pose.from_rpy(1e-3, 0, flexible.home.position[2], 0, 0, 0), False)):
+        (table,) = springs.moments(flexible, pose, {})
+        assert (not np.any(table.columns[1].values)) == zero
+        assert (not np.any(table.columns[2].values)) == zero

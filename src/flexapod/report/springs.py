@@ -67,13 +67,21 @@ def moments(hexapod: Hexapod, pose: Pose, beyond: dict[str, NDArray[np.bool_]]) 
     """The moments of the joints' springs, leg by leg; beyond: which are above a limit, by quantity."""
     if not hexapod.legs.joint_stiffness.any:
         return []
-    found = joint_moments(hexapod, pose)
+    found, joints = joint_moments(hexapod, pose), hexapod.legs.joint_stiffness
     universal = np.hypot(*np.moveaxis(found.universal_moment, -1, 0))
+    told = [_without_rounding(universal, joints.universal.max(axis=1))]
+    told += [_without_rounding(found.bending_moment, joints.spherical)]
+    told += [_without_rounding(found.torsion_moment, joints.torsion)]
     columns = [
         Column("leg", LEGS),
-        Column("universal moment", universal, "N m", marked=beyond.get("universal joint moment N m")),
-        Column("spherical moment", found.bending_moment, "N m", marked=beyond.get("spherical joint moment N m")),
-        Column("torsion", found.torsion_moment, "N m"),
+        Column("universal moment", told[0], "N m", marked=beyond.get("universal joint moment N m")),
+        Column("spherical moment", told[1], "N m", marked=beyond.get("spherical joint moment N m")),
+        Column("torsion", told[2], "N m"),
     ]
     note = "Of the springs in the joints: across the leg at the base, across it at the platform, and about it."
     return [Table(columns, note, "Moments of the joints")]
+
+
+def _without_rounding(moment: Array, stiffness: Array) -> Array:
+    """Moments of joints, 0 where the joint is turned by no more than the rounding of its angle."""
+    return np.where(np.abs(moment) > 1e-12 * stiffness, moment, 0.0)
