@@ -8,8 +8,7 @@ import click
 
 from flexapod.cli.options import common
 from flexapod.cli.options.quantities import FREQUENCY, LENGTH, POSITIVE_LENGTH, SIX
-from flexapod.cli.output.results import emit, write
-from flexapod.output_files import make_directory
+from flexapod.cli.output.results import emit_or_csv
 
 
 @click.command()
@@ -57,12 +56,4 @@ def command(**given: Any) -> None:
     from flexapod.cli.studies.envelope import Options, compute
 
     options = Options(**given)
-    if options.as_csv and options.as_json:
-        raise click.UsageError("--csv and --json both say what is printed. Give one of them.")
-    found = compute(options)
-    if options.as_csv:
-        click.echo(found.files["envelope.csv"](), nl=False)  # type: ignore[misc]
-        if options.out is not None:
-            write(found, make_directory(options.out))
-        return
-    emit(found, options.out, options.as_json)
+    emit_or_csv(lambda: compute(options), options.out, options.as_json, "envelope.csv" if options.as_csv else None)

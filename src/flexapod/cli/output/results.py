@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -52,3 +52,16 @@ def write(study: Study, directory: Path) -> list[Path]:
         else:
             write_file(path, make())  # type: ignore[arg-type]
     return [directory / name for name in study.files]
+
+
+def emit_or_csv(compute: Callable[[], Study], out: Path | None, as_json: bool, table: str | None) -> None:
+    """The same for a study that is still to be computed. table: its file that is printed instead, as --csv asks."""
+    if table is not None and as_json:
+        raise click.UsageError("--csv and --json both say what is printed. Give one of them.")
+    found = compute()
+    if table is None:
+        emit(found, out, as_json)
+        return
+    click.echo(found.files[table](), nl=False)  # type: ignore[misc]
+    if out is not None:
+        write(found, make_directory(out))
