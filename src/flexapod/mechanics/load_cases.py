@@ -14,6 +14,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, KinematicsError, PoseError, SingularPoseError
 from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, pose_or_home
 from flexapod.mechanics.load_case import Answer, Case, answer, unanswered
+from flexapod.mechanics.load_limits import load_excess
 from flexapod.mechanics.springs import axial_stiffness
 from flexapod.pose import Pose, PoseLike, vectors
 
@@ -243,11 +244,10 @@ def _dataset(hexapod: Hexapod, given: _Given, answers: list[Answer], point: Arra
     for name, by, per in _DERIVATIVES:
         dims, told = (*six, *by), in_mixed_units(f"displacement_unit{per}", f"deflection of the point by {name}")
         found[f"deflection_by_{name}"] = (dims, stacked(f"by_{name}"), told)
-    limits = hexapod.limits
-    most = np.inf if limits.leg_compression is None else limits.leg_compression
-    least = -np.inf if limits.leg_tension is None else -limits.leg_tension
     force = stacked("leg_force")
-    within = np.isfinite(force).all(axis=1) & (force <= most).all(axis=1) & (force >= least).all(axis=1)
+    within = np.isfinite(force).all(axis=1)
+    for limited in load_excess(hexapod, force):
+        within &= ((force >= limited.least) & (force <= limited.most)).all(axis=1)
     found["force_within_limits"] = ("case", within, in_unit("1", "whether leg forces keep the design's limits"))
     found["status"] = ("case", np.array([one.status for one in answers]), {})
     moves, loads = np.array(["m"] * 3 + ["rad"] * 3), np.array(["N"] * 3 + ["N m"] * 3)
