@@ -41,9 +41,9 @@ from .mechanics.dynamics import equations_of_motion as equations_of_motion
 from .mechanics.dynamics import forward_dynamics as forward_dynamics
 from .mechanics.dynamics import inverse_dynamics as inverse_dynamics
 from .mechanics.energies import energy as energy
-from .mechanics.flexures import joint_moments as joint_moments
 from .mechanics.joint_limits import check_limits as check_limits
 from .mechanics.joint_limits import joint_angles as joint_angles
+from .mechanics.joint_springs import joint_moments as joint_moments
 from .mechanics.kinematics import condition_number as condition_number
 from .mechanics.kinematics import force_transformation as force_transformation
 from .mechanics.kinematics import home_pose as home_pose

@@ -10,8 +10,8 @@ from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.parts import LegPart
 from flexapod.interchange.rigid_bodies import check_physical
-from flexapod.mechanics.flexures import joint_moments
 from flexapod.mechanics.inputs import single_pose
+from flexapod.mechanics.joint_springs import joint_moments
 from flexapod.mechanics.springs import axial_stiffness
 from flexapod.mechanics.statics import hold
 from flexapod.mechanics.viscous_losses import has_losses

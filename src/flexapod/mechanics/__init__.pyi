@@ -10,13 +10,13 @@ from .dynamics import forward_dynamics as forward_dynamics
 from .dynamics import inverse_dynamics as inverse_dynamics
 from .energies import Energy as Energy
 from .energies import energy as energy
-from .flexures import JointMoments as JointMoments
-from .flexures import joint_moments as joint_moments
 from .joint_limits import JointAngles as JointAngles
 from .joint_limits import LimitsCheck as LimitsCheck
 from .joint_limits import check_limits as check_limits
 from .joint_limits import joint_angles as joint_angles
 from .joint_limits import leg_distance as leg_distance
+from .joint_springs import JointMoments as JointMoments
+from .joint_springs import joint_moments as joint_moments
 from .kinematics import LegRates as LegRates
 from .kinematics import condition_number as condition_number
 from .kinematics import force_transformation as force_transformation

@@ -10,8 +10,8 @@ from flexapod import _core
 from flexapod.conventions import LEG_PAIRS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError, told_apart
-from flexapod.mechanics.flexures import joint_moments
 from flexapod.mechanics.inputs import States, pose_or_home, states
+from flexapod.mechanics.joint_springs import joint_moments
 from flexapod.mechanics.kinematics import force_transformation, home_pose, inverse_kinematics
 from flexapod.pose import PoseLike, as_pose
 
@@ -218,13 +218,13 @@ def limit_excess(
     """Every quantity that the design limits, with its bounds."""
     limits = hexapod.limits
     result = []
+    law = hexapod.legs.stiffness_law
+    if limits.leg_length is not None or law is not None:
+        lengths = inverse_kinematics(hexapod, pose, base=base)
     if limits.leg_length is not None:
         bounds = np.asarray(limits.leg_length)
-        lengths = inverse_kinematics(hexapod, pose, base=base)
         result.append(LimitedQuantity("length", "m", lengths, bounds[..., 0], bounds[..., 1]))
-    law = hexapod.legs.stiffness_law
     if law is not None:
-        lengths = inverse_kinematics(hexapod, pose, base=base)
         least, most = law.range.T
         result.append(LimitedQuantity("length for its stiffness law", "m", lengths, least, most))
     if limits.universal_angle is not None or limits.spherical_angle is not None:

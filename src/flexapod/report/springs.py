@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from flexapod.conventions import LEGS, Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.mechanics.flexures import joint_moments
+from flexapod.mechanics.joint_springs import joint_moments
 from flexapod.mechanics.springs import axial_stiffness
 from flexapod.mechanics.viscous_losses import has_losses
 from flexapod.pose import Pose
