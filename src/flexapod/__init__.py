@@ -6,6 +6,6 @@ SI units and rad/s throughout. The everyday names are here; all names are in the
 
 from flexapod._suggestions import attach
 
-__version__ = "0.4.0"
+__version__ = "0.5.0"
 
 __getattr__, __dir__, __all__ = attach(__name__, __file__)
