@@ -28,7 +28,7 @@ TWO_PI = 2 * math.pi
 #: A unit as the attribute `units` of Datasets spells it, so that Pint and the CF conventions read the same.
 Unit = Literal[
     "1", "m", "rad", "s", "rad/s", "m/s", "m/s^2", "rad/s^2", "1/s", "1/s^2", "1/s^3", "N", "N m", "N/m", "N s/m",
-    "N/(m s)", "J", "W", "N^2/(rad/s)"
+    "N/(m s)", "J", "W", "kg", "N^2/(rad/s)"
 ]  # fmt: skip
 UNITS: tuple[Unit, ...] = get_args(Unit)
 

@@ -208,7 +208,12 @@ def written_table(columns: Mapping[str, NDArray[Any]]) -> str:
 def _written(values: NDArray[Any]) -> list[str]:
     if values.dtype.kind == "f":
         return ["" if np.isnan(value) else repr(float(value) + 0.0) for value in values]
-    return [str(value) for value in values]
+    return [_quoted(str(value)) for value in values]
+
+
+def _quoted(text: str) -> str:
+    """A cell of text, in quotes where it would be taken for more than one."""
+    return '"' + text.replace('"', '""') + '"' if any(mark in text for mark in ',;"\r\n\t') else text
 
 
 def _number(cell: str) -> float | None:

@@ -69,7 +69,7 @@ OWN = {
     ("random_response", "frequency"): None, ("optimise", "start"): None, ("sine_sweep", "law"): "logarithmic",
     ("gain_schedule", "samples"): 2, ("frequency_grid", "omega_min"): None, ("frequency_grid", "omega_max"): None,
     ("simulate", "times"): None, ("simulate_many", "times"): None, ("simulate", "start"): "rest", ("transmissibility", "omega"): [10.0],
-    ("root_locus", "legs"): (1, 2, 3), ("gain_map", "controller"): control.PID(1.0, 1.0), ("path_index", "samples"): 16,
+    ("root_locus", "legs"): (1, 2, 3), ("gain_map", "controller"): control.PID(1.0, 1.0), ("path_index", "samples"): 16, ("payload_loads", "payloads"): [fx.paths.PayloadCase("full", 2.0)],
 }  # fmt: skip
 #: What a call needs besides its required arguments, to be short.
 NEEDED = {
@@ -78,7 +78,7 @@ NEEDED = {
     "stepped_sine": ("omega",), "random_response": ("axis", "omega"), "worst_pose": ("region", "samples", "starts"), "harmonic": ("omega",),
     "sweep": ("region", "samples"), "transmissibility": ("omega",), "controlled_transmissibility": ("omega",), "root_locus": ("gains",),
     "animate_simulation": ("frames",), "sampling_time": ("region", "samples"), "path_index": ("samples",), "pose_grid": ("z",), "cluster": ("timeout",),
-    "simulate_control": ("pose",), "gain_map": ("nearness",),
+    "payload_loads": ("samples",), "simulate_control": ("pose",), "gain_map": ("nearness",),
 }  # fmt: skip
 #: Not called rightly here: what they need takes long to make, or a cluster.
 NEVER_RIGHT = {"cluster", "plan_slice"}

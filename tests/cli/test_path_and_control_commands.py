@@ -18,7 +18,7 @@ def test_plan_writes_a_path_that_reads_back(run, result, tmp_path):
     assert found["above_bound"] is True
     assert found["least_index_rad_s"] >= 100
     assert found["plan"]["straight_least_index_rad_s"] < 5
-    names = {"path-index.png", "path-loads.png", "path-plane.png", "waypoints.csv", "path.html"}
+    names = {"path-index.png", "path-loads.png", "path-plane.png", "path.csv", "waypoints.csv", "path.html"}
     assert {file.name for file in tmp_path.iterdir()} == names
     again = result("path", "mukherjee-i", tmp_path / "waypoints.csv", "--bound", 100)
     assert again["least_index_rad_s"] == pytest.approx(

@@ -225,3 +225,26 @@ def test_sampling_time_over_poses_paths_and_boxes(machine):
         fx.control.sampling_time(machine, "everywhere")
     with pytest.raises(fx.ArgumentError, match="must be finite and > 0"):
         fx.control.sampling_time(-1.0)
+
+
+def test_a_path_between_rest_poses_joins_smoothly():
+    """At rest at home at both ends, through all waypoints, with continuous accelerations; far inside it is the same."""
+    inner = fx.Trajectory(fx.Pose.from_rpy(0.1 * np.sin(np.arange(40) / 4), 0, 0.9, 0, 0, 0.02 * np.arange(40)), np.arange(40) / 8)  # fmt: skip
+    home = fx.Pose.from_rpy(0, 0, 0.89, 0, 0, 0.1)
+    joined = inner.between(home, 1.5)
+    assert (joined.start, joined.duration, joined.ends) == (-1.5, inner.duration + 3, "rest")
+    for t in (joined.times[0], joined.times[-1]):
+        motion = joined(t)
+        np.testing.assert_allclose(motion.pose.position, home.position, atol=1e-12)
+        np.testing.assert_allclose(motion.pose.matrix, home.matrix, atol=1e-12)
+        for rest in (motion.velocity, motion.acceleration, motion.angular_velocity, motion.angular_acceleration):
+            np.testing.assert_allclose(rest, 0, atol=1e-9)
+    np.testing.assert_allclose(joined(inner.times).pose.position, inner.waypoints.position, atol=1e-12)
+    before, after = joined(inner.times - 1e-9), joined(inner.times + 1e-9)
+    np.testing.assert_allclose(before.acceleration, after.acceleration, atol=1e-5)
+    middle = np.linspace(inner.times[15], inner.times[24], 50)
+    np.testing.assert_allclose(joined(middle).pose.position, inner(middle).pose.position, atol=1e-5)
+    with pytest.raises(fx.PoseError, match="batch axes"):
+        inner.between(inner.waypoints, 1.0)
+    with pytest.raises(fx.ArgumentError, match="lead is 0 s"):
+        inner.between(home, 0)

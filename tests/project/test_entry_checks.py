@@ -34,6 +34,7 @@ GIVEN = {
     "axis": "z",
     "variables": [fx.Variable("platform.mass", 1.0, 2.0)],
     "uncertain": [fx.Uncertain("legs.stiffness", 0.1)],
+    "payloads": [fx.paths.PayloadCase("full", 1.0)],
     "start": MACHINE.home,
     "end": MACHINE.home,
     "goal": MACHINE.home,
@@ -49,7 +50,7 @@ def call(name, hexapod, **more):
     for parameter in inspect.signature(PUBLIC[name]).parameters.values():
         if parameter.default is parameter.empty and parameter.kind is not parameter.VAR_KEYWORD:
             given[parameter.name] = hexapod if parameter.name == "hexapod" else GIVEN.get(parameter.name)
-    if name in ("path_index", "path_loads"):
+    if name in ("path_index", "path_loads", "payload_loads"):
         given["path"] = GIVEN["trajectory"]
     return PUBLIC[name](**{**given, **more})
 

@@ -218,6 +218,10 @@ PROVOKED = {
     ("path_index", "SingularPoseError"): lambda: fx.path_index(MACHINE, THROUGH),
     ("path_loads", "ArgumentError"): lambda: fx.paths.path_loads(MACHINE, LINE, samples=2),
     ("path_loads", "SingularPoseError"): lambda: fx.paths.path_loads(MACHINE, THROUGH),
+    ("payload_loads", "ArgumentError"): lambda: fx.paths.payload_loads(MACHINE, LINE, []),
+    ("payload_loads", "SingularPoseError"): lambda: fx.paths.payload_loads(
+        MACHINE, THROUGH, [fx.paths.PayloadCase("full", 1.0)]
+    ),
     ("plan_path", "ArgumentError"): lambda: fx.plan_path(MACHINE, *LINE.waypoints, 1.0, timing=0.0),
     ("plan_path", "MissingExtraError"): without(
         "ompl",

@@ -30,6 +30,10 @@ def _plan():
     return mukherjee, fx.plan_path(mukherjee, start, goal, 110.0)
 
 
+def _way():
+    return H, fx.Trajectory([[0, 0, 0, 0, 0, 0], [0, 0, 1e-3, 0, 0, 0]], [0, 1], origin=HOME)
+
+
 def _law():
     return fx.control.VelocityFeedback(10.0).on(fx.linearise(H, HOME)).sampled(1e-3)
 
@@ -60,6 +64,7 @@ CALLS = {
     "gain_schedule": lambda folder: fx.control.gain_schedule(H, fx.pose_grid(z=[0.03, 0.035])),
     "open_sweep": _store,
     "path_loads": lambda folder: fx.paths.path_loads(_plan()[0], _plan()[1].path),
+    "payload_loads": lambda folder: fx.paths.payload_loads(*_way(), [fx.paths.PayloadCase("full", 2.0)], samples=10),
     "plan_slice": lambda folder: fx.paths.plan_slice(*_plan(), samples=5),
     "random_response": lambda folder: fx.random_response(H, HOME, psd=np.ones(3), axis="z", **BAND),
     "root_locus": lambda folder: fx.control.root_locus(H, HOME, "velocity", gains=[1.0, 2.0, 3.0]),

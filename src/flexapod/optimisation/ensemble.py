@@ -10,9 +10,10 @@ from flexapod.conventions import TRANSLATIONS, Array
 from flexapod.design.form_numbers import Makers
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import FULL, HOME, describe, with_short_forms
+from flexapod.design.payload import add_payload
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.inputs import as_hexapod
-from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, UncertainRange, add_payload, quantile
+from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, UncertainRange, quantile
 
 
 class Ensemble:

@@ -13,7 +13,8 @@ from flexapod.conventions import TRANSLATIONS, Array
 from flexapod.design import layout
 from flexapod.design.form_numbers import with_numbers
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.layout import PLACES, entries
+from flexapod.design.layout import entries
+from flexapod.design.payload import with_payload
 from flexapod.errors import ArgumentError
 
 Distribution = Literal["uniform", "normal", "triangular", "lognormal"]
@@ -241,12 +242,8 @@ class Payload:
                 f"{moving[0]} is uncertain, and the index neither rises nor falls with it at every pose. Give one "
                 "place, and certify several."
             )
-        found = layout.with_short_forms(hexapod)
-        add_payload(found[None], mass.width[1:], np.array([[one.width[0] for one in place]]))
-        changed = np.zeros(layout.FULL, dtype=bool)
-        for key in ("platform.mass", "platform.mass_center", "platform.inertia"):
-            changed[PLACES[key]] = True
-        return with_numbers(hexapod, found, changed)
+        at = np.array([one.width[0] for one in place])
+        return with_payload(hexapod, float(mass.width[1]), at, np.zeros((3, 3)))
 
 
 class UncertainRange(NamedTuple):
@@ -327,19 +324,6 @@ def _side(number: int) -> int:
     if key in _INERTIAS:
         return -1 if len(set(layout.indices(number)[-2:])) == 1 else 0
     return -1 if key in _LOWERING else 0
-
-
-def add_payload(designs: Array, mass: Array, at: Array) -> None:
-    """Adds point masses (s,) at places (s, 3) to the platforms of designs (s, n): mass, mass centre, and inertia."""
-    M, R = designs[:, PLACES["platform.mass"]].copy(), designs[:, PLACES["platform.mass_center"]].copy()
-    total = M + mass
-    designs[:, PLACES["platform.mass"]] = total
-    designs[:, PLACES["platform.mass_center"]] = (M[:, None] * R + mass[:, None] * at) / total[:, None]
-    d = at - R
-    reduced = M * mass / total  # two point masses about their common centre
-    inertia, (i, j) = PLACES["platform.inertia"], np.triu_indices(3, 1)
-    designs[:, inertia.diagonal()] += reduced[:, None] * ((d**2).sum(axis=1, keepdims=True) - d**2)
-    designs[:, inertia[i, j]] -= reduced[:, None] * d[:, i] * d[:, j]
 
 
 def quantile(distribution: str, u: Array, spread: float) -> Array:

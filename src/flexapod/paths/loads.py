@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
@@ -12,10 +14,14 @@ from flexapod.errors import SingularPoseError
 from flexapod.mechanics.dynamics import inverse_dynamics
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.joint_limits import check_limits
+from flexapod.mechanics.joint_springs import joint_moments
 from flexapod.mechanics.kinematics import LegRates, leg_rates
 from flexapod.mechanics.load_limits import load_excess
 from flexapod.paths.analysis import check_arguments, singular_times
 from flexapod.paths.trajectory import Trajectory
+from flexapod.pose import Motion
+
+EXTREMES = ("leg_force", "leg_rate", "power")  #: of which least, greatest and root mean square are told
 
 
 def path_loads(
@@ -46,9 +52,16 @@ def path_loads(
     Returns
     -------
     xarray.Dataset
-        Over `time` (s) and `leg`: leg_force (N, positive: compression), static_force (N, the same at rest), leg_length
-        (m), leg_rate (m/s), leg_acceleration (m/s2), power (W) of each actuator; over `leg`: stroke (m), peak_force
-        (N); over `time`: within_limits, of lengths, angles and distances, and loads_within_limits, of forces, speeds,
+        Over `time` (s) and `leg`:
+
+        - leg_force (N, positive: compression), static_force (N, the same at rest), leg_length (m), leg_rate (m/s),
+          leg_acceleration (m/s2), power (W) of each actuator, positive where it drives
+        - universal_moment, bending_moment, torsion_moment (N m), where the joints have springs: of a base joint about
+          both axes together, and of a platform joint across and about the leg
+
+        Over `leg`: stroke (m), peak_force (N, without its sign), and the least and greatest value and the root mean
+        square over the time of leg_force, leg_rate and power: least_force, greatest_force, rms_force, least_rate, and
+        so on. Over `time`: within_limits, of lengths, angles and distances, and loads_within_limits, of forces, speeds,
         accelerations and power.
 
     Raises
@@ -60,11 +73,13 @@ def path_loads(
 
     See Also
     --------
+    payload_loads : the same with loads on the platform, side by side.
     path_index : the dynamic stability index along a trajectory.
 
     Notes
     -----
-    The leg forces solve Eq. 34 of [1]_ at every instant.
+    The leg forces solve Eq. 34 of [1]_ at every instant. Means over the time are integrals by trapezoids over the
+    samples.
 
     References
     ----------
@@ -108,7 +123,44 @@ def path_loads(
         },
         {"time": ("time", times, in_unit("s")), "leg": list(LEGS)},
     )
+    dataset = dataset.assign(_joint_moments(hexapod, motion, joint)).assign(_extremes(dataset))
     return dataset.assign_attrs(design=hexapod.name, digest=hexapod.digest)
+
+
+def _extremes(loads: xr.Dataset) -> dict[str, xr.DataArray]:
+    """The least and greatest value and the root mean square of force, rate and power of each leg."""
+    found = {}
+    for name in EXTREMES:
+        values = loads[name]
+        short = name.removeprefix("leg_")
+        for word, reduced in {
+            "least": values.min("time"),
+            "greatest": values.max("time"),
+            "rms": root_mean_square(values),
+        }.items():
+            words = f"{word} {values.attrs['long_name']}".replace("rms", "root mean square of")
+            found[f"{word}_{short}"] = reduced.assign_attrs(values.attrs | {"long_name": words})
+    return found
+
+
+def root_mean_square(values: xr.DataArray) -> xr.DataArray:
+    """Over the time, by trapezoids."""
+    time = values.time.values
+    return np.sqrt((values**2).integrate("time") / (time[-1] - time[0]))
+
+
+def _joint_moments(hexapod: Hexapod, motion: Motion, joint: JointModel) -> dict[str, Any]:
+    """Moments of the springs in the joints, where there are any."""
+    if not hexapod.legs.joint_stiffness.any:
+        return {}
+    found = joint_moments(hexapod, motion.pose, joint=joint)
+    grid = ("time", "leg")
+    base = np.linalg.norm(found.universal_moment, axis=-1)
+    return {
+        "universal_moment": (grid, base, in_unit("N m", "moment of the base joint")),
+        "bending_moment": (grid, found.bending_moment, in_unit("N m", "bending moment of the platform joint")),
+        "torsion_moment": (grid, found.torsion_moment, in_unit("N m", "torsional moment of the platform joint")),
+    }
 
 
 def _kept(hexapod: Hexapod, force: Array, legs: LegRates) -> np.ndarray:

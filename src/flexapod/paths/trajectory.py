@@ -86,10 +86,7 @@ class Trajectory:
     ) -> None:
         poses = as_pose(waypoints, "waypoints")
         if origin is not None:
-            middle = as_pose(origin, "origin")
-            if middle.shape:
-                raise PoseError(f"origin has batch axes {middle.shape}; a path has one origin. Index it first.")
-            poses = middle.displaced(poses)
+            poses = _single(origin, "origin").displaced(poses)
         if len(poses.shape) != 1 or poses.shape[0] < 2:
             raise PathError(f"waypoints has batch axes {poses.shape}; a row of at least two poses is needed.")
         self.waypoints = poses
@@ -167,8 +164,48 @@ class Trajectory:
         times = self.times[0] + (self.times - self.times[0]) * (wanted / self.duration)
         return Trajectory(self.waypoints, times, ends=self.ends, weights=self.weights)
 
+    def between(self, pose: PoseLike, lead: float) -> Trajectory:
+        """Give the path with a rest pose before and after it, joined smoothly.
+
+        Parameters
+        ----------
+        pose : Pose or array_like
+            Where it begins and ends, at rest, in the base frame, such as `home_pose(hexapod)`.
+        lead : float
+            Time from there to the first waypoint, and from the last one back, s.
+
+        Returns
+        -------
+        Trajectory
+            Through all waypoints; only its pieces next to the first and the last one differ from those of this path.
+
+        Raises
+        ------
+        PoseError
+            If `pose` is not one pose.
+        ArgumentError
+            If `lead` is not > 0.
+        """
+        rest = _single(pose, "pose")
+        wanted = positive(lead, "lead", "s")
+        own = self.waypoints
+        poses = Pose(
+            np.concatenate([rest.position[None], own.position, rest.position[None]]),
+            np.concatenate([rest.matrix[None], own.matrix, rest.matrix[None]]),
+        )
+        times = np.concatenate([[self.times[0] - wanted], self.times, [self.times[-1] + wanted]])
+        weights = np.concatenate([self.weights[:1], self.weights, self.weights[-1:]])
+        return Trajectory(poses, times, weights=weights)
+
     def __repr__(self) -> str:
         return f"<Trajectory of {len(self.times)} waypoints, {self.duration:.6g} s, ends {self.ends}>"
+
+
+def _single(value: PoseLike, name: str) -> Pose:
+    pose = as_pose(value, name)
+    if pose.shape:
+        raise PoseError(f"{name} has batch axes {pose.shape}; a path has one {name}. Index it first.")
+    return pose
 
 
 def spline(times: Array, values: Array, ends: Ends) -> tuple[Any, Any, Any]:

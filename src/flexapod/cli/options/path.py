@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
-from flexapod.cli.options.quantities import FREQUENCY, POSITIVE_LENGTH, TIME, Quantity
+from flexapod.cli.options.quantities import FREQUENCY, LENGTH, POSITIVE_LENGTH, TIME, Quantity
 
 if TYPE_CHECKING:
     from flexapod.conventions import JointModel
@@ -22,9 +22,13 @@ class Options:
     design: str
     changes: tuple[str, ...]
     joint: JointModel
+    as_csv: bool
     as_json: bool
     file: Path | None
     from_home: bool
+    home_time: float | None
+    payload: tuple[tuple[float, ...], ...]
+    payloads: Path | None
     start: tuple[float, ...] | None
     goal: tuple[float, ...] | None
     bound: float | None
@@ -47,6 +51,25 @@ path_options = common.stack(
     common.pose_named("--to", "goal", help="Plan to this pose (m, degrees)."),
     common.rotation_options,
     click.option("--from-home", is_flag=True, help="Measure the poses of FILE, --from and --to from the home pose."),
+    click.option(
+        "--home-time",
+        type=TIME,
+        metavar="S",
+        help="Begin at home and end there, so long before and after the motion of FILE, joined smoothly.",
+    ),
+    click.option(
+        "--payload",
+        type=(Quantity("mass", need=">= 0"), LENGTH, LENGTH, LENGTH),
+        multiple=True,
+        metavar="KG X Y Z",
+        help="A load on the platform beside its own mass, and the place of its centre (m, platform frame). Repeatable.",
+    ),
+    click.option(
+        "--payloads",
+        type=click.Path(path_type=Path, dir_okay=False),
+        metavar="CSV",
+        help="Loads with inertia, or forces: columns mass, x, y, z, ixx, ..., force_x, ..., name, each if wanted.",
+    ),
     click.option("--bound", type=FREQUENCY, metavar="RAD_S", help="Least natural frequency that the path should keep."),
     click.option(
         "--ends",
@@ -85,5 +108,6 @@ path_options = common.stack(
         "--certify", is_flag=True, help="Prove the bound at every pose of the path; without --bound, the closest one."
     ),
     click.option("--seed", type=common.SEED, default=0, show_default=True, help="Of the planner's samples."),
-    common.out_option("Where to write the report, figures and planned waypoints. Default: nothing is written."),
+    click.option("--csv", "as_csv", is_flag=True, help="Print pose and legs at each instant as CSV, in SI units."),
+    common.out_option("Where to write the report, figures, tables and planned waypoints. Default: nothing is written."),
 )

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import click
 import numpy as np
 
 from flexapod.certificates.index import certify
-from flexapod.cli.options import common, waypoints
+from flexapod.cli.options import common, payloads, waypoints
 from flexapod.cli.options.path import Options
 from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
@@ -16,6 +17,7 @@ from flexapod.errors import PoseError, SingularPoseError
 from flexapod.paths.analysis import path_index
 from flexapod.paths.leg_speed import LegSpeed
 from flexapod.paths.loads import path_loads
+from flexapod.paths.payloads import PayloadCase, payload_loads
 from flexapod.paths.plan import Plan, plan_slice
 from flexapod.paths.planning import LONGEST, plan_path
 from flexapod.paths.requirements import PathRequirements
@@ -28,7 +30,11 @@ from flexapod.report.study import Study
 def compute(options: Options, report: Report) -> Study:
     """The index along the path of the options, given or planned."""
     hexapod = common.load_design(options.design, options.changes)
+    cases = payloads.read(options.payload, options.payloads)
     found = _given(hexapod, options) if _is_file(options) else _planned(hexapod, options, report)
+    if cases:
+        asis = PayloadCase("design")
+        found = replace(found, cases=payload_loads(hexapod, found.path, [asis, *cases], joint=options.joint))
     return study(hexapod, found, None if found.plan is None else waypoints.written(found.path))
 
 
@@ -37,6 +43,10 @@ def _is_file(options: Options) -> bool:
     if options.file is not None and ends == 0:
         return True
     if options.file is None and ends == 2:
+        if options.home_time is not None:
+            raise click.UsageError(
+                "--home-time joins the motion of a FILE to home; a planned path has --from and --to."
+            )
         if options.bound is None:
             raise click.UsageError("a path is planned to keep the index above a bound. Give --bound RAD_S.")
         return False
@@ -46,6 +56,8 @@ def _is_file(options: Options) -> bool:
 def _given(hexapod: Hexapod, options: Options) -> PathFindings:
     assert options.file is not None
     path = waypoints.read(options.file, options.ends, _origin(hexapod, options))  # type: ignore[arg-type]
+    if options.home_time is not None:
+        path = path.between(_home(hexapod, "--home-time"), options.home_time)
     try:
         index = path_index(hexapod, path, bound=options.bound, joint=options.joint)
     except (SingularPoseError, PoseError) as error:
@@ -96,9 +108,13 @@ def _pose(six: tuple[float, ...], origin: Pose | None) -> Pose:
 
 def _origin(hexapod: Hexapod, options: Options) -> Pose | None:
     """What poses are measured from: the home pose with --from-home, or else the base."""
-    if options.from_home and hexapod.home is None:
-        raise click.UsageError(f"{hexapod.name!r} names no home pose for --from-home. Add [home] to the design.")
-    return hexapod.home if options.from_home else None
+    return _home(hexapod, "--from-home") if options.from_home else None
+
+
+def _home(hexapod: Hexapod, option: str) -> Pose:
+    if hexapod.home is None:
+        raise click.UsageError(f"{hexapod.name!r} names no home pose for {option}. Add [home] to the design.")
+    return hexapod.home
 
 
 def _hint(hexapod: Hexapod, path: Trajectory, options: Options) -> str:

@@ -19,14 +19,16 @@ from flexapod.paths.analysis import PathIndex
 from flexapod.paths.plan import Plan
 from flexapod.paths.trajectory import Trajectory
 from flexapod.report.numbers import DASH, pose_numbers, pose_words, shown
-from flexapod.report.studies import least_index
+from flexapod.report.studies import least_index, path_legs
 from flexapod.report.studies.certificate import certificate_data, one_line
-from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
+from flexapod.report.study import Drawing, Row, Section, Study
 
 
 @dataclass(frozen=True)
 class PathFindings:
-    """What was computed about a path. size: m that a radian counts as. beside, plan, plane: of a planned path."""
+    """What was computed about a path. size: m that a radian counts as. beside, plan, plane: of a planned path.
+
+    cases: with each payload."""
 
     path: Trajectory
     along: PathIndex
@@ -36,6 +38,7 @@ class PathFindings:
     plan: Plan | None = None
     plane: xr.Dataset | None = None
     certificate: Certificate | None = None
+    cases: xr.Dataset | None = None
 
 
 def study(hexapod: Hexapod, f: PathFindings, waypoints: str | None = None) -> Study:
@@ -52,14 +55,28 @@ def study(hexapod: Hexapod, f: PathFindings, waypoints: str | None = None) -> St
         about=f"A path of {len(f.path.times)} waypoints, {what}. One radian counts as {shown(f.size, 3)} m of length.",
         data=_data(hexapod, f),
         rows=_rows(f),
-        sections=[*(Section(one.title, [one]) for one in drawings), Section("Legs", [_legs(f)])],
+        sections=[
+            *(Section(one.title, [one]) for one in drawings),
+            Section("Legs", path_legs.tables(f.loads)),
+            *_cases(f),
+        ],
         cautions=[
             *least_index.cautions(hexapod, f.along.minimum_pose, f.along.samples.attrs["joint"]),
             *cautions(f),
             *load_cautions(hexapod, f.loads),
+            *_case_cautions(hexapod, f),
         ],
-        files={**files, "path.html": None},
+        files={
+            **files,
+            "path.csv": lambda: path_legs.series(f.path, f.loads if f.cases is None else f.cases),
+            "path.html": None,
+        },
     )
+
+
+def _cases(f: PathFindings) -> list[Section]:
+    """The payloads, where there are any."""
+    return [] if f.cases is None else [Section("Payloads", path_legs.case_tables(f.cases))]
 
 
 def _drawings(f: PathFindings) -> list[Drawing]:
@@ -118,6 +135,17 @@ def load_cautions(hexapod: Hexapod, loads: xr.Dataset) -> list[Caution]:
     return found
 
 
+def _case_cautions(hexapod: Hexapod, f: PathFindings) -> list[Caution]:
+    """The same with each payload."""
+    if f.cases is None:
+        return []
+    return [
+        Caution(one.code, f"With the payload {name}: {one.text}", one.numbers)
+        for name in map(str, f.cases.case.values[1:])
+        for one in load_cautions(hexapod, f.cases.sel(case=name))
+    ]
+
+
 def _rows(f: PathFindings) -> list[Row]:
     index, bound, force = f.along, f.along.bound, float(f.loads.peak_force.max())
     where = f"rad/s at {index.minimum_time:.4g} s, {pose_words(index.minimum_pose)}"
@@ -145,19 +173,6 @@ def _rows(f: PathFindings) -> list[Row]:
     return rows
 
 
-def _legs(f: PathFindings) -> Table:
-    loads = f.loads
-    columns = [
-        Column("leg", [str(leg) for leg in loads.leg.values]),
-        Column("travel", 1e3 * loads.stroke.values, "mm"),
-        Column("fastest", np.abs(loads.leg_rate.values).max(axis=0), "m/s"),
-        Column("acceleration", np.abs(loads.leg_acceleration.values).max(axis=0), "m/s\u00b2"),
-        Column("peak force", loads.peak_force.values, "N"),
-        Column("peak power", np.abs(loads.power.values).max(axis=0), "W"),
-    ]
-    return Table(columns, on="page")
-
-
 def _data(hexapod: Hexapod, f: PathFindings) -> dict[str, Any]:
     index, loads, plan = f.along, f.loads, f.plan
     data: dict[str, Any] = {
@@ -175,13 +190,18 @@ def _data(hexapod: Hexapod, f: PathFindings) -> dict[str, Any]:
         "weighted_mean_index_rad_s": index.weighted_mean,
         "within_limits": bool(loads.within_limits.all()),
         "loads_within_limits": bool(loads.loads_within_limits.all()),
-        "leg_stroke_m": loads.stroke.values,
-        "leg_peak_force_N": loads.peak_force.values,
-        "leg_peak_rate_m_s": abs(loads.leg_rate).max("time").values,
+        **path_legs.data(loads),
         "waypoints_s": f.path.times,
         "waypoints_m_deg": [pose_numbers(f.path.waypoints[i]) for i in range(len(f.path.times))],
         "files": [],
     }
+    if f.cases is not None:
+        data["payloads"] = {
+            "case": [str(name) for name in f.cases.case.values],
+            "mass_kg": f.cases.mass.values,
+            "least_index_rad_s": f.cases.least_index.values,
+            **path_legs.data(f.cases),
+        }
     if f.certificate is not None:
         data["certificate"] = certificate_data(f.certificate)
     if plan is not None:
