@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import os
 
 import numpy as np
 import pytest
@@ -287,3 +288,99 @@ def test_moments_of_joints_stop_motions(machine):
         assert axis.most == pytest.approx(far, abs=1e-9)
     rows = np.random.default_rng(6).uniform(-1, 1, (5000, 6)) * found.box.half
     assert fx.check_limits(limited, displaced(machine, rows)).ok.all()
+
+
+def closeness(machine, poses):
+    """det H with moments over the platform's size and columns of length 1, written anew: it tells singular poses."""
+    joints = machine.platform_joints - machine.platform_joints.mean(axis=0)
+    H = fx.force_transformation(machine, poses) / np.repeat([1.0, np.linalg.norm(joints, axis=1).max()], 3)[:, None]
+    return np.linalg.det(H / np.linalg.norm(H, axis=-2, keepdims=True))
+
+
+@pytest.mark.parametrize("name", ["mukherjee-i", "mukherjee-ii"])
+def test_without_limits_motions_end_where_the_determinant_does(name):
+    """At 1e-9 of it; manipulator II, which is symmetric, has multiple zeros, to which plain secants creep."""
+    machine = fx.load(name)
+    side = np.sign(closeness(machine, machine.home))
+    found = fx.envelope(machine, directions=4)
+    ends = [end * np.eye(6)[k] for k, axis in enumerate(found.axes) for end in (axis.least, axis.most)]
+    for pair in found.pairs:
+        at = [AXES.index(name) for name in pair.axes]
+        travels = np.array([[found.axes[k].least, found.axes[k].most] for k in at])
+        corner = np.zeros((2, 2, 6))
+        corner[..., at] = np.moveaxis(np.meshgrid(*travels, indexing="ij"), 0, -1)
+        shares = [side * closeness(machine, displaced(machine, pair.share * row)) for row in corner.reshape(4, 6)]
+        assert min(shares) > 0
+    stopped = [end for end in ends if np.abs(end[3:]).sum() < 3]  # others turn for half a turn
+    assert len(stopped) > 4
+    for end in stopped:
+        reach = np.abs(end).max()
+        unit = end / reach
+        if side * closeness(machine, displaced(machine, (reach + 1e-6) * unit))[0] > 1e-9:
+            continue  # followed as far as four leg lengths
+        least = bisected(
+            lambda s, u=unit: side * closeness(machine, displaced(machine, s * u))[0] >= 1e-9, reach + 1e-6
+        )
+        assert reach == pytest.approx(least, abs=1e-9)
+
+
+def test_a_suspension_bears_its_share(machine):
+    """Leg forces that stop motions are those that remain for the legs: found again by the equilibrium at rest."""
+    strong = float(np.abs(fx.hold(machine).leg_force).max())
+    hung = machine.replace(
+        {
+            "suspension.stiffness": [2e4, 2e4, 4e4, 1e4, 1e4, 1e4],
+            "limits.leg_compression": 1.4 * strong,
+            "limits.leg_tension": 0.1 * strong,
+        }
+    )
+    found = fx.envelope(hung, directions=4)
+    ended = 0
+    for k, axis in enumerate(found.axes):
+        for end, stops in ((axis.least, axis.stopped_at_least), (axis.most, axis.stopped_at_most)):
+            force = fx.hold(hung, displaced(hung, end * np.eye(6)[k])[0]).leg_force
+            assert force.max() <= 1.4 * strong * (1 + 1e-9)
+            for stop in stops:
+                if stop.startswith("greatest compression"):
+                    ended += 1
+                    assert force[int(stop[-1]) - 1] == pytest.approx(1.4 * strong, rel=1e-9)
+    assert ended > 4
+    plain = fx.hold(machine, displaced(machine, found.axes[2].most * np.eye(6)[2])[0]).leg_force.max()
+    assert plain < strong  # without the suspension nothing would be exceeded there
+
+
+POSES = int(os.environ.get("ENVELOPE_POSES", "20000"))  # a whole run: ENVELOPE_POSES=1000000
+
+
+@pytest.mark.parametrize("name", ["motion-base", "precision-positioner", "mukherjee-i", "jointed"])
+def test_drawn_poses_of_the_box_keep_everything(name):
+    """With bounds of the index and of cond(H), springs, and limits of moments and forces, poses drawn anew each time."""
+    machine, bounds = fx.load("motion-base" if name == "jointed" else name), {}
+    if name == "jointed":
+        strong = float(np.abs(fx.hold(machine).leg_force).max())
+        machine = machine.replace(
+            {
+                "legs.joint_stiffness.universal": 2e4,
+                "legs.joint_stiffness.spherical": 1e4,
+                "limits.universal_moment": 2e3,
+                "limits.spherical_moment": 1.5e3,
+                "limits.leg_compression": 2 * strong,
+                "suspension.stiffness": [2e4, 2e4, 4e4, 1e4, 1e4, 1e4],
+            }
+        )
+    elif name == "mukherjee-i":
+        bounds = {"index": 0.6 * fx.stability_index(machine), "condition_number": 2 * fx.condition_number(machine)}
+    found = fx.envelope(machine, directions=4, **bounds)
+    random = np.random.default_rng()
+    for start in range(0, POSES, 100_000):
+        draws = random.uniform(-1, 1, (min(100_000, POSES - start), 6))
+        draws[::2] /= np.abs(draws[::2]).max(axis=1, keepdims=True)
+        poses = displaced(machine, draws * found.box.half)
+        assert fx.check_limits(machine, poses).ok.all()
+        if bounds:
+            swept = fx.sweep(machine, poses, quantities=("omega_1", "cond_H"))
+            assert swept.omega_1.values.min() >= bounds["index"] * (1 - 1e-9)
+            assert swept.cond_H.values.max() <= bounds["condition_number"] * (1 + 1e-9)
+        if machine.limits.leg_compression is not None:
+            force = fx.inverse_dynamics(machine, poses)
+            assert force.max() <= machine.limits.leg_compression * (1 + 1e-9)

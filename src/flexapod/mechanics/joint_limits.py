@@ -233,8 +233,7 @@ def limit_excess(
             if most is not None:
                 value = np.degrees(getattr(angles, name))
                 result.append(LimitedQuantity(f"{name} joint angle", "deg", value, -np.inf, float(np.degrees(most))))
-    if limits.universal_moment is not None or limits.spherical_moment is not None:
-        result += moment_excess(hexapod, pose, base)
+    result += moment_excess(hexapod, pose, base)
     if limits.leg_distance is not None:
         distance = np.asarray(leg_distance(hexapod, pose, base=base))
         result.append(LimitedQuantity("least distance between legs", "m", distance, limits.leg_distance, np.inf))
@@ -244,6 +243,8 @@ def limit_excess(
 def moment_excess(hexapod: Hexapod, pose: PoseLike | None, base: PoseLike | None = None) -> list[LimitedQuantity]:
     """The moments of the springs in the joints that the design limits, with their bounds."""
     limits = hexapod.limits
+    if limits.universal_moment is None and limits.spherical_moment is None:
+        return []
     if hexapod.rest is None:  # then there are no springs in the joints
         shape = states(hexapod, pose, base).shape
         bends = {"universal": np.zeros((*shape, 6)), "spherical": np.zeros((*shape, 6))}

@@ -18,6 +18,7 @@ _MOST_POINTS = 512  # of a box, and of its faces; 2^(m + 3) of one with m free c
 _STARTS = 2  # of a search for each limit
 _NEAR = 0.3  # of a margin's range in the box: where the least sample is above it, the limit is not met in between
 _ROUNDS = 30
+_PAST = 1e-9  # of a box's share, by which rays are followed past it
 _SAME = 1e-12  # of the share, by which a round no longer lowers it
 
 
@@ -73,7 +74,10 @@ def largest_shares(limits: TravelLimits, boxes: Boxes, seed: int = 0) -> list[Sh
     which = np.repeat(np.arange(count), len(corners) + len(points))
     faces = boxes.faces(which, inside)
     found = [Share(np.inf, np.zeros(6), ())] * count
-    _lower(limits, boxes, which, boxes.displaced(which, faces), found)
+    rows = boxes.displaced(which, faces)
+    is_corner = np.tile(np.arange(len(inside) // count) < len(corners), count)
+    for first in (is_corner, ~is_corner):  # most boxes end at corners; other rays are followed no farther
+        _lower(limits, boxes, which[first], rows[first], found)
     found = [share if np.isfinite(share.share) else Share(0.0, np.zeros(6), ()) for share in found]  # of no width
     cube, which = np.concatenate([inside, faces]), np.concatenate([which, which])
     going = np.ones(count, dtype=bool)
@@ -92,8 +96,9 @@ def _lower(limits: TravelLimits, boxes: Boxes, which: NDArray[np.intp], rows: Ar
     """Lower the shares of boxes to where rays through displacements (n, 6) in them meet a limit."""
     moved = rows.any(axis=1)
     which, rows = which[moved], rows[moved]
-    rays = trace(limits, rows)
-    shares = rays.reach * boxes.gauge(which, rows)
+    gauge = boxes.gauge(which, rows)
+    rays = trace(limits, rows, np.array([found[box].share for box in which]) / gauge * (1 + _PAST))
+    shares = rays.reach * gauge
     for k in np.argsort(shares)[::-1]:
         if shares[k] < found[which[k]].share:
             found[which[k]] = Share(float(shares[k]), rays.reach[k] * rows[k], rays.stops[k])

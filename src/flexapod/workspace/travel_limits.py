@@ -96,6 +96,11 @@ class TravelLimits:
         """The greatest speeds of the platform's joints, (n, 6), m by one of the way."""
         return ways.speed[:, None] + self._arm * ways.turn[:, None]
 
+    def longest_step(self, ways: Ways) -> Array:
+        """The longest step (n,) on each way: what has no known slope is looked at no more rarely."""
+        with np.errstate(divide="ignore"):
+            return _COARSE * self.leg / self.joint_speed(ways).max(axis=1)
+
     def margins(self, rows: Array) -> Array:
         """Margins (n, k); NaN where a leg cannot take the pose."""
         return self._found(rows, None)[0]
@@ -120,7 +125,7 @@ class TravelLimits:
         with np.errstate(divide="ignore", invalid="ignore"):
             reach = [(part / steep).min(axis=1) for part, steep in parts if steep is not None]
         half = (0.5 * length / slope.joint).min(axis=1)
-        return margins, np.min([half, _COARSE * self.leg / slope.joint.max(axis=1), *reach], axis=0)
+        return margins, np.min([half, self.longest_step(ways), *reach], axis=0)
 
     def _geometry(self, s: States, length: Array, slope: _Slopes | None) -> Iterator[tuple[Array, Array | None]]:
         limits, packed = self.hexapod.limits, self.hexapod.packed
@@ -149,10 +154,9 @@ class TravelLimits:
     def _determinant(self, s: States) -> Array:
         """det H (n, 1), positive on home's side of the singular poses: moments over the platform's size, columns 1."""
         H = _core.force_transformation(self.hexapod.packed, s.platform, s.base).reshape(-1, 6, 6)
-        H = H * np.repeat([1.0, 1 / self._size], 3)[:, None]
-        H = np.where(np.isfinite(H), H, 0.0)
-        norms = np.linalg.norm(H, axis=1, keepdims=True)
-        return self._side * np.linalg.det(H / np.where(norms > 0, norms, 1.0))[:, None]
+        scale = np.repeat([1.0, 1 / self._size], 3)
+        columns = np.sqrt(np.einsum("nij,nij,i->nj", H, H, scale**2)).prod(axis=1)
+        return (self._side * scale.prod() * np.linalg.det(H) / columns)[:, None]
 
     def _sampled(self, poses: Pose, s: States) -> Iterator[Array]:
         limits = self.hexapod.limits
