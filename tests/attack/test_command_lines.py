@@ -26,6 +26,7 @@ RIGHT = {
     "animate": ["cubic-isolator", "--out", "a.gif"],
     "certify": ["cubic-isolator", "--around", "0.0005", "0.5", "--at-least", "1Hz"],
     "check": ["cubic-isolator"],
+    "cite": [],
     "control": ["cubic-isolator", "velocity", "--gain", "10"],
     "designs": [],
     "envelope": ["cubic-isolator"],

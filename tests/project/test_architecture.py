@@ -14,6 +14,7 @@ ORDER = [
     "_suggestions",
     "_core",
     "errors",
+    "citation",
     "conventions",
     "checks",
     "optional",

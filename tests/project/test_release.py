@@ -8,6 +8,7 @@ import pytest
 import yaml
 
 import flexapod as fx
+from flexapod import citation
 
 ROOT = Path(__file__).resolve().parents[2]
 CITATION = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
@@ -24,6 +25,18 @@ def test_the_version_is_one():
 def test_a_dated_changelog_has_a_dated_citation():
     heading = re.search(r"^## .*", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)[0]
     assert ("unreleased" in heading) == ("date-released" not in CITATION)
+
+
+def test_the_citation_file_is_made_from_the_package(monkeypatch):
+    """By `flexapod cite --cff`; with a date of release as well, it is what YAML reads again."""
+    assert (ROOT / "CITATION.cff").read_text(encoding="utf-8") == citation.cff()
+    monkeypatch.setattr(citation, "RELEASED", "2026-12-01")
+    read = yaml.safe_load(citation.cff())
+    assert str(read["date-released"]) == "2026-12-01"
+    assert {key: read[key] for key in citation.SOFTWARE if key != "authors"} == {
+        key: value for key, value in citation.SOFTWARE.items() if key != "authors"
+    }
+    assert "year    = {2026}" in citation.bibtex()
 
 
 def test_the_paper_is_cited():

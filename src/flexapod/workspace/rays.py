@@ -82,7 +82,7 @@ def _held(
     near = np.diff(places, axis=1) <= safe[:, :-1] * (1 + _ROUNDING)
     reached = np.ones(places.shape, dtype=bool)
     reached[:, 1:] = np.logical_and.accumulate(good[:, :-1] & near & looked[:, 1:], axis=1)
-    return (reached & good).sum(axis=1), (reached & ~good).any(axis=1)
+    return np.count_nonzero(reached & good, axis=1), np.any(reached & ~good, axis=1)
 
 
 def _narrowed(limits: TravelLimits, rays: Array, kept: Array, beyond: Array) -> Ends:

@@ -120,7 +120,7 @@ class TravelLimits:
             slope = _Slopes(joint, swing, swing + ways.turn[:, None])
         parts = list(self._geometry(s, length, slope))
         margins = np.concatenate([*(part for part, _ in parts), *self._sampled(poses, s)], axis=1)
-        if slope is None:
+        if ways is None or slope is None:
             return margins, np.empty(0)
         with np.errstate(divide="ignore", invalid="ignore"):
             reach = [(part / steep).min(axis=1) for part, steep in parts if steep is not None]
