@@ -108,7 +108,7 @@ def test_new_names_the_file(result, tmp_path, monkeypatch, given, written):
 
 
 def test_designs_are_found_by_words(run, result):
-    assert list(result("designs", "--search", "ISOLATOR")) == ["cubic-isolator"]
+    assert list(result("designs", "--search", "voice-coil ISOLATES")) == ["cubic-isolator"]
     every = result("designs")
     for name, one in every.items():
         word = next(word for word in one["about"].split() if word.isalpha())

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
+from tests.helpers.support import MACHINES
 
 import flexapod as fx
 from flexapod import plots
@@ -73,7 +74,7 @@ class Elements(HTMLParser):
         self.words.append(data)
 
 
-@pytest.mark.parametrize("name", fx.packaged_designs())
+@pytest.mark.parametrize("name", MACHINES)
 def test_the_page_is_whole_and_needs_nothing_else(reports, name):
     findings, said = reports(name)
     elements = Elements(said)
@@ -100,7 +101,7 @@ def test_the_page_is_whole_and_needs_nothing_else(reports, name):
         assert shown(value, 4) in text or shown(value, 3) in text
 
 
-@pytest.mark.parametrize("name", fx.packaged_designs())
+@pytest.mark.parametrize("name", MACHINES)
 def test_the_neutral_colours_follow_light_and_dark(reports, name):
     _, html = reports(name)
     body = html[html.index("<body>") :]

@@ -11,13 +11,14 @@ import pytest
 
 pytest.importorskip("starlette")
 from starlette.testclient import TestClient
+from tests.helpers.support import MACHINES
 
 from flexapod.design import design_file
 from flexapod.web import answers, simulation, workspace
 from flexapod.web.app import application
 from flexapod.web.encode import as_json
 
-TEXTS = {name: design_file.find(name).read_text(encoding="utf-8") for name in design_file.packaged_designs()}
+TEXTS = {name: design_file.find(name).read_text(encoding="utf-8") for name in MACHINES}
 ASKED = {"design": TEXTS["mukherjee-ii"], "pose": [0.001, 0.0, 0.086, 1.0, 2.0, 3.0]}
 BOX = {"low": [-0.01, -0.01, 0.08, -5, -5, -5], "high": [0.01, 0.01, 0.09, 5, 5, 5]}
 

@@ -5,6 +5,7 @@ import pytest
 from scipy.optimize import differential_evolution
 from scipy.stats import spearmanr
 from tests.helpers.stores import BOX, I, stored
+from tests.helpers.support import MACHINES
 
 import flexapod as fx
 from flexapod.conventions import AXES
@@ -155,7 +156,7 @@ def _index(design, six):
     return float(fx.stability_index(design, fx.Pose.from_rpy(*six)))
 
 
-@pytest.mark.parametrize("name", fx.packaged_designs())
+@pytest.mark.parametrize("name", MACHINES)
 def test_worst_pose_is_a_local_minimum_below_the_sweep(name, measured):
     design = fx.load(name)
     reach = np.ptp(design.base_joints, axis=0).max()
