@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flexapod.design.schema import KEYS, Key
+from flexapod.design.schema import KEYS, POINT, POINTS, Key
 from flexapod.design.units import UNITS, printed, si_unit
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 def table() -> str:
     rows = ["| key | meaning | is a | shape | range |", "|---|---|---|---|---|"]
-    for name, key in KEYS.items():
+    for name, key in {**KEYS, f"{POINTS}.NAME": POINT}.items():
         rows.append(f"| `{name}` | {key.meaning} | {key.dimension or 'number'} | {key.shape_text} | {bounds(key)} |")
     return "\n".join(rows)
 

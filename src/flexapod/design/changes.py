@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from flexapod.design.key_names import resolve, unknown_key
-from flexapod.design.schema import ANY, KEYS, TABLES, TEXT_KEYS, is_of_each_leg
+from flexapod.design.schema import ANY, KEYS, TABLES, TEXT_KEYS, is_of_each_leg, rule_of
 from flexapod.design.short_forms import ShortForm
 from flexapod.design.shorthands import BESIDE, MAKES, NEEDS, SETS, Values, expand, stands_in_pairs
 from flexapod.design.tables import complete, flatten, has_law, table_of
@@ -176,7 +176,7 @@ def _set_place(values: Values, key: str, value: Any) -> None:
     canonical, unit = _canonical(match[1])
     if canonical in TEXT_KEYS or canonical not in values:
         raise DesignError(f"{key}: {canonical} is not a list in this design. Give {canonical} as a whole.")
-    rule = KEYS[canonical]
+    rule = rule_of(canonical)
     index = tuple(int(number) for number in re.findall(r"\d+", match[2]))
     shape = values[canonical].shape
     if is_of_each_leg(canonical) and shape[:1] != (6,):

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from flexapod.design.schema import KEYS, TEXT_KEYS, is_of_each_leg
+from flexapod.design.schema import KEYS, TEXT_KEYS, is_of_each_leg, rule_of
 from flexapod.design.short_forms import ShortForm, written
 from flexapod.design.shorthands import Values, expand
 from flexapod.design.tables import START, complete, flatten
@@ -174,7 +174,7 @@ def write_text(values: Values, forms: Iterable[ShortForm] = ()) -> str:
         item = tomlkit.item(value.tolist())
         if value.ndim > 1:
             item.multiline(True)
-        rule = KEYS[key]
+        rule = rule_of(key)
         unit = printed(si_unit(rule.dimension))
         item.comment(f"{rule.meaning}, {unit}" if unit else rule.meaning)
         here.add(last, item)

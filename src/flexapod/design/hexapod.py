@@ -23,6 +23,7 @@ from flexapod.design.geometry_checks import joint_warnings, platform_warnings, u
 from flexapod.design.home import Home
 from flexapod.design.packing import packed
 from flexapod.design.parts import Damping, LegPart, Legs, Limits
+from flexapod.design.points import Points, values_of_points
 from flexapod.design.short_forms import ShortForm, standing
 from flexapod.design.shorthands import circle_table, expand
 from flexapod.design.spring_checks import check_springs
@@ -86,6 +87,9 @@ class Hexapod(Value, metaclass=Suggesting):
         pitch, yaw in rad. It is kept as a `Pose`.
     suspension : Suspension, optional
         A spring and damper between base and platform beside the legs.
+    points : mapping, optional
+        Points of the platform by name, (3,) m each, in the platform's frame, such as the vertex of a mirror. What
+        studies take as `point` may be such a name. Kept in the order of the names.
     short_forms : tuple, optional
         The circles, cube and rods of a design file that joints and bodies were made by. `replace` changes their
         numbers and `to_toml` writes them; those that do not make the other values are left out. Designs of the same
@@ -138,6 +142,7 @@ class Hexapod(Value, metaclass=Suggesting):
     limits: Limits = field(default_factory=Limits)
     home: Pose | None = None
     suspension: Suspension | None = None
+    points: Mapping[str, Array] = field(default_factory=Points)
     short_forms: tuple[ShortForm, ...] = field(default=(), compare=False)
     warnings: tuple[str, ...] = field(default=(), init=False)
 
@@ -154,6 +159,7 @@ class Hexapod(Value, metaclass=Suggesting):
                 raise DesignError(f"{part} is {shown(getattr(self, part))}; it must be a {kind.__name__}.")
         if self.suspension is not None and not isinstance(self.suspension, Suspension):
             raise DesignError(f"suspension is {shown(self.suspension)}; it must be a Suspension.")
+        object.__setattr__(self, "points", Points(self.points))
         if self.home is not None:
             object.__setattr__(self, "home", Home.of(self.home))
         axes = self.universal_axes
@@ -299,7 +305,7 @@ class Hexapod(Value, metaclass=Suggesting):
                 values[f"limits.{item.name}"] = np.asarray(limit)
         if self.home is not None:
             values |= {"home.position": self.home.position, "home.orientation": self.home.rpy}
-        return values | values_of_suspension(self.suspension)
+        return values | values_of_suspension(self.suspension) | values_of_points(self.points)  # type: ignore[arg-type]
 
     def replace(self, changes: Mapping[str, Any] | None = None, /, **more: Any) -> Hexapod:
         """This design with changes, by the keys of a design file.
@@ -364,6 +370,8 @@ class Hexapod(Value, metaclass=Suggesting):
         springs = {key: value for key, value in self.values().items() if key.startswith(SPRINGS)}
         if springs:  # designs without them have the digest that they had before there were any
             content += bytes_of(springs)
+        if self.points:
+            content += bytes_of(self.points)
         return hashlib.sha256(content).hexdigest()[:16]
 
     @property

@@ -2,7 +2,7 @@
 
 from typing import NoReturn
 
-from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS, Key
+from flexapod.design.schema import KEYS, POINT, POINTS, TABLES, TEXT_KEYS, Key
 from flexapod.design.units import ALL_UNITS, UNITS, si_unit
 from flexapod.errors import DesignError
 
@@ -12,7 +12,7 @@ LONGEST = 80  # characters of a key: names are compared letter by letter, and to
 def children(table: str) -> list[str]:
     """Names that may stand in a table of the file ("" is the file itself), tables included."""
     start = f"{table}." if table else ""
-    known = {*KEYS, *TEXT_KEYS}
+    known = {*KEYS, *TEXT_KEYS, *TABLES}
     return sorted({key[len(start) :].split(".")[0] for key in known if key.startswith(start)})
 
 
@@ -20,6 +20,8 @@ def resolve(table: str, key: str) -> tuple[str, str]:
     """A key as written -> (its dotted name without unit, its unit). Raises DesignError for a key that is not one."""
     if len(key) > LONGEST:
         unknown_key(table, f"{key[:LONGEST]}...")
+    if table == POINTS:
+        return _point(key)
     start = f"{table}." if table else ""
     known = [child for child in children(table) if start + child not in TABLES]
     if key in known:
@@ -36,6 +38,18 @@ def resolve(table: str, key: str) -> tuple[str, str]:
         if unit in ALL_UNITS or not _near(key, [child for child in children(table) if child != stem]):
             _wrong_unit(start + key, start + stem, unit, rule)
     unknown_key(table, key)
+
+
+def _point(key: str) -> tuple[str, str]:
+    """The name of a point that a key gives, and the unit of length at its end."""
+    endings = [unit for unit in ALL_UNITS if key.endswith(f"_{unit}")]
+    if not endings:
+        return f"{POINTS}.{key}", si_unit(POINT.dimension)
+    unit = max(endings, key=len)
+    stem = f"{POINTS}.{key[: -len(unit) - 1]}"
+    if unit not in UNITS["length"]:
+        _wrong_unit(f"{POINTS}.{key}", stem, unit, POINT)
+    return stem, unit
 
 
 def _wrong_unit(key: str, stem: str, unit: str, rule: Key | None) -> NoReturn:

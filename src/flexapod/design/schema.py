@@ -367,6 +367,15 @@ KEYS: dict[str, Key] = {
 }
 
 
+POINTS = "points"  #: the table whose keys are names of the user's own
+POINT = Key("point of the platform under a name of your own, platform frame", "length", _VECTOR)
+
+
+def rule_of(key: str) -> Key:
+    """The rule of a dotted key that holds numbers; those of `points` are the user's own names."""
+    return POINT if key.startswith(f"{POINTS}.") else KEYS[key]
+
+
 def is_of_each_leg(key: str) -> bool:
     """Whether six values may be given, one for each leg, in place of one of the first shape."""
     return key.startswith("legs.") and (6, *KEYS[key].shapes[0]) in KEYS[key].shapes
@@ -379,4 +388,6 @@ TEXT_KEYS = {
     "home.turned.rotation_order": "XYZ",
     "legs.stiffness_law.kind": "screw",
 }
-TABLES = frozenset(key.rsplit(".", depth)[0] for key in {*KEYS, *TEXT_KEYS} for depth in range(1, key.count(".") + 1))
+TABLES = frozenset(
+    key.rsplit(".", depth)[0] for key in {*KEYS, *TEXT_KEYS} for depth in range(1, key.count(".") + 1)
+) | {POINTS}

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from flexapod.design.key_names import resolve
-from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS
+from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS, rule_of
 from flexapod.design.shorthands import Values
 from flexapod.design.units import printed, si_unit
 from flexapod.design.value_checks import check_value
@@ -41,7 +41,7 @@ def flatten(tables: Mapping[str, Any], table: str = "") -> Values:
 
 def _check(name: str, canonical: str, value: Any, unit: str) -> Any:
     if canonical not in TEXT_KEYS:
-        return check_value(name, value, KEYS[canonical], unit)
+        return check_value(name, value, rule_of(canonical), unit)
     if not isinstance(value, str) or not value.strip():
         raise DesignError(f'{name} is {shown(value)}; it must be text. Write {name} = "{TEXT_KEYS[canonical]}".')
     if not is_text(value):

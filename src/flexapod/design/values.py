@@ -11,6 +11,7 @@ import numpy as np
 from flexapod.design.flexible_joints import JointStiffness, Suspension
 from flexapod.design.home import home_of
 from flexapod.design.parts import Damping, LegPart, Legs, Limits, more_keys
+from flexapod.design.points import points_of
 from flexapod.design.stiffness_laws import law_of, values_of_law
 from flexapod.errors import DesignError, shown
 
@@ -30,6 +31,7 @@ def parts_of(values: Mapping[str, Any], keys: Mapping[str, str]) -> dict[str, An
             "limits": Limits(**{item.name: values.get(f"limits.{item.name}") for item in fields(Limits)}),
             "home": home_of(values),
             "suspension": suspension_of(values),
+            "points": points_of(values),
         }
     except (KeyError, TypeError) as error:  # TypeError: a part of the legs without some of its numbers
         raise DesignError(f"values lacks a key ({error}); it must hold every one of Hexapod.values().") from error

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
+from flexapod.checks import numbers
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, DesignError, PoseError, shown
@@ -17,6 +18,9 @@ LEAST_SINE = 1e-7  # of the angle between a leg and its universal joint's axis
 ZERO = (0.0, 0.0, 0.0)
 NO_LEGS = (0.0,) * 6
 
+
+#: A point of the platform: [x, y, z] in its frame, m, or the name of a point of the design.
+PointLike = str | ArrayLike
 
 _AT_ORIGIN = Motion.fixed().packed
 _JOINTS = {joint.name: joint for joint in _core.Joint}
@@ -64,19 +68,45 @@ def single_base(hexapod: Hexapod, base: PoseLike | None) -> Pose | None:
     return None if base is None else single_pose(hexapod, base, "base")
 
 
+def as_point(hexapod: Hexapod, point: PointLike, name: str = "point") -> Array:
+    """A point of the platform (3,), m, in its frame, by its place or by its name in the design.
+
+    Raises ArgumentError for what is neither.
+    """
+    points = as_hexapod(hexapod).points
+    if not isinstance(point, str):
+        return numbers(point, name, (3,))
+    if point in points:
+        return points[point]
+    from difflib import get_close_matches
+
+    near = get_close_matches(point, points, n=1)
+    known = f"; it has {', '.join(points)}" if points else ", which names none"
+    hint = f"Did you mean {near[0]!r}? " if near else ""
+    raise ArgumentError(
+        f"{name} is {shown(point)}, which is no point of {hexapod.name!r}{known}. {hint}Give x, y, z in m, or add the "
+        "point to [points] of the design: name = [x, y, z]."
+    )
+
+
+def point_attributes(hexapod: Hexapod, point: PointLike) -> dict[str, object]:
+    """Attributes of a Dataset that say at which point it is: its place, and its name, "" without one."""
+    return {"point_m": as_point(hexapod, point).tolist(), "point": point if isinstance(point, str) else ""}
+
+
 def states(hexapod: Hexapod, platform: MotionLike | None, base: MotionLike | None = None) -> States:
     """Rows for the core. A single pose that no leg can take raises PoseError; in a batch its row is NaN."""
     as_hexapod(hexapod)
-    numbers = [
+    given = [
         _numbers(platform if isinstance(platform, Motion) else pose_or_home(hexapod, platform)),
         _AT_ORIGIN if base is None else _numbers(base if isinstance(base, Motion) else as_pose(base, "base")),
     ]
     try:
-        shape = np.broadcast_shapes(*(rows.shape[:-1] for rows in numbers))
+        shape = np.broadcast_shapes(*(rows.shape[:-1] for rows in given))
     except ValueError:
-        axes = [rows.shape[:-1] for rows in numbers]
+        axes = [rows.shape[:-1] for rows in given]
         raise PoseError(f"pose has batch axes {axes[0]}, base {axes[1]}; they must be equal or 1.") from None
-    rows = [np.ascontiguousarray(_spread(rows, shape).reshape(-1, _core.motion_size)) for rows in numbers]
+    rows = [np.ascontiguousarray(_spread(rows, shape).reshape(-1, _core.motion_size)) for rows in given]
     length, sine = _core.leg_fit(hexapod.packed, *rows)
     good = np.all((length >= _shortest(hexapod)) & (sine >= LEAST_SINE), axis=1, keepdims=True)
     if not good.all():

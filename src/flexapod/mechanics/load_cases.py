@@ -12,7 +12,7 @@ from flexapod.checks import number, numbers, one_of
 from flexapod.conventions import AXES, LEGS, Array, JointModel, Unit, in_mixed_units, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, KinematicsError, PoseError, SingularPoseError
-from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, pose_or_home
+from flexapod.mechanics.inputs import ZERO, PointLike, as_hexapod, as_joint, as_point, point_attributes, pose_or_home
 from flexapod.mechanics.load_case import Answer, Case, answer, unanswered
 from flexapod.mechanics.load_limits import load_excess
 from flexapod.mechanics.springs import axial_stiffness
@@ -94,9 +94,9 @@ def load_cases(
     gravity: ArrayLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
-    at: ArrayLike = ZERO,
+    at: PointLike = ZERO,
     axes: Axes = "platform",
-    point: ArrayLike = ZERO,
+    point: PointLike = ZERO,
     reference: int | None = None,
     section: float = 0.5,
     joint: JointModel = "universal",
@@ -116,12 +116,14 @@ def load_cases(
         Gravity in the base frame, m/s2, (3,) or (n, 3), as `gravity_at` gives it. Left out, the design's.
     force, moment : array_like
         Force (N) and moment (N m) on the platform, (3,) or (n, 3).
-    at : array_like
-        Point of the platform, in its frame, m, (3,) or (n, 3), at which the force acts.
+    at : array_like or str
+        Point of the platform, in its frame, m, (3,) or (n, 3), at which the force acts, or the name of a point of the
+        design.
     axes : {"platform", "base"}
         Axes of force and moment: the platform's, with which they turn, or the base's, in which they stay.
-    point : array_like
-        Point of the platform, in its frame, m, (3,), whose deflection and stiffness are wanted.
+    point : array_like or str
+        Point of the platform, in its frame, m, (3,), whose deflection and stiffness are wanted, or the name of a point
+        of the design.
     reference : int, optional
         Number of the case, from 0, for whose gravity and load the leg lengths are set: with them each pose is held
         exactly in that case. Left out, lengths are those of the pose without weight and load.
@@ -171,9 +173,10 @@ def load_cases(
     [5.18, 8.96]
     """
     as_hexapod(hexapod), as_joint(joint)
-    given = _spread(hexapod, pose, gravity, force, moment, at)
+    acted = as_point(hexapod, at, "at") if isinstance(at, str) else at
+    given = _spread(hexapod, pose, gravity, force, moment, acted)
     one_of(axes, "axes", AXES_OF_LOADS)
-    centre, cut = numbers(point, "point", (3,)), number(section, "section")
+    centre, cut = as_point(hexapod, point), number(section, "section")
     count = len(given.gravity)
     if reference is not None and (isinstance(reference, bool) or reference not in range(count)):
         raise ArgumentError(f"reference is {reference!r}; it must be the number of one of {count} cases, from 0.")
@@ -186,7 +189,7 @@ def load_cases(
             answers.append(answer(own, zero, centre, cut, joint))
         except (SingularPoseError, KinematicsError, PoseError) as error:
             answers.append(unanswered(str(error)))
-    return _dataset(hexapod, given, answers, centre)
+    return _dataset(hexapod, given, answers).assign_attrs(point_attributes(hexapod, point))
 
 
 def _spread(hexapod: Hexapod, pose: PoseLike | None, gravity: ArrayLike | None, *loads: ArrayLike) -> _Given:
@@ -222,7 +225,7 @@ def _case(hexapod: Hexapod, given: _Given, load: int, pose: int, machines: dict[
     return Case(machine, given.pose[pose], *loads, axes == "base")
 
 
-def _dataset(hexapod: Hexapod, given: _Given, answers: list[Answer], point: Array) -> xr.Dataset:
+def _dataset(hexapod: Hexapod, given: _Given, answers: list[Answer]) -> xr.Dataset:
     import xarray as xr
 
     def stacked(name: str) -> Array:
@@ -265,6 +268,5 @@ def _dataset(hexapod: Hexapod, given: _Given, answers: list[Answer], point: Arra
     return xr.Dataset(found, coords).assign_attrs(
         design=hexapod.name,
         digest=hexapod.digest,
-        point_m=[float(x) for x in point],
         leg_stiffness=[float(k) for k in axial_stiffness(hexapod, answers[0].unstretched_length)[0]],
     )

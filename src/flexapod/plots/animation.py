@@ -22,6 +22,7 @@ from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_hexapod, single_pose
 from flexapod.mechanics.mode_shapes import describe_modes
 from flexapod.mechanics.modes import natural_modes
+from flexapod.mechanics.point_motion import displacement_at
 from flexapod.optional import needed
 from flexapod.output_files import check_file, completed
 from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, VIEW, entitle
@@ -324,14 +325,15 @@ def _simulated(dataset: xr.Dataset, hexapod: Hexapod, base: Pose) -> tuple[_Film
         raise ArgumentError("the dataset is not that of one simulation; choose one of several with .isel(run=...)")
     if dataset.time.size < 2:
         raise ArgumentError("the simulation has fewer than two instants; nothing moves")
-    platform = dataset.displacement.transpose("time", "output").values
+    told = dataset.displacement.transpose("time", "output").values
     turned = dataset.base_rotation.transpose("time", "axis", "body_axis").values @ base.matrix.T
     moved = dataset.base_position.transpose("time", "axis").values - base.position
     feet = np.concatenate([moved, Rotation.from_matrix(turned).as_rotvec()], axis=1)
     start = dataset.isel(time=0)  # its displacement from rest gives rest
-    turn = rotation_from_vector(platform[0, 3:])
-    pose = Pose(start.position.values - platform[0, :3], turn.T @ start.rotation.transpose("axis", "body_axis").values)
-    return _Film(hexapod, pose, base, platform, feet), dataset.time.values
+    matrix = rotation_from_vector(told[0, 3:]).T @ start.rotation.transpose("axis", "body_axis").values
+    arm = matrix @ np.asarray(dataset.attrs.get("point_m", (0.0, 0.0, 0.0)))
+    pose = Pose(start.position.values - told[0, :3] - arm, matrix)
+    return _Film(hexapod, pose, base, displacement_at(told, -arm), feet), dataset.time.values
 
 
 def _last_periods(times: Array, displacement: Array, frames: int) -> tuple[float, float]:

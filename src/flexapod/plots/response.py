@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, TWO_PI, Array, unit_of
+from flexapod.mechanics.point_motion import of_point
 from flexapod.plots.style import (
     FAINT,
     INK,
@@ -96,7 +97,7 @@ def frequency_response(
     note_still(figure, [OUTPUT_NAMES[axis] for axis in AXES if not drawn[axis]])
     source = f"leg {given}" if dimension == "leg" else f"{dimension} {given}"
     state = state_words(dataset.attrs)
-    figure.suptitle(f"{dataset.attrs['design']}: {words}, {source}{state}", color=INK, fontsize=12)
+    figure.suptitle(f"{dataset.attrs['design']}: {words}, {source}{of_point(dataset.attrs)}{state}", color=INK, fontsize=12)
     return figure
 
 
@@ -147,9 +148,8 @@ def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figur
             _plain_decades(ax)
         below.legend(loc="best", fontsize=9, framealpha=0.85, edgecolor="none", title=f"total RMS, {unit}")
     note_still(figure, [_named(name) for name in everything if not drawn[name]], "nothing")
-    figure.suptitle(
-        f"{dataset.attrs['design']}: {quantity.replace('_', ' ')} on the moving base", color=INK, fontsize=12
-    )
+    words = f"{quantity.replace('_', ' ')} on the moving base{of_point(dataset.attrs)}"
+    figure.suptitle(f"{dataset.attrs['design']}: {words}", color=INK, fontsize=12)
     return figure
 
 

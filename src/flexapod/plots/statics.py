@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter, MaxNLocator
 
 from flexapod.conventions import Array
+from flexapod.mechanics.point_motion import of_point
 from flexapod.plots.path import STYLES
 from flexapod.plots.style import FAINT, LEGEND, OUTSIDE, SIX, TRIAD, dress, entitle, new_figure
 
@@ -57,5 +58,5 @@ def load_cases(found: xr.Dataset, elevation: Array | None = None) -> Figure:
     moved.legend(**LEGEND)
     turned.legend(**LEGEND)
     figure.legend(*forces.get_legend_handles_labels(), ncols=6, **OUTSIDE)
-    entitle(figure, f"{found.attrs['design']}: load cases at rest")
+    entitle(figure, f"{found.attrs['design']}: load cases at rest{of_point(found.attrs)}")
     return figure

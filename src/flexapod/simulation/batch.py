@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 from flexapod.checks import numbers, positive, whole
 from flexapod.conventions import Array, JointModel
 from flexapod.errors import ArgumentError, shown
+from flexapod.mechanics.inputs import ZERO, PointLike, as_point
 from flexapod.mechanics.modes import advised_sampling_time, natural_modes
-from flexapod.simulation.datasets import one_run
+from flexapod.simulation.datasets import Told, one_run
 from flexapod.simulation.integrator import IntegratorOptions, integrate
 from flexapod.simulation.notes import of_recordings, of_results
 from flexapod.simulation.run import SimulationRun
@@ -30,6 +31,7 @@ def simulate_many(
     *,
     times: ArrayLike | None = None,
     samples: int | None = None,
+    point: PointLike = ZERO,
     joint: JointModel = "universal",
     rtol: float = 1e-9,
     atol: float | None = None,
@@ -54,6 +56,9 @@ def simulate_many(
         Instants of the result, (m,) s, ascending from 0 or later, the same for all runs.
     samples : int, optional
         Number of instants, evenly spaced from 0 to `duration`; by default as in `simulate`, for the stiffest machine.
+    point : array_like or str, optional
+        Point of the platforms whose motion is told, (3,) m, in their frames, or the name that it has in every design,
+        whose place there must be the same.
     joint : {"universal", "spin_free"}, optional
         Model of the joint between a leg and the base.
     rtol, atol, max_step, max_steps, stop_at_singular : optional
@@ -107,14 +112,13 @@ def simulate_many(
     for i, run in enumerate(runs):
         if not isinstance(run, SimulationRun):
             raise ArgumentError(f"runs[{i}] is {shown(run)}; it must be a flexapod.simulation.SimulationRun.")
+    told = Told(_one_point(runs, point), joint, energies, reactions)
     highest = [natural_modes(run.hexapod, run.pose, joint=joint, base=run.base).omega[-1] for run in runs]
     end = _end(runs, duration) if times is None else duration
     at = _sample_times(times, end, samples, max(highest, default=0.0))
     notes = [note for run, omega in zip(runs, highest, strict=True) for note in of_recordings(run, omega)]
     found = integrate(runs, at, joint=joint, options=options, works=energies, progress=progress)
-    each = [
-        one_run(run, found, i, at, joint=joint, energies=energies, reactions=reactions) for i, run in enumerate(runs)
-    ]
+    each = [one_run(run, found, i, at, told) for i, run in enumerate(runs)]
     notes = list(dict.fromkeys([*notes, *_of_results(runs, each)]))
     for note in notes:
         warnings.warn(note, UserWarning, stacklevel=_outside())
@@ -125,9 +129,19 @@ def simulate_many(
         "method": "Runge-Kutta 8(5,3), Dormand and Prince; orientation on SO(3)",
         "rtol": rtol,
         "warnings": notes,
+        "point_m": told.point.tolist(),
+        "point": point if isinstance(point, str) else "",
         "last": found.last,
     }
     return dataset
+
+
+def _one_point(runs: Sequence[SimulationRun], point: PointLike) -> Array:
+    """The point of all runs (3,), m, platform frame. Raises ArgumentError where designs have it at different places."""
+    places = [as_point(run.hexapod, point) for run in runs]
+    if any((place != places[0]).any() for place in places):
+        raise ArgumentError(f"point {point!r} is at different places in the designs. Give it as [x, y, z], m.")
+    return places[0] if places else np.zeros(3)
 
 
 def _of_results(runs: Sequence[SimulationRun], each: Sequence[xr.Dataset]) -> list[str]:

@@ -12,17 +12,25 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.excitation.excitation import Excitation
 from flexapod.mechanics.energies import energy
 from flexapod.mechanics.kinematics import leg_rates
+from flexapod.mechanics.point_motion import at_point, displacement_at
 from flexapod.mechanics.reactions import joint_reactions
-from flexapod.pose import Motion
+from flexapod.pose import Motion, Pose
 from flexapod.simulation.integrator import Trajectories
 from flexapod.simulation.run import SimulationRun
 
 ROUNDING = 1e-11  # of the energies that make up the balance
 
 
-def one_run(
-    run: SimulationRun, found: Trajectories, i: int, times: Array, *, joint: JointModel, energies: bool, reactions: bool
-) -> xr.Dataset:
+class Told(NamedTuple):
+    """What a Dataset tells: at which point of the platform, and what besides its motion."""
+
+    point: Array
+    joint: JointModel
+    energies: bool
+    reactions: bool
+
+
+def one_run(run: SimulationRun, found: Trajectories, i: int, times: Array, told: Told) -> xr.Dataset:
     """One run of many, as far as it got."""
     reached = int(np.isfinite(found.displacement[i, :, 0]).sum())
     times = times[:reached]
@@ -31,18 +39,24 @@ def one_run(
     unstretched = found.unstretched_length[i] + command.evaluate(times)[0]
     length = leg_rates(run.hexapod, platform, base=base).length
     force = found.leg_force[i, :reached]
-    seen = _seen_from_base(platform, base)
+    point = at_point(platform, told.point)
+    arm = run.pose.matrix @ told.point  # type: ignore[union-attr]  # checked by the run
+    seen = _seen_from_base(point, base)
     three, turned = ("time", "axis"), ("time", "axis", "body_axis")
     variables: dict[str, tuple[tuple[str, ...], Any, dict[str, str]]] = {
-        "displacement": (("time", "output"), found.displacement[i, :reached], in_mixed_units("output_unit")),
-        "relative_displacement": (("time", "output"), found.relative[i, :reached], in_mixed_units("output_unit")),
+        "displacement": (("time", "output"), displacement_at(found.displacement[i, :reached], arm), in_mixed_units("output_unit")),
+        "relative_displacement": (
+            ("time", "output"),
+            displacement_at(found.relative[i, :reached], arm if run.base is None else run.base.matrix.T @ arm),  # type: ignore[union-attr]
+            in_mixed_units("output_unit"),
+        ),
         "relative_velocity": (("time", "output"), seen[0], in_mixed_units("output_unit/s")),
         "relative_acceleration": (("time", "output"), seen[1], in_mixed_units("output_unit/s^2")),
-        "position": (three, platform.pose.position, in_unit("m")),
+        "position": (three, point.pose.position, in_unit("m")),
         "rotation": (turned, platform.pose.matrix, in_unit("1")),
-        "velocity": (three, platform.velocity, in_unit("m/s")),
+        "velocity": (three, point.velocity, in_unit("m/s")),
         "angular_velocity": (three, platform.angular_velocity, in_unit("rad/s")),
-        "acceleration": (three, platform.acceleration, in_unit("m/s^2")),
+        "acceleration": (three, point.acceleration, in_unit("m/s^2")),
         "angular_acceleration": (three, platform.angular_acceleration, in_unit("rad/s^2")),
         "base_position": (three, base.pose.position, in_unit("m")),
         "base_rotation": (turned, base.pose.matrix, in_unit("1")),
@@ -51,10 +65,10 @@ def one_run(
         "leg_force": (("time", "leg"), force, in_unit("N")),
     }
     state = _State(run.hexapod, platform, base, unstretched, force)
-    if energies:
-        variables |= _energies(state, found.work[i, :reached], joint)
-    if reactions:
-        variables |= _reactions(state, joint)
+    if told.energies:
+        variables |= _energies(state, found.work[i, :reached], told.joint)
+    if told.reactions:
+        variables |= _reactions(state, told.joint)
     variables |= {
         "status": ((), str(found.status[i]), {}),
         "end_time": ((), found.end_time[i], in_unit("s")),
@@ -70,11 +84,17 @@ def one_run(
         "leg": list(LEGS),
         "source": ["base", "wrench", "leg_command", "friction"],
     }
-    return xr.Dataset(variables, coordinates)
+    return xr.Dataset(variables, coordinates, {"point_m": told.point.tolist()})
+
+
+def platform_pose(result: xr.Dataset) -> Pose:
+    """The platform's pose in a Dataset of a run, whatever point it tells the motion of."""
+    matrix = result.rotation.values
+    return Pose(result.position.values - matrix @ np.asarray(result.attrs["point_m"]), matrix)
 
 
 def _seen_from_base(platform: Motion, base: Motion) -> tuple[Array, Array]:
-    """Velocity and acceleration of the platform, linear and angular (n, 6), for who stands on the base, in its axes."""
+    """Velocity and acceleration of the platform at its point, linear and angular (n, 6), for who stands on the base, in its axes."""
     turn, w = base.pose.matrix, base.angular_velocity
     arm = platform.pose.position - base.pose.position
     velocity = platform.velocity - base.velocity - np.cross(w, arm)

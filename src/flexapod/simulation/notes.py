@@ -14,6 +14,7 @@ from flexapod.mechanics.joint_limits import LimitedQuantity, limit_excess
 from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.mechanics.viscous_losses import LEFT_OUT, has_losses
 from flexapod.pose import Pose
+from flexapod.simulation.datasets import platform_pose
 from flexapod.simulation.run import SimulationRun
 
 JUMPS = 0.01  # of a recording's range: where it begins farther off zero, its start is a blow
@@ -75,7 +76,7 @@ def _of_losses(run: SimulationRun) -> list[str]:
 def _of_limits(run: SimulationRun, result: xr.Dataset) -> list[str]:
     if not run.hexapod.limits.given or not result.sizes["time"]:
         return []
-    platform = Pose(result.position.values, result.rotation.values)
+    platform = platform_pose(result)
     base = Pose(result.base_position.values, result.base_rotation.values)
     times = result.time.values
     return [

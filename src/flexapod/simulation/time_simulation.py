@@ -12,6 +12,7 @@ from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SimulationError
 from flexapod.excitation.excitation import Excitation
+from flexapod.mechanics.inputs import ZERO, PointLike
 from flexapod.pose import Pose, unpack
 from flexapod.simulation.batch import simulate_many
 from flexapod.simulation.run import Load, SimulationRun, Start
@@ -43,6 +44,7 @@ def simulate(
     duration: float | None = None,
     times: ArrayLike | None = None,
     samples: int | None = None,
+    point: PointLike = ZERO,
     start: Start = "rest",
     base: Pose | ArrayLike | None = None,
     unstretched_length: ArrayLike | None = None,
@@ -84,6 +86,9 @@ def simulate(
     samples : int, optional
         Number of instants of the result, evenly spaced from 0 to `duration`. The default resolves the highest mode,
         with 20 samples in its period and at most 20 000 in all.
+    point : array_like or str, optional
+        Point of the platform whose motion is told, (3,) m, in its frame, or the name of a point of the design. Loads
+        act at the reference point all the same.
     start : {"rest", "carried"}, Pose, Motion or array_like, optional
         State at t = 0: at the equilibrium with no velocity in the inertial frame ("rest"), moving rigidly with the base
         ("carried"), or a pose or motion of the platform in the inertial frame.
@@ -118,21 +123,22 @@ def simulate(
     Returns
     -------
     xarray.Dataset
-        Over `time` (s):
+        Over `time` (s), of the platform's `point`:
 
         - displacement (time, output): from the equilibrium, inertial axes; `output` is x, y, z (m), roll, pitch, yaw
           (rotation vector, rad)
         - relative_displacement (time, output): the same as seen from the base, in its axes; relative_velocity and
           relative_acceleration: velocity, angular velocity and their rates for who stands on the base, in its axes
-        - position, velocity, acceleration (time, axis), rotation (time, axis, body_axis), angular_velocity,
-          angular_acceleration (time, axis) of the platform; base_position, base_rotation of the base
+        - position, velocity, acceleration (time, axis), and rotation (time, axis, body_axis), angular_velocity,
+          angular_acceleration (time, axis) of the platform, inertial axes; base_position, base_rotation of the base
         - leg_length, unstretched_length (m) and leg_force (N, positive: compression) (time, leg)
         - kinetic_energy, gravitational_energy, elastic_energy, energy_error (time) and work (time, source), J, with
           `energies`
         - the variables of `joint_reactions`, with `reactions`
 
         Attributes: energy_error, the largest one over the largest of kinetic energy and works; energy_rounding (J), the
-        rounding of the stored energies, which hides a smaller error; steps, evaluations, warnings and the settings.
+        rounding of the stored energies, which hides a smaller error; point_m and point, the place and name of the point;
+        steps, evaluations, warnings and the settings.
 
     Raises
     ------
@@ -194,6 +200,7 @@ def simulate(
         duration,
         times=times,
         samples=samples,
+        point=point,
         joint=joint,
         rtol=rtol,
         atol=atol,

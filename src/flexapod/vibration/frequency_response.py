@@ -6,14 +6,13 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from flexapod.checks import numbers
 from flexapod.conventions import AXES, LEGS, Array, Complex, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import response_attributes
-from flexapod.mechanics.inputs import ZERO, as_hexapod, single_pose
+from flexapod.mechanics.inputs import ZERO, PointLike, as_hexapod, as_point, point_attributes, single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
+from flexapod.mechanics.point_motion import shift
 from flexapod.pose import Pose, PoseLike
-from flexapod.rotations import skew
 from flexapod.vibration.grid import asked, grid_around
 from flexapod.vibration.harmonic import SteadyResponse, complex_poles, leg_losses, losses, steady_response
 
@@ -27,7 +26,7 @@ def transmissibility(
     *,
     omega: ArrayLike | None = None,
     frequency: ArrayLike | None = None,
-    point: ArrayLike = ZERO,
+    point: PointLike = ZERO,
     loss_factor: ArrayLike | None = None,
     base: PoseLike | None = None,
     force: ArrayLike = ZERO,
@@ -46,8 +45,8 @@ def transmissibility(
         Frequencies, (n,) rad/s, not negative; the grid of `vibration.frequency_grid` by default.
     frequency : array_like, optional
         The same in Hz, in place of `omega`.
-    point : array_like, optional
-        Output point, (3,) m, in the platform's frame.
+    point : array_like or str, optional
+        Output point, (3,) m, in the platform's frame, or the name of a point of the design.
     loss_factor : float or array_like, optional
         Structural damping of the legs' springs, one number or (6,), in place of `legs.loss_factor` of the design: their
         stiffness is K (1 + i loss_factor). It adds to the viscous friction. The joints have their own of the design.
@@ -112,7 +111,7 @@ def transmissibility(
     eta = losses(hexapod, linear, loss_factor)
     if w is None:
         w = grid_around(complex_poles(linear, eta))
-    to_point = shift(pose, point)
+    to_point = shift(pose, as_point(hexapod, point))
     steady = steady_response(linear, w, eta)
     relative = to_point @ steady.relative
     arrays = {
@@ -149,28 +148,20 @@ RESPONSES: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {
 }
 
 
-def shift(pose: Pose, point: ArrayLike) -> Array:
-    """(6, 6): small displacement of a point of the platform (platform frame, m) from that of the reference point."""
-    r = pose.matrix @ numbers(point, "point", (3,))
-    matrix = np.eye(6)
-    matrix[:3, 3:] = skew(r).T
-    return matrix
-
-
 def leg_forces(linear: Linearisation, steady: SteadyResponse, eta: Array) -> Complex:
     """(n, 6, 6) N: change of the legs' spring forces per base displacement."""
     stiffness = linear.leg_stiffness * (1 + 1j * eta[:6])
     return -stiffness[:, None] * (linear.H.T @ steady.relative)
 
 
-def attributes(hexapod: Hexapod, pose: Pose, point: ArrayLike, eta: Array, linear: Linearisation) -> dict[str, object]:
+def attributes(hexapod: Hexapod, pose: Pose, point: PointLike, eta: Array, linear: Linearisation) -> dict[str, object]:
     """What a response was computed for, as attributes of its Dataset."""
     return {
         "design": hexapod.name,
         "digest": hexapod.digest,
         "position_m": pose.position.tolist(),
         "rpy_rad": pose.rpy.tolist(),
-        "point_m": np.asarray(point, dtype=float).tolist(),
+        **point_attributes(hexapod, point),
         "loss_factor": eta[:6].tolist(),
         "joint_loss_factor": hexapod.legs.joint_stiffness.loss_factor.tolist(),
         **response_attributes(linear),

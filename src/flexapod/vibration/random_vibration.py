@@ -14,11 +14,12 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.excitation.spectra import Quantity, Spectrum
 from flexapod.mechanics.cautions import grows
-from flexapod.mechanics.inputs import ZERO, as_hexapod, single_pose
+from flexapod.mechanics.inputs import ZERO, PointLike, as_hexapod, as_point, single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
+from flexapod.mechanics.point_motion import shift
 from flexapod.pose import PoseLike
 from flexapod.vibration.base_spectrum import Density, ready_made, tabulated
-from flexapod.vibration.frequency_response import MOTION_UNITS, attributes, leg_forces, shift
+from flexapod.vibration.frequency_response import MOTION_UNITS, attributes, leg_forces
 from flexapod.vibration.grid import asked, grid_around
 from flexapod.vibration.harmonic import complex_poles, leg_losses, losses, steady_response
 from flexapod.vibration.quadrature import Panels, graded
@@ -41,7 +42,7 @@ def random_response(
     frequency: ArrayLike | None = None,
     of: Quantity = "acceleration",
     axis: str | None = None,
-    point: ArrayLike = ZERO,
+    point: PointLike = ZERO,
     loss_factor: ArrayLike | None = None,
     base: PoseLike | None = None,
     force: ArrayLike = ZERO,
@@ -75,8 +76,8 @@ def random_response(
         What a table or function is the density of. A Spectrum says it itself.
     axis : {"x", "y", "z", "roll", "pitch", "yaw"}, optional
         Axis of the base that moves, where `psd` is of one axis.
-    point : array_like, optional
-        Output point, (3,) m, in the platform's frame.
+    point : array_like or str, optional
+        Output point, (3,) m, in the platform's frame, or the name of a point of the design.
     loss_factor : float or array_like, optional
         Structural damping of the legs' springs, one number or (6,), in place of `legs.loss_factor` of the design. The
         joints have their own of the design.
@@ -146,7 +147,7 @@ def random_response(
         spectrum = tabulated(psd, axis, grid, of, per_hertz=frequency is not None)
     _check_damped(poles, spectrum.grid)
     panels = Panels(graded(spectrum.grid, poles))
-    filters = _Filters(linear, shift(pose, point), eta, spectrum.quantity)
+    filters = _Filters(linear, shift(pose, as_point(hexapod, point)), eta, spectrum.quantity)
     densities = filters.spectra(panels.omega, spectrum.density(panels.omega))
     return _dataset(panels, densities).assign_attrs(attributes(hexapod, pose, point, eta, linear))
 

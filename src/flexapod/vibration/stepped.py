@@ -19,8 +19,9 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.excitation.sines import harmonic
 from flexapod.mechanics.cautions import response_attributes
-from flexapod.mechanics.inputs import single_pose
+from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attributes, single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
+from flexapod.mechanics.point_motion import displacement_at, shift
 from flexapod.pose import Motion, Pose, PoseLike, unpack
 from flexapod.simulation.integrator import IntegratorOptions, integrate
 from flexapod.simulation.run import SimulationRun
@@ -45,6 +46,7 @@ def stepped_sine(
     amplitude: float,
     omega: ArrayLike | None = None,
     frequency: ArrayLike | None = None,
+    point: PointLike = ZERO,
     joint: JointModel = "universal",
     tolerance: float = 1e-7,
     progress: Callable[[float], object] | None = None,
@@ -67,6 +69,8 @@ def stepped_sine(
         Frequencies, (n,) rad/s, > 0; by default the grid of `vibration.frequency_grid` with 100 samples.
     frequency : array_like, optional
         The same in Hz, in place of `omega`.
+    point : array_like or str, optional
+        Output point, (3,) m, in the platform's frame, or the name of a point of the design.
     joint : {"universal", "spin_free"}, optional
         Model of the joint between a leg and the base.
     tolerance : float, optional
@@ -77,7 +81,8 @@ def stepped_sine(
     Returns
     -------
     xarray.Dataset
-        Over `omega` (rad/s) and `output` (x, y, z, roll, pitch, yaw; from the equilibrium, inertial axes):
+        Over `omega` (rad/s) and `output` (x, y, z, roll, pitch, yaw of the output point; from the equilibrium, inertial
+        axes):
 
         - response: complex fundamental per base amplitude, x = Re(response * amplitude * exp(i omega t)) for a base at
           Re(amplitude * exp(i omega t))
@@ -138,7 +143,14 @@ def stepped_sine(
     linear = shaker.linear_response(w)
     positive(tolerance, "tolerance")
     found = _shoot(shaker, w, linear, tolerance, progress)
-    return _dataset(shaker, w, linear, found).assign_attrs(response_attributes(tangent))
+    arm = pose.matrix @ as_point(hexapod, point)
+    told = _dataset(shaker, w, linear @ shift(pose, as_point(hexapod, point)).T, _at_point(found, arm))
+    return told.assign_attrs(response_attributes(tangent) | point_attributes(hexapod, point))
+
+
+def _at_point(found: _Found, arm: Array) -> _Found:
+    """The same of a point at an arm (3,) m from the reference point, inertial axes at rest."""
+    return found._replace(samples=displacement_at(found.samples, arm))
 
 
 class _Found(NamedTuple):

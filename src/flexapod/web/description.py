@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.schema import KEYS, TEXT_KEYS
+from flexapod.design.schema import KEYS, TEXT_KEYS, rule_of
 from flexapod.design.units import printed, si_unit
 from flexapod.web import pose_ranges
 from flexapod.web.answers import Design, Field
@@ -20,7 +20,7 @@ from flexapod.web.parameters import main_parameters
 def fields() -> list[Field]:
     """Every key of a design file that holds numbers, with its meaning, unit and shapes, for the form.
 
-    Short forms, stiffness laws, springs in series and a suspension are changed in the file.
+    Short forms, stiffness laws, springs in series, a suspension and points are changed in the file.
     """
     shorthand = re.compile(
         r"\.(circle|rod)\.|^cubic\.|^suspension\.|^legs\.(series_stiffness|joint_rest|stiffness_law)"
@@ -58,7 +58,7 @@ def described(source: Source) -> Design:
 
 def _field_key(key: str) -> str:
     """A key as the form has it: angles in degrees, as people write them."""
-    return f"{key}_deg" if KEYS[key].dimension == "angle" else key
+    return f"{key}_deg" if rule_of(key).dimension == "angle" else key
 
 
 def _values(hexapod: Hexapod) -> dict[str, Any]:
@@ -67,7 +67,7 @@ def _values(hexapod: Hexapod) -> dict[str, Any]:
     for key, value in hexapod.values().items():
         if key in TEXT_KEYS:
             values[key] = value
-        elif KEYS[key].dimension == "angle":
+        elif rule_of(key).dimension == "angle":
             values[_field_key(key)] = np.round(np.degrees(value), 12).tolist()
         else:
             values[key] = value.tolist()

@@ -12,7 +12,7 @@ from flexapod.checks import number, numbers, one_of, positive, whole
 from flexapod.conventions import AXES, JOINT_MODELS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError, told_apart
-from flexapod.mechanics.inputs import single_pose
+from flexapod.mechanics.inputs import ZERO, PointLike, as_point, single_pose
 from flexapod.mechanics.joint_limits import check_limits
 from flexapod.pose import Pose, PoseLike
 from flexapod.workspace.axis_speeds import Fastest, fastest
@@ -108,6 +108,8 @@ class Envelope(NamedTuple):
         The pose that all is measured from.
     point : ndarray
         The point of the platform that is moved, and that turns are about, platform frame, m, (3,).
+    point_name : str
+        Its name in the design; "" where it was given by its place.
     axes : tuple of AxisTravel
         Motions along each axis.
     pairs : tuple of PairTravel
@@ -118,6 +120,7 @@ class Envelope(NamedTuple):
 
     home: Pose
     point: Array
+    point_name: str
     axes: tuple[AxisTravel, ...]
     pairs: tuple[PairTravel, ...]
     box: BoxTravel
@@ -127,7 +130,7 @@ def envelope(
     hexapod: Hexapod,
     pose: PoseLike | None = None,
     *,
-    point: ArrayLike = (0.0, 0.0, 0.0),
+    point: PointLike = ZERO,
     proportions: ArrayLike | None = None,
     index: float | None = None,
     condition_number: float | None = None,
@@ -144,9 +147,9 @@ def envelope(
     pose : Pose or array_like, optional
         Pose of the platform in the base frame that motions begin at: a Pose, or x, y, z in m and roll, pitch, yaw in
         rad. Left out, the home pose.
-    point : array_like
-        Point of the platform, in its frame, m, (3,), that is moved along the axes of the base frame, and that the
-        platform turns about.
+    point : array_like or str
+        Point of the platform, in its frame, m, (3,), or the name of a point of the design, that is moved along the axes
+        of the base frame, and that the platform turns about.
     proportions : array_like, optional
         Half ranges of x, y, z (m), roll, pitch, yaw (rad), (6,), of the box whose largest multiple is sought; zero
         holds a coordinate. Left out, the lesser travel of each axis.
@@ -202,7 +205,7 @@ def envelope(
     (-0.952, 1.226, ('greatest length of leg 3', 'greatest length of leg 4'))
     """
     where = single_pose(hexapod, pose)
-    centre = numbers(point, "point", (3,))
+    centre = as_point(hexapod, point)
     bounds = _bounds(index, condition_number, characteristic_length)
     one_of(joint, "joint", JOINT_MODELS)
     if whole(directions, "directions", 4) % 4:
@@ -215,7 +218,7 @@ def envelope(
     travels = np.array([[axis.least, axis.most] for axis in axes])
     half = np.abs(travels).min(axis=1) if half is None else half
     pairs = tuple(_pairs(limits, travels, directions))
-    return Envelope(where, centre, axes, pairs, _box(limits, half))
+    return Envelope(where, centre, point if isinstance(point, str) else "", axes, pairs, _box(limits, half))
 
 
 def _bounds(index: float | None, condition: float | None, length: float | None) -> Bounds:

@@ -7,20 +7,15 @@ from typing import Any
 import click
 
 from flexapod.cli.options import common
-from flexapod.cli.options.quantities import FREQUENCY, LENGTH, POSITIVE_LENGTH, SIX
+from flexapod.cli.options.points import point_option
+from flexapod.cli.options.quantities import FREQUENCY, POSITIVE_LENGTH, SIX
 from flexapod.cli.output.results import emit_or_csv
 
 
 @click.command()
 @common.design_argument
 @common.pose_option
-@click.option(
-    "--point",
-    type=(LENGTH,) * 3,
-    default=(0.0, 0.0, 0.0),
-    metavar="X Y Z",
-    help="Point of the platform, in its frame, m, that is moved and turned about. Default: its origin.",
-)
+@point_option("Point of the platform that is moved and turned about")
 @click.option(
     "--proportions",
     type=SIX,

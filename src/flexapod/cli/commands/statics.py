@@ -8,7 +8,7 @@ from typing import Any
 import click
 
 from flexapod.cli.options import common
-from flexapod.cli.options.quantities import LENGTH
+from flexapod.cli.options.points import point_option
 from flexapod.cli.output.results import emit_or_csv
 
 
@@ -27,13 +27,7 @@ from flexapod.cli.output.results import emit_or_csv
     metavar="CASE",
     help="Case, by its name, for which the leg lengths are set. Default: without weight and load.",
 )
-@click.option(
-    "--point",
-    type=(LENGTH,) * 3,
-    default=(0.0, 0.0, 0.0),
-    metavar="X Y Z",
-    help="Point of the platform, in its frame, m, whose deflection and stiffness are told. Default: its origin.",
-)
+@point_option("Point of the platform whose deflection and stiffness are told")
 @click.option(
     "--axes",
     type=click.Choice(["platform", "base"]),

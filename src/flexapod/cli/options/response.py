@@ -7,7 +7,8 @@ from pathlib import Path
 import click
 
 from flexapod.cli.options import common
-from flexapod.cli.options.quantities import FREQUENCY, LENGTH
+from flexapod.cli.options.points import point_option
+from flexapod.cli.options.quantities import FREQUENCY
 from flexapod.conventions import AXES, LEGS
 
 response_options = common.stack(
@@ -36,13 +37,7 @@ response_options = common.stack(
         show_default=True,
         help="Frequencies, equally spaced by logarithm; 13 more are put around each resonance.",
     ),
-    click.option(
-        "--point",
-        type=(LENGTH,) * 3,
-        default=(0.0, 0.0, 0.0),
-        metavar="X Y Z",
-        help="Output point, m, platform frame.",
-    ),
+    point_option("Output point of the platform"),
     click.option(
         "--loss-factor",
         type=common.NOT_NEGATIVE,

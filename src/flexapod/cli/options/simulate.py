@@ -6,6 +6,7 @@ import click
 
 from flexapod.cli.options import common
 from flexapod.cli.options.drives import drive_options
+from flexapod.cli.options.points import point_option
 from flexapod.cli.options.quantities import TIME, Quantity
 
 simulate_options = common.stack(
@@ -28,6 +29,7 @@ simulate_options = common.stack(
         show_default=True,
         help="The platform is at rest in the room, or moves with the base, when it begins.",
     ),
+    point_option("Point of the platform whose motion is told"),
     common.loss_frequency_option,
     click.option("--unloaded", is_flag=True, help="Let gravity ring: the legs are unstretched at the pose."),
     click.option("--samples", type=common.count(2), default=None, help="Default: 20 a period of the highest mode."),

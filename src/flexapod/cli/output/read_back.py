@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.schema import KEYS, TEXT_KEYS
+from flexapod.design.schema import TEXT_KEYS, rule_of
 from flexapod.design.units import printed, si_unit
 from flexapod.mechanics.plausibility import radii_of_gyration
 
@@ -51,7 +51,7 @@ def _gyration(values: dict[str, Any], body: str) -> Iterator[str]:
 
 
 def _key(key: str, value: Any) -> Iterator[str]:
-    rule = KEYS[key]
+    rule = rule_of(key)
     unit = printed(si_unit(rule.dimension))
     if rule.dimension == "angle":
         value, unit = np.degrees(value), "deg"

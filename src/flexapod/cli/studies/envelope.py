@@ -13,6 +13,7 @@ from flexapod.report.study import Study
 from flexapod.workspace.envelope import envelope
 
 if TYPE_CHECKING:
+    from flexapod.cli.options.points import PointGiven
     from flexapod.conventions import JointModel
 
 
@@ -24,7 +25,7 @@ class Options:
     changes: tuple[str, ...]
     joint: JointModel
     pose: tuple[float, ...] | None
-    point: tuple[float, float, float]
+    point: PointGiven
     proportions: tuple[float, ...] | None
     index: float | None
     condition: float | None

@@ -83,12 +83,10 @@ def _check(given: dict[str, Any]) -> None:
             "loads and leg commands are simulated in time: flexapod simulate --random force:z flat:10N:1Hz:100Hz. In "
             "Python abs(transmissibility(...).compliance)**2 turns the density of a force into that of the motion."
         )
-    if given["amplitude"] is not None and (
-        given["source"] != "base" or given["loss_factor"] is not None or any(given["point"])
-    ):
+    if given["amplitude"] is not None and (given["source"] != "base" or given["loss_factor"] is not None):
         raise click.UsageError(
             "--amplitude shakes the base of the non-linear machine, whose loss factors are those of the design: use it "
-            "with --from base and without --loss-factor and --point."
+            "with --from base and without --loss-factor."
         )
 
 
@@ -113,6 +111,7 @@ def _stepped(hexapod: Hexapod, pose: Pose, given: dict[str, Any], ends: tuple[fl
             omega=omega,
             amplitude=read(given["amplitude"], dimension, "--amplitude", need="> 0"),
             axis=_axis(given),
+            point=given["point"],
             joint=given["joint"],
             progress=lambda done: bar.update(task, completed=done),
         )

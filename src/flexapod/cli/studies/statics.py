@@ -23,6 +23,7 @@ from flexapod.rotations import rpy_matrix
 from flexapod.tables import Table, naming, parse_table, read_text
 
 if TYPE_CHECKING:
+    from flexapod.cli.options.points import PointGiven
     from flexapod.conventions import JointModel
 
 _VECTORS = {
@@ -51,7 +52,7 @@ class Options:
     elevation: str | None
     base_roll: str | None
     reference: str | None
-    point: tuple[float, float, float]
+    point: PointGiven
     axes: Any
     as_csv: bool
     as_json: bool

@@ -11,6 +11,7 @@ from flexapod import plots
 from flexapod.conventions import AXES, TRANSLATIONS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
+from flexapod.mechanics.point_motion import point_words
 from flexapod.report.numbers import DASH, pose_numbers, pose_words, six_words
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 from flexapod.tables import written_table
@@ -20,7 +21,8 @@ from flexapod.workspace.envelope import AxisTravel, Envelope, PairTravel
 
 def study(hexapod: Hexapod, found: Envelope, bounded: bool) -> Study:
     """The study of an envelope. bounded: whether the index or cond(H) was bounded."""
-    point = "" if not found.point.any() else f" of the point {tuple(map(float, found.point))} m of the platform"
+    words = point_words(found.point, found.point_name)
+    point = f" of the platform's point {words}" if words else ""
     captions = (
         "Straight motions from home end on the blue line, at the first pose that a limit or a singular pose stops."
     )
@@ -203,6 +205,7 @@ def _data(hexapod: Hexapod, found: Envelope) -> dict[str, Any]:
         "digest": hexapod.digest,
         "home_m_deg": pose_numbers(found.home),
         "point_m": found.point,
+        "point": found.point_name,
         "axes": axes,
         "box": {
             "half_ranges_m_rad": box.half,

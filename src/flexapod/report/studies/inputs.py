@@ -123,9 +123,11 @@ def _further(hexapod: Hexapod) -> Table:
         facts["suspension at"] = f"({', '.join(_texts(suspension.point))}) m, platform frame"
     if hexapod.legs.joint_rest is not None:
         facts["joints at rest"] = _pose(hexapod.legs.joint_rest)
+    for name, place in hexapod.points.items():
+        facts[f"point {name}"] = f"({', '.join(_texts(place))}) m, platform frame"
     facts["limits"] = "; ".join(limits(hexapod)) or "none"
     columns = [Column("", list(facts)), Column("", list(facts.values()))]
-    return Table(columns, title="Gravity, home and limits", style="facts", on="page")
+    return Table(columns, title="Gravity, home, points and limits" if hexapod.points else "Gravity, home and limits", style="facts", on="page")
 
 
 def _pose(pose: Pose) -> str:

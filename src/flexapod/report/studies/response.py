@@ -17,6 +17,7 @@ from flexapod.conventions import AXES, LEGS, TWO_PI, Array, Complex, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
 from flexapod.pose import Pose
+from flexapod.mechanics.point_motion import in_columns, of_point
 from flexapod.report.numbers import pose_numbers, pose_words, without_rounding
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 
@@ -71,7 +72,7 @@ def study(f: ResponseFindings, peaks: Array) -> Study:
     return Study(
         hexapod=f.hexapod,
         subject="response",
-        about=f"Response to {f.source} {f.axis} at {pose_words(f.pose)}.",
+        about=f"Response to {f.source} {f.axis} at {pose_words(f.pose)}{of_point(f.response.attrs)}.",
         data=_data(f, peaks),
         rows=[] if f.stepped is None else [Row("Non-linear stepped sine,", stepped_words(f.stepped))],
         sections=sections,
@@ -100,7 +101,7 @@ def _figure(f: ResponseFindings, name: str) -> Figure:
     linear = f.response.absolute.sel(base=f.axis)
     figure = plots.response.stepped_ratio(f.stepped, natural=natural, linear=linear, scale="log", unit="Hz")
     amplitude = f"{f.stepped.attrs['amplitude']:g} {f.stepped.attrs['amplitude_unit']}"
-    title = f"{f.hexapod.name}: non-linear stepped sine, base {f.axis}, amplitude {amplitude}"
+    title = f"{f.hexapod.name}: non-linear stepped sine, base {f.axis}, amplitude {amplitude}{of_point(f.stepped.attrs)}"
     figure.suptitle(title, fontsize=12)
     return figure
 
@@ -123,18 +124,18 @@ def _csv(f: ResponseFindings, name: str) -> str:
 
 
 def _response_frame(f: ResponseFindings) -> pd.DataFrame:
-    omega = f.response.omega.values
+    omega, of = f.response.omega.values, in_columns(f.response.attrs)
     table = pd.DataFrame({"omega_rad_s": omega, "frequency_hz": omega / TWO_PI})
     for output in AXES:
         values = f.chosen.sel(output=output).values
-        table[f"{output}_amplitude"] = np.abs(values)
-        table[f"{output}_phase_deg"] = np.degrees(np.angle(values))
+        table[f"{output}_amplitude{of}"] = np.abs(values)
+        table[f"{output}_phase{of}_deg"] = np.degrees(np.angle(values))
     return table.set_index("omega_rad_s")
 
 
 def _stepped_frame(f: ResponseFindings) -> pd.DataFrame:
     assert f.stepped is not None
-    return f.stepped.ratio.to_pandas()
+    return f.stepped.ratio.to_pandas().add_suffix(in_columns(f.stepped.attrs))
 
 
 def _random_frame(f: ResponseFindings) -> pd.DataFrame:
@@ -142,8 +143,9 @@ def _random_frame(f: ResponseFindings) -> pd.DataFrame:
     table = pd.DataFrame({"omega_rad_s": f.random.omega.values})
     for name, values in f.random.data_vars.items():
         if "omega" in values.dims:
+            of = in_columns(f.random.attrs) if values.dims[1] == "output" else ""
             for label in f.random[values.dims[1]].values:
-                table[f"{name}_{label}"] = values.sel({values.dims[1]: label}).values
+                table[f"{name}{of}_{label}"] = values.sel({values.dims[1]: label}).values
     return table.set_index("omega_rad_s")
 
 
@@ -189,7 +191,8 @@ def _data(f: ResponseFindings, peaks: Array) -> dict[str, Any]:
         "pose_m_deg": pose_numbers(f.pose),
         "joint": f.options["joint"],
         "loss_factor": f.options["loss_factor"],
-        "point_m": f.options["point"],
+        "point_m": f.response.attrs["point_m"],
+        "point": f.response.attrs["point"],
         "from": f.source,
         "axis": f.axis,
         "variable": f.variable,

@@ -15,7 +15,8 @@ from flexapod import plots
 from flexapod.conventions import AXES, Unit, printed_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
-from flexapod.plots.style import ROUNDING
+from flexapod.mechanics.point_motion import in_columns, of_point, point_words
+from flexapod.plots.style import ROUNDING, entitle
 from flexapod.pose import Pose
 from flexapod.report.numbers import pose_numbers, pose_words, without_rounding
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
@@ -33,6 +34,7 @@ def study(
     ]
     steps = f"{dataset.attrs['steps']} steps in {took:.2f} s; energy balance error"
     summary = _summary(dataset)
+    point = point_words(dataset.attrs["point_m"], dataset.attrs["point"])
     drawings = [
         Drawing("displacement", "Displacement from rest", partial(_displacement, dataset, "displacement")),
         Drawing("relative_displacement", "Displacement seen from the base",
@@ -42,13 +44,13 @@ def study(
     return Study(
         hexapod=hexapod,
         subject="simulation",
-        about=f"From rest at {pose_words(pose)}, joint model {dataset.attrs['joint']}.",
+        about=f"From rest at {pose_words(pose)}, joint model {dataset.attrs['joint']}{of_point(dataset.attrs)}.",
         data={**_data(hexapod, pose, dataset, took), **summary},
         rows=[
             Row("Leg forces from", f"{force.min():.5g} to {force.max():.5g}", "N", note="(positive: compression)"),
             Row(steps, f"{dataset.attrs['energy_error']:.1e}", note=_of_what(dataset)),
         ],
-        sections=[Section("Motion", [*drawings, _displacements(summary), _rates(summary)])],
+        sections=[Section("Motion", [*drawings, _displacements(summary, point), _rates(summary)])],
         cautions=cautions,
         files={
             "simulation.nc": partial(_stored, dataset),
@@ -60,24 +62,25 @@ def study(
 
 
 def _displacement(dataset: xr.Dataset, name: str) -> Figure:
-    return plots.simulation.displacements(dataset.time.values, dataset[name].values)
+    figure = plots.simulation.displacements(dataset.time.values, dataset[name].values)
+    if words := point_words(dataset.attrs["point_m"], dataset.attrs["point"]):
+        entitle(figure, f"{dataset.attrs['design']}: {name.replace('_', ' ')} of {words}")
+    return figure
 
 
 def _stored(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset as NetCDF can hold it."""
-    stored = dataset.copy()
-    stored.attrs = {key: "; ".join(value) if isinstance(value, list) else value for key, value in dataset.attrs.items()}
-    return stored
+    return dataset.assign_attrs(warnings="; ".join(dataset.attrs["warnings"]))
 
 
-def _displacements(summary: dict[str, dict[str, list[float]]]) -> Table:
+def _displacements(summary: dict[str, dict[str, list[float]]], point: str) -> Table:
     columns = [Column("", AXES)]
     for name, words in (("displacement", "largest displacement"), ("relative_displacement", "seen from the base")):
         columns += [
             _column(words, summary[name]["largest"], "m", "rad"),
             _column("RMS", summary[name]["rms"], "m", "rad"),
         ]
-    return Table(columns, title="Motion of the platform")
+    return Table(columns, title=f"Motion of {point or 'the platform'}")
 
 
 def _rates(summary: dict[str, dict[str, list[float]]]) -> Table:
@@ -103,7 +106,7 @@ def _csv(dataset: xr.Dataset) -> str:
     columns = [dataset.time.values[:, None]]
     for variable in ("displacement", "relative_displacement"):
         columns.append(dataset[variable].values)
-        names += [f"{variable}_{axis}_{unit_of(axis)}" for axis in AXES]
+        names += [f"{variable}{in_columns(dataset.attrs)}_{axis}_{unit_of(axis)}" for axis in AXES]
     for variable, unit in (("leg_length", "m"), ("leg_force", "N")):
         columns.append(dataset[variable].values)
         names += [f"{variable}_{leg}_{unit}" for leg in dataset.leg.values]
@@ -142,6 +145,8 @@ def _data(hexapod: Hexapod, pose: Pose, dataset: xr.Dataset, took: float) -> dic
         "digest": hexapod.digest,
         "pose_m_deg": pose_numbers(pose),
         "joint": dataset.attrs["joint"],
+        "point_m": dataset.attrs["point_m"],
+        "point": dataset.attrs["point"],
         "duration_s": float(dataset.time[-1]),
         "samples": dataset.sizes["time"],
         "axes": list(AXES),

@@ -13,6 +13,7 @@ from flexapod import plots
 from flexapod.conventions import AXES, LEGS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
+from flexapod.mechanics.point_motion import in_columns, point_words
 from flexapod.report.numbers import DASH, brief, without_rounding
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 from flexapod.tables import written_table
@@ -32,14 +33,14 @@ class StaticsFindings:
 def study(hexapod: Hexapod, f: StaticsFindings) -> Study:
     """The study of load cases."""
     lengths = "without weight and load" if f.reference is None else f"in case {f.names[f.reference]}"
-    point = f.cases.attrs["point_m"]
+    point = point_words(f.cases.attrs["point_m"], f.cases.attrs["point"]) or "the platform's origin"
     drawing = Drawing(
         "statics", "Forces and deflections", partial(plots.statics.load_cases, f.cases, f.elevation), "", wide=True
     )
     return Study(
         hexapod=hexapod,
         subject="statics",
-        about=f"{len(f.names)} load cases at rest. Leg lengths are held as they are {lengths}; the point is {point} m.",
+        about=f"{len(f.names)} load cases at rest. Leg lengths are held as they are {lengths}; the point is {point}.",
         data=_data(hexapod, f),
         rows=_rows(f),
         sections=[
@@ -73,7 +74,8 @@ def table(f: StaticsFindings) -> str:
         columns["elevation_deg"] = _degrees(f.elevation)
     for name in ("gravity", "deflection", "rotation"):
         for k, axis in enumerate("xyz"):
-            columns[titled(f"{name}_{axis}", cases[name].attrs["units"])] = cases[name].values[:, k]
+            of = in_columns(cases.attrs) if name == "deflection" else ""
+            columns[titled(f"{name}{of}_{axis}", cases[name].attrs["units"])] = cases[name].values[:, k]
     for name in ("leg_force", "leg_length"):
         for k, leg in enumerate(LEGS):
             columns[titled(f"{name}_{leg}", cases[name].attrs["units"])] = cases[name].values[:, k]
@@ -234,6 +236,7 @@ def _data(hexapod: Hexapod, f: StaticsFindings) -> dict[str, Any]:
         "design": hexapod.name,
         "digest": hexapod.digest,
         "point_m": c.attrs["point_m"],
+        "point": c.attrs["point"],
         "reference": None if f.reference is None else f.names[f.reference],
         "case": f.names,
         "elevation_deg": None if f.elevation is None else _degrees(f.elevation),
