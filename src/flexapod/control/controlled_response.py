@@ -13,8 +13,9 @@ from flexapod.conventions import AXES, Array, Complex, JointModel, in_mixed_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.cautions import response_attributes
-from flexapod.mechanics.inputs import ZERO
+from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attributes, single_pose
 from flexapod.mechanics.linearisation import linearise
+from flexapod.mechanics.point_motion import shift
 from flexapod.pose import PoseLike
 from flexapod.vibration.grid import asked, grid_around
 from flexapod.vibration.harmonic import complex_poles
@@ -27,6 +28,7 @@ def controlled_transmissibility(
     controller: ControlLaw,
     omega: ArrayLike | None = None,
     frequency: ArrayLike | None = None,
+    point: PointLike = ZERO,
     base: PoseLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
@@ -47,6 +49,8 @@ def controlled_transmissibility(
         `vibration.frequency_grid` for the machine without control, as far as it lies below 0.99 pi/dt.
     frequency : array_like, shape (n,), optional
         The same in Hz, in place of `omega`.
+    point : array_like or str, optional
+        Output point, (3,) m, in the platform's frame, or the name of a point of the design.
     base : Pose or array_like, shape (6,), optional
         Pose of the base in the inertial frame. The identity by default.
     force, moment : array_like, shape (3,), optional
@@ -57,8 +61,9 @@ def controlled_transmissibility(
     Returns
     -------
     xarray.Dataset
-        Complex ``controlled`` and ``passive`` (omega, output, base), the absolute displacement of the platform (m, rad)
-        per displacement of the base (m, rad); and ``leg_force`` (omega, leg, base), N per displacement of the base.
+        Complex ``controlled`` and ``passive`` (omega, output, base), the absolute displacement of the output point (m,
+        rad) per displacement of the base (m, rad); and ``leg_force`` (omega, leg, base), N per displacement of the
+        base.
         Attributes: ``stability`` of the loop ("stable" or "unstable"), ``passive_stability`` of the machine without
         control ("stable" or "falls over"), and ``caution``, what that means where one of them does not decay.
 
@@ -85,7 +90,9 @@ def controlled_transmissibility(
     (9.3, 1.4)
     """
     w = asked(omega, frequency)
-    plant = Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint))
+    where = single_pose(hexapod, pose)
+    to_point = shift(where, as_point(hexapod, point))
+    plant = Plant(linearise(hexapod, where, base=base, force=force, moment=moment, joint=joint))
     law = controller_for(plant.linear, controller)
     if w is None:
         w = grid_around(complex_poles(plant.linear))
@@ -103,8 +110,8 @@ def controlled_transmissibility(
     units = [unit_of(axis) for axis in AXES]
     return xr.Dataset(
         {
-            "controlled": (grid, controlled, in_mixed_units(ratio, "transmissibility with control")),
-            "passive": (grid, passive, in_mixed_units(ratio, "transmissibility without control")),
+            "controlled": (grid, to_point @ controlled, in_mixed_units(ratio, "transmissibility with control")),
+            "passive": (grid, to_point @ passive, in_mixed_units(ratio, "transmissibility without control")),
             "leg_force": (
                 ("omega", "leg", "base"),
                 force,
@@ -122,6 +129,7 @@ def controlled_transmissibility(
             "design": hexapod.name,
             "digest": hexapod.digest,
             "controller": law.name,
+            **point_attributes(hexapod, point),
             **_stability(plant, law),
         },
     )

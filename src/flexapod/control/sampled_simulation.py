@@ -15,14 +15,15 @@ from flexapod.control.actuators_and_sensors import Hardware
 from flexapod.control.closed_loop_poles import assess, instability_message
 from flexapod.control.linear_controller import MEASUREMENTS, Controller, signals, static
 from flexapod.control.plant import Plant
+from flexapod.control.point_recording import prediction_at, recording_at
 from flexapod.control.sampled_prediction import Clock, Recording, predict
 from flexapod.conventions import AXES, LEGS, Array, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, SimulationError, UnstableError, shown
 from flexapod.excitation.excitation import Excitation
-from flexapod.mechanics.inputs import ZERO, single_base, single_pose
+from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attributes, single_base, single_pose
 from flexapod.mechanics.linearisation import linearise
-from flexapod.pose import Pose, PoseLike
+from flexapod.pose import Motion, Pose, PoseLike
 from flexapod.simulation.integrator import prepare
 from flexapod.simulation.run import SimulationRun
 
@@ -43,6 +44,7 @@ def simulate_control(
     duration: float,
     hardware: Hardware = IDEAL_HARDWARE,
     after: float = 0.0,
+    point: PointLike = ZERO,
     base: PoseLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
@@ -67,6 +69,9 @@ def simulate_control(
         Force limits and sensor noise. None of either by default.
     after : float, optional
         Time, s, from which root mean squares are taken.
+    point : array_like or str, optional
+        Point of the platform whose motion is told, (3,) m, in its frame, or the name of a point of the design. The
+        controller measures at the reference point all the same.
     base : Pose or array_like, shape (6,), optional
         Pose of the base in the inertial frame. The identity by default.
     force, moment : array_like, shape (3,), optional
@@ -79,12 +84,13 @@ def simulate_control(
     Returns
     -------
     xarray.Dataset
-        Over (case, time, axis), with the cases "controlled" and "passive": ``acceleration``, absolute, m/s2 and rad/s2;
-        ``displacement`` from rest in inertial axes, m and rad; ``relative``, the same seen from the base. Over
-        (sample_time, leg): ``force``, N. Over (case, axis): ``rms_acceleration`` and ``rms_displacement``, and
-        ``predicted_rms_acceleration`` and ``predicted_rms_displacement``, which the linearised hexapod has for the same
-        base motion, sampling and noise, but without force limits. Attributes: ``saturated``, the share of samples at
-        which a force was limited; ``steps`` of the integrator in each sample; ``dt_s``, the sampling time.
+        Of the point, over (case, time, axis), with the cases "controlled" and "passive": ``acceleration``, absolute,
+        m/s2 and rad/s2; ``displacement`` from rest in inertial axes, m and rad; ``relative``, the same seen from the
+        base. Over (sample_time, leg): ``force``, N. Over (case, axis): ``rms_acceleration`` and ``rms_displacement``,
+        and ``predicted_rms_acceleration`` and ``predicted_rms_displacement``, which the linearised hexapod has for the
+        same base motion, sampling and noise, but without force limits. Attributes: ``saturated``, the share of samples
+        at which a force was limited; ``steps`` of the integrator in each sample; ``dt_s``, the sampling time;
+        ``point_m`` and ``point``, the place and name of the point.
 
     Raises
     ------
@@ -114,7 +120,7 @@ def simulate_control(
     >>> round(float(rms.sel(case="controlled") / rms.sel(case="passive")), 2)
     0.19
     """
-    where = single_pose(hexapod, pose)
+    where, place = single_pose(hexapod, pose), as_point(hexapod, point)
     base = single_base(hexapod, base)
     plant = Plant(linearise(hexapod, where, base=base, force=force, moment=moment, joint=joint))
     clock = _clock(plant, controller, duration, after)
@@ -125,14 +131,17 @@ def simulate_control(
     run = SimulationRun(hexapod, where, base_motion=base_motion, force=force, moment=moment, base=base, start="carried")
     idle = static(np.zeros((6, 6)), ("leg_rate",), "no control")
     found, predicted = {}, {}
+    still, moved = Motion.fixed(base).pose, base_motion.motion(clock.times, base)
     for number_, (case, law) in enumerate(zip(CASES, (controller, idle), strict=True)):
         report = None if progress is None else _part(progress, 0.5 * number_, 0.5)
-        found[case] = simulate_sampled(run, law, clock, joint, limits, noise=noise, progress=report)
-        predicted[case] = predict(plant, law, base_motion, clock, noise)
+        record = simulate_sampled(run, law, clock, joint, limits, noise=noise, progress=report)
+        found[case] = recording_at(record, where, still, moved, place)
+        predicted[case] = prediction_at(predict(plant, law, base_motion, clock, noise), where, place)
     return _dataset(where, clock, found, predicted, after).assign_attrs(
         design=hexapod.name,
         digest=hexapod.digest,
         controller=controller.name,
+        **point_attributes(hexapod, point),
         dt_s=clock.dt,
         steps=clock.steps,
         saturated=float(found["controlled"].limited.mean()),

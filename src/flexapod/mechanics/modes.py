@@ -11,7 +11,8 @@ from flexapod._suggestions import suggests
 from flexapod.checks import not_negative, numbers
 from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.mechanics.inputs import as_joint
+from flexapod.mechanics.inputs import ZERO, PointLike, as_joint, as_point, pose_or_home
+from flexapod.mechanics.point_motion import shift
 from flexapod.mechanics.springs import law_states
 from flexapod.pose import PoseLike
 
@@ -32,9 +33,9 @@ class NaturalModes(NamedTuple):
     omega : ndarray
         Natural frequencies, rad/s, (..., 6), ascending.
     shape : ndarray
-        Mode shapes, (..., 6, 6): columns are twists of the platform, the translation of the reference point (rows 1 to
-        3) and the rotation vector (rows 4 to 6) in inertial axes. They are mass-normalised, shape^T J_p shape = 1, so
-        their units are kg^-1/2 and rad kg^-1/2 m^-1.
+        Mode shapes, (..., 6, 6): columns are twists of the platform, the translation of the reference point, or of the
+        point asked for (rows 1 to 3), and the rotation vector (rows 4 to 6) in inertial axes. They are mass-normalised,
+        shape^T J_p shape = 1 at the reference point, so their units are kg^-1/2 and rad kg^-1/2 m^-1.
     """
 
     omega: Array
@@ -55,6 +56,7 @@ def natural_modes(
     hexapod: Hexapod,
     pose: PoseLike | None = None,
     *,
+    point: PointLike = ZERO,
     base: PoseLike | None = None,
     joint: JointModel = "universal",
 ) -> NaturalModes:
@@ -67,6 +69,9 @@ def natural_modes(
     pose : Pose or array_like, optional
         Pose of the platform, one or many: a Pose, or x, y, z in m and roll, pitch, yaw in rad, (..., 6). Left out, the
         home pose.
+    point : array_like or str
+        Point of the platform whose motion the shapes tell, (3,) m, in its frame, or the name of a point of the design.
+        Left out, the reference point.
     base : Pose or array_like, optional
         Pose of the base in the inertial frame. Left out, the base frame is the inertial frame.
     joint : {"universal", "spin_free"}
@@ -104,7 +109,11 @@ def natural_modes(
     """
     s = law_states(hexapod, pose, base)
     omega, shape = _core.natural_modes(hexapod.packed, as_joint(joint), s.platform, s.base)
-    return NaturalModes(omega.reshape(*s.shape, 6), shape.reshape(*s.shape, 6, 6))
+    shape = shape.reshape(*s.shape, 6, 6)
+    place = as_point(hexapod, point)
+    if place.any():
+        shape = shift(pose_or_home(hexapod, pose), place) @ shape
+    return NaturalModes(omega.reshape(*s.shape, 6), shape)
 
 
 def stability_index(

@@ -13,6 +13,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from flexapod.conventions import TWO_PI, Array, printed_unit
+from flexapod.mechanics.point_motion import of_point
 from flexapod.plots.style import (
     BLUE,
     DASHED,
@@ -215,7 +216,8 @@ def isolation(dataset: xr.Dataset, axes: tuple[str, ...] = ("x", "z")) -> Figure
         ax.legend(**LEGEND)
         dress(ax)
     figure.axes[0].set_ylabel("transmissibility")
-    entitle(figure, f"{dataset.attrs['design']}: {dataset.attrs['controller']}{state_words(dataset.attrs)}")
+    words = f"{dataset.attrs['controller']}{of_point(dataset.attrs)}{state_words(dataset.attrs)}"
+    entitle(figure, f"{dataset.attrs['design']}: {words}")
     return figure
 
 
@@ -268,7 +270,8 @@ def controlled_run(dataset: xr.Dataset, axis: str = "z") -> Figure:
         dress(ax)
     attrs = dataset.attrs
     limited = f", force limited in {attrs['saturated']:.1%} of samples" if attrs["saturated"] else ""
-    entitle(figure, f"{attrs['design']}: {attrs['controller']}, sampled every {1e3 * attrs['dt_s']:.4g} ms{limited}")
+    sampled = f"{attrs['controller']}{of_point(attrs)}, sampled every {1e3 * attrs['dt_s']:.4g} ms"
+    entitle(figure, f"{attrs['design']}: {sampled}{limited}")
     return figure
 
 

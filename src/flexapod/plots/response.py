@@ -97,7 +97,8 @@ def frequency_response(
     note_still(figure, [OUTPUT_NAMES[axis] for axis in AXES if not drawn[axis]])
     source = f"leg {given}" if dimension == "leg" else f"{dimension} {given}"
     state = state_words(dataset.attrs)
-    figure.suptitle(f"{dataset.attrs['design']}: {words}, {source}{of_point(dataset.attrs)}{state}", color=INK, fontsize=12)
+    words = f"{words}, {source}{of_point(dataset.attrs)}{state}"
+    figure.suptitle(f"{dataset.attrs['design']}: {words}", color=INK, fontsize=12)
     return figure
 
 

@@ -44,7 +44,11 @@ def one_run(run: SimulationRun, found: Trajectories, i: int, times: Array, told:
     seen = _seen_from_base(point, base)
     three, turned = ("time", "axis"), ("time", "axis", "body_axis")
     variables: dict[str, tuple[tuple[str, ...], Any, dict[str, str]]] = {
-        "displacement": (("time", "output"), displacement_at(found.displacement[i, :reached], arm), in_mixed_units("output_unit")),
+        "displacement": (
+            ("time", "output"),
+            displacement_at(found.displacement[i, :reached], arm),
+            in_mixed_units("output_unit"),
+        ),
         "relative_displacement": (
             ("time", "output"),
             displacement_at(found.relative[i, :reached], arm if run.base is None else run.base.matrix.T @ arm),  # type: ignore[union-attr]
@@ -94,7 +98,7 @@ def platform_pose(result: xr.Dataset) -> Pose:
 
 
 def _seen_from_base(platform: Motion, base: Motion) -> tuple[Array, Array]:
-    """Velocity and acceleration of the platform at its point, linear and angular (n, 6), for who stands on the base, in its axes."""
+    """Velocity and acceleration of the platform, linear and angular (n, 6), for who stands on the base, in its axes."""
     turn, w = base.pose.matrix, base.angular_velocity
     arm = platform.pose.position - base.pose.position
     velocity = platform.velocity - base.velocity - np.cross(w, arm)

@@ -137,8 +137,8 @@ def simulate(
         - the variables of `joint_reactions`, with `reactions`
 
         Attributes: energy_error, the largest one over the largest of kinetic energy and works; energy_rounding (J), the
-        rounding of the stored energies, which hides a smaller error; point_m and point, the place and name of the point;
-        steps, evaluations, warnings and the settings.
+        rounding of the stored energies, which hides a smaller error; point_m and point, the place and name of the
+        point; steps, evaluations, warnings and the settings.
 
     Raises
     ------

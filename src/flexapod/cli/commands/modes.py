@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
-from flexapod.conventions import TWO_PI
+from flexapod.cli.options.points import PointGiven, point_option
+from flexapod.conventions import AXES, TWO_PI
 from flexapod.report.numbers import pose_numbers
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 @click.command()
 @common.machine_options
 @common.characteristic_length_option
+@point_option("Point of the platform whose motion in each mode is told as well")
 @common.json_option
 def command(
     design: str,
@@ -24,6 +26,7 @@ def command(
     changes: tuple[str, ...],
     joint: JointModel,
     characteristic_length: float | None,
+    point: PointGiven,
     as_json: bool,
 ) -> None:
     """Six natural frequencies of DESIGN at a pose, lowest first (the lowest is the dynamic stability index).
@@ -32,6 +35,8 @@ def command(
     """
     from flexapod.mechanics import kinematics, modes
     from flexapod.mechanics.at_rest import pose_state
+    from flexapod.mechanics.inputs import as_point, point_attributes
+    from flexapod.mechanics.point_motion import point_words, shift
 
     hexapod, where = common.machine(design, changes, pose)
     state = pose_state(hexapod, where, joint=joint)
@@ -40,6 +45,8 @@ def command(
         kinematics.condition_number(hexapod, where, characteristic_length=characteristic_length)
     )
     lengths = kinematics.inverse_kinematics(hexapod, where)
+    attributes = point_attributes(hexapod, point)
+    moved = shift(where, as_point(hexapod, point)) @ shape
     descriptions = [mode.text for mode in state.descriptions]
     warnings = [caution.text for caution in state.cautions if caution.code != "limit"]
     exceeded = len(state.cautions) - len(warnings)
@@ -61,13 +68,15 @@ def command(
                 "leg_lengths_m": lengths,
                 "sampling_time_s": modes.advised_sampling_time(omega[-1]),
                 "near_repeated": [[i + 1, j + 1] for i, j in modes.near_repeated(omega)],
-                "mode_shapes": shape,
+                **attributes,
+                "mode_shapes": moved,
                 "descriptions": descriptions,
                 "warnings": warnings,
             }
         )
         return
     _show(f"{hexapod.name} at {where!r}, joint model {joint}: {state.stability}", omega, descriptions)
+    _show_point(point_words(attributes["point_m"], attributes["point"]), moved)  # type: ignore[arg-type]
     scaled = f" (moments over {characteristic_length:g} m)" if characteristic_length else " (in metres)"
     click.echo(f"Condition number of H: {condition:.6g}{scaled}")
     click.echo("Leg lengths: " + "  ".join(f"{length:.6g}" for length in lengths) + " m")
@@ -87,4 +96,23 @@ def _show(title: str, omega: Array, descriptions: list[str]) -> None:
     table.add_column("motion")
     for i, words in enumerate(descriptions):
         table.add_row(f"{i + 1}", f"{omega[i]:.6g}", f"{omega[i] / TWO_PI:.5g}", words)
+    put(table, common.console())
+
+
+def _show_point(point: str, shape: Array) -> None:
+    """The motion of a point in each mode; nothing for the platform's origin, whose motion the words tell."""
+    import numpy as np
+    from rich.table import Table
+
+    from flexapod.report.numbers import shown, without_rounding
+    from flexapod.report.terminal import put
+
+    if not point:
+        return
+    table = Table(title=f"Mode shapes at {point}, mass-normalised: kg^-1/2, and rad kg^-1/2 m^-1")
+    for heading in ("mode", *AXES):
+        table.add_column(heading, justify="right", no_wrap=True)
+    kept = np.concatenate([without_rounding(part) for part in (shape[:3], shape[3:])])
+    for i in range(6):
+        table.add_row(f"{i + 1}", *(shown(float(x)) for x in kept[:, i]))
     put(table, common.console())

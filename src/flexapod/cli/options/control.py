@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.cli.options.points import PointGiven, point_option
 from flexapod.cli.options.quantities import FREQUENCY, HERTZ, TIME, Quantity
 
 if TYPE_CHECKING:
@@ -48,6 +49,7 @@ class Options:
     sensor_noise: float | None
     loss_frequency: float | None
     seed: int
+    point: PointGiven
     out: Path | None
 
 
@@ -86,6 +88,7 @@ law_options = common.stack(
     click.option("--noise", type=common.POSITIVE, help="Sensor noise that lqg and h-infinity expect. Default: 0.1."),
 )
 run_options = common.stack(
+    point_option("Point of the platform whose motion is told"),
     click.option("--dt", type=TIME, metavar="S", help="Sampling time. Default: 2 pi/(20 omega_max)."),
     click.option("--delay", type=common.count(0, 100), default=0, help="Samples by which forces come late."),
     click.option(

@@ -90,7 +90,12 @@ def _find(hexapod: Hexapod, pose: Pose, options: Options, report: Report) -> Con
     omega = tangent.modes().omega
     top = min(30 * omega[-1], 0.98 * np.pi / dt)
     response = controlled_transmissibility(
-        hexapod, pose, controller=sampled, omega=np.geomspace(0.03 * omega[0], top, 500), joint=options.joint
+        hexapod,
+        pose,
+        controller=sampled,
+        omega=np.geomspace(0.03 * omega[0], top, 500),
+        point=options.point,
+        joint=options.joint,
     )
     run, shaking = None, []
     if options.shake is not None:
@@ -233,6 +238,7 @@ def _run(
         base_motion=base,
         duration=shaken.duration,
         hardware=hardware,
+        point=options.point,
         progress=lambda share: report("run on the moving base", share),
         joint=options.joint,
     )

@@ -48,7 +48,9 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
 def _simulate(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) -> xr.Dataset:
     if given["duration"] is None and not given["recording"]:
         raise click.UsageError("Missing option '--duration': how long is simulated, as 0.5, 500ms or 2min.")
-    settings: dict[str, Any] = {name: given[name] for name in ("joint", "start", "rtol", "reactions", "loss_frequency", "point")}
+    settings: dict[str, Any] = {
+        name: given[name] for name in ("joint", "start", "rtol", "reactions", "loss_frequency", "point")
+    }
     if given["samples"] is not None:
         settings["samples"] = given["samples"]
     if given["unloaded"]:

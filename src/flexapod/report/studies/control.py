@@ -17,6 +17,7 @@ from flexapod.conventions import TWO_PI, printed_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import told_apart
 from flexapod.mechanics.cautions import Caution
+from flexapod.mechanics.point_motion import of_point
 from flexapod.pose import Pose
 from flexapod.report.numbers import pose_numbers, pose_words, shown
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
@@ -80,7 +81,7 @@ def study(hexapod: Hexapod, f: ControlFindings) -> Study:
     return Study(
         hexapod=hexapod,
         subject="control",
-        about=f"{f.ideal.controller.name} at {pose_words(f.pose)}, on the exact tangent.",
+        about=f"{f.ideal.controller.name} at {pose_words(f.pose)}, on the exact tangent{of_point(f.response.attrs)}.",
         data=_data(hexapod, f),
         rows=_rows(f),
         sections=[law, *sections, Section("Closed loop", [_poles(f)])],
@@ -190,7 +191,9 @@ def _run_table(f: ControlFindings, name: str) -> list[Table]:
     for case, title in (("passive", "no control"), ("controlled", "control")):
         columns.append(Column(title, rms("rms_acceleration", case)))
         columns.append(Column("tangent", rms("predicted_rms_acceleration", case)))
-    found = Table(columns, "Root mean square absolute acceleration.", "RMS absolute acceleration")
+    found = Table(
+        columns, f"Root mean square absolute acceleration{of_point(f.run.attrs)}.", "RMS absolute acceleration"
+    )
     return [_facts(f.shaking, "The shaking"), found]
 
 
@@ -200,6 +203,8 @@ def _data(hexapod: Hexapod, f: ControlFindings) -> dict[str, Any]:
         "design": hexapod.name,
         "digest": hexapod.digest,
         "pose_m_deg": pose_numbers(f.pose),
+        "point_m": f.response.attrs["point_m"],
+        "point": f.response.attrs["point"],
         "controller": loop.controller.name,
         "order": loop.controller.order,
         "natural_frequencies_rad_s": loop.omega,

@@ -127,7 +127,8 @@ def _further(hexapod: Hexapod) -> Table:
         facts[f"point {name}"] = f"({', '.join(_texts(place))}) m, platform frame"
     facts["limits"] = "; ".join(limits(hexapod)) or "none"
     columns = [Column("", list(facts)), Column("", list(facts.values()))]
-    return Table(columns, title="Gravity, home, points and limits" if hexapod.points else "Gravity, home and limits", style="facts", on="page")
+    title = "Gravity, home, points and limits" if hexapod.points else "Gravity, home and limits"
+    return Table(columns, title=title, style="facts", on="page")
 
 
 def _pose(pose: Pose) -> str:

@@ -16,8 +16,8 @@ from flexapod import plots
 from flexapod.conventions import AXES, LEGS, TWO_PI, Array, Complex, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
-from flexapod.pose import Pose
 from flexapod.mechanics.point_motion import in_columns, of_point
+from flexapod.pose import Pose
 from flexapod.report.numbers import pose_numbers, pose_words, without_rounding
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 
@@ -101,7 +101,9 @@ def _figure(f: ResponseFindings, name: str) -> Figure:
     linear = f.response.absolute.sel(base=f.axis)
     figure = plots.response.stepped_ratio(f.stepped, natural=natural, linear=linear, scale="log", unit="Hz")
     amplitude = f"{f.stepped.attrs['amplitude']:g} {f.stepped.attrs['amplitude_unit']}"
-    title = f"{f.hexapod.name}: non-linear stepped sine, base {f.axis}, amplitude {amplitude}{of_point(f.stepped.attrs)}"
+    title = (
+        f"{f.hexapod.name}: non-linear stepped sine, base {f.axis}, amplitude {amplitude}{of_point(f.stepped.attrs)}"
+    )
     figure.suptitle(title, fontsize=12)
     return figure
 
