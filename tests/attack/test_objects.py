@@ -82,7 +82,7 @@ MASS = fx.Variable("platform.mass", 20.0, 30.0)
 WHOLE = {
     "base_joints": H.base_joints, "platform_joints": H.platform_joints, "platform_mass": H.platform_mass,
     "platform_mass_center": H.platform_mass_center, "platform_inertia": H.platform_inertia, "legs": H.legs, "home": HOME,
-    "name": "own", "gravity": H.gravity, "limits": H.limits, "universal_axes": H.universal_axes, "short_forms": (), "suspension": None,
+    "name": "own", "gravity": H.gravity, "limits": H.limits, "universal_axes": H.universal_axes, "short_forms": (), "suspension": None, "points": {"vertex": [0.0, 0.0, 0.1]},
 }  # fmt: skip
 CIRCLES = {
     "base_radius": 0.2, "platform_radius": 0.15, "height": 0.2, "platform_mass": 3.0, "platform_inertia": [0.02, 0.02, 0.03],

@@ -117,6 +117,10 @@ MADE = [name for name in CLASSES if not issubclass(PUBLIC[name], BaseException |
 MADE.remove("Verification")  # a result whose field keeps its name: points
 
 
+#: Parameters of classes that are named by a word that is replaced elsewhere, where it means another thing.
+OWN_WORDS = {"Hexapod": {"points"}}  # places by name, not how many poses
+
+
 @pytest.mark.parametrize("name", MADE)
 def test_classes_use_no_replaced_word(name):
-    assert not set(inspect.signature(PUBLIC[name]).parameters) & set(REPLACED)
+    assert set(inspect.signature(PUBLIC[name]).parameters) & set(REPLACED) == OWN_WORDS.get(name, set())

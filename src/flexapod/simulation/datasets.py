@@ -39,31 +39,8 @@ def one_run(run: SimulationRun, found: Trajectories, i: int, times: Array, told:
     unstretched = found.unstretched_length[i] + command.evaluate(times)[0]
     length = leg_rates(run.hexapod, platform, base=base).length
     force = found.leg_force[i, :reached]
-    point = at_point(platform, told.point)
-    arm = run.pose.matrix @ told.point  # type: ignore[union-attr]  # checked by the run
-    seen = _seen_from_base(point, base)
-    three, turned = ("time", "axis"), ("time", "axis", "body_axis")
     variables: dict[str, tuple[tuple[str, ...], Any, dict[str, str]]] = {
-        "displacement": (
-            ("time", "output"),
-            displacement_at(found.displacement[i, :reached], arm),
-            in_mixed_units("output_unit"),
-        ),
-        "relative_displacement": (
-            ("time", "output"),
-            displacement_at(found.relative[i, :reached], arm if run.base is None else run.base.matrix.T @ arm),  # type: ignore[union-attr]
-            in_mixed_units("output_unit"),
-        ),
-        "relative_velocity": (("time", "output"), seen[0], in_mixed_units("output_unit/s")),
-        "relative_acceleration": (("time", "output"), seen[1], in_mixed_units("output_unit/s^2")),
-        "position": (three, point.pose.position, in_unit("m")),
-        "rotation": (turned, platform.pose.matrix, in_unit("1")),
-        "velocity": (three, point.velocity, in_unit("m/s")),
-        "angular_velocity": (three, platform.angular_velocity, in_unit("rad/s")),
-        "acceleration": (three, point.acceleration, in_unit("m/s^2")),
-        "angular_acceleration": (three, platform.angular_acceleration, in_unit("rad/s^2")),
-        "base_position": (three, base.pose.position, in_unit("m")),
-        "base_rotation": (turned, base.pose.matrix, in_unit("1")),
+        **_motion(run, found, i, platform, base, told.point),
         "leg_length": (("time", "leg"), length, in_unit("m")),
         "unstretched_length": (("time", "leg"), unstretched, in_unit("m")),
         "leg_force": (("time", "leg"), force, in_unit("N")),
@@ -89,6 +66,38 @@ def one_run(run: SimulationRun, found: Trajectories, i: int, times: Array, told:
         "source": ["base", "wrench", "leg_command", "friction"],
     }
     return xr.Dataset(variables, coordinates, {"point_m": told.point.tolist()})
+
+
+def _motion(
+    run: SimulationRun, found: Trajectories, i: int, platform: Motion, base: Motion, point: Array
+) -> dict[str, tuple[tuple[str, ...], Any, dict[str, str]]]:
+    """The motion of a point of the platform, and of the base."""
+    told = at_point(platform, point)
+    rest, still = Motion.fixed(run.base).pose.matrix, run.pose.matrix @ point  # type: ignore[arg-type, union-attr]
+    seen = _seen_from_base(told, base)
+    three, turned = ("time", "axis"), ("time", "axis", "body_axis")
+    return {
+        "displacement": (
+            ("time", "output"),
+            displacement_at(found.displacement[i, : len(seen[0])], still),
+            in_mixed_units("output_unit"),
+        ),
+        "relative_displacement": (
+            ("time", "output"),
+            displacement_at(found.relative[i, : len(seen[0])], rest.T @ still),
+            in_mixed_units("output_unit"),
+        ),
+        "relative_velocity": (("time", "output"), seen[0], in_mixed_units("output_unit/s")),
+        "relative_acceleration": (("time", "output"), seen[1], in_mixed_units("output_unit/s^2")),
+        "position": (three, told.pose.position, in_unit("m")),
+        "rotation": (turned, platform.pose.matrix, in_unit("1")),
+        "velocity": (three, told.velocity, in_unit("m/s")),
+        "angular_velocity": (three, platform.angular_velocity, in_unit("rad/s")),
+        "acceleration": (three, told.acceleration, in_unit("m/s^2")),
+        "angular_acceleration": (three, platform.angular_acceleration, in_unit("rad/s^2")),
+        "base_position": (three, base.pose.position, in_unit("m")),
+        "base_rotation": (turned, base.pose.matrix, in_unit("1")),
+    }
 
 
 def platform_pose(result: xr.Dataset) -> Pose:
