@@ -1,10 +1,13 @@
 """Draws the figures of the how-to pages, and that of modes.md in README.md: python docs/images/draw_guides.py"""
 
+import sys
+from contextlib import chdir
 from pathlib import Path
+from shutil import copy
+from tempfile import TemporaryDirectory
 
 import matplotlib.pyplot as plt
 import numpy as np
-from matplotlib.figure import Figure
 
 import flexapod as fx
 from flexapod import plots
@@ -12,9 +15,13 @@ from flexapod.plots import optimisation, response, style, sweep
 from flexapod.plots import simulation as plots_simulation
 
 HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE.parents[1]))
+
+from tests.helpers.documents import blocks  # noqa: E402
 
 
-def save(figure: Figure, name: str) -> None:
+def save(made: style.Drawn, name: str) -> None:
+    figure = style.figure_of(made)
     figure.savefig(HERE / name, dpi=110)
     plt.close(figure)
 
@@ -50,6 +57,14 @@ def envelope() -> None:
     """docs/envelope.md: a motion base along two axes at once."""
     machine = fx.load("motion-base")
     save(plots.envelope.pairs(fx.envelope(machine), machine.name), "envelope.png")
+
+
+def figures() -> None:
+    """docs/figures.md: its own example."""
+    for block in blocks((HERE.parent / "figures.md").read_text(encoding="utf-8"))[1:2]:
+        with TemporaryDirectory() as folder, chdir(folder):
+            exec(block.text, {})
+            copy("two-columns.png", HERE)
 
 
 def statics() -> None:
@@ -108,5 +123,5 @@ def optimal_design() -> None:
 
 
 if __name__ == "__main__":
-    for draw in (modes, workspace, envelope, statics, simulation, vibration, robustness, optimal_design):
+    for draw in (modes, workspace, envelope, figures, statics, simulation, vibration, robustness, optimal_design):
         draw()

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, nullcontext, suppress
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from flexapod.errors import ArgumentError, OutputError, shown
 
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _passing: set[Path] = set()  # files and directories that are there for a moment only
+#: Words are text in files, and the same figure is the same file.
+_AS_TEXT = {"svg.fonttype": "none", "svg.hashsalt": "flexapod", "pdf.fonttype": 42, "ps.fonttype": 42}
 #: Endings of figures that Matplotlib writes.
 FIGURES = (".png", ".pdf", ".svg", ".eps", ".ps", ".jpg", ".jpeg", ".tif", ".tiff", ".webp")
 
@@ -90,11 +92,16 @@ def write_file(path: str | PathLike[str], content: str | bytes) -> Path:
     return Path(path)
 
 
-def write_figure(figure: Figure, path: str | PathLike[str]) -> None:
-    """Write a figure at 160 dots per inch, in the format that the name ends with. Raises OutputError."""
+def write_figure(
+    figure: Figure, path: str | PathLike[str], *, dpi: float = 160, metadata: Mapping[str, Any] | None = None
+) -> None:
+    """Write a figure in the format that the name ends with. Words stay text. Raises OutputError."""
+    import matplotlib
+
     check_figure(Path(path))
-    with completed(path) as making:
-        figure.savefig(making, dpi=160)
+    with completed(path) as making, matplotlib.rc_context(_AS_TEXT):  # type: ignore[arg-type]
+        told: dict[str, Any] = {} if metadata is None else {"metadata": metadata}
+        figure.savefig(making, dpi=dpi, **told)
 
 
 def write_netcdf(dataset: xr.Dataset, path: str | PathLike[str], engine: str | None = None) -> None:

@@ -19,12 +19,6 @@ from flexapod.report.studies import machine, path
 from flexapod.report.terminal import show
 
 
-@pytest.fixture(autouse=True)
-def closed():
-    yield
-    plt.close("all")
-
-
 def test_axes_are_made_where_none_are_given():
     hexapod = fx.load("motion-base")
     pose = fx.home_pose(hexapod)

@@ -49,7 +49,7 @@ def test_many_oscillations_are_an_envelope():
                                  (1e-20, "fm", "1e+09")]
 )  # fmt: skip
 def test_numbers_along_an_axis_are_plain(limit, label, tick):
-    ax = panels(new_figure(3, 2), 1)[0]
+    _, (ax,) = panels(new_figure(3, 2), 1)
     ax.set_ylim(-limit, limit) if limit else ax.set_ylim(-0.0, 1.0)
     prefixed(ax, "m")
     assert ax.get_ylabel() == label

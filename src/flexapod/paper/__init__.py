@@ -86,11 +86,11 @@ def draw(name: str, settings: Settings) -> Part:
     """Make a part of the paper by its name in `PARTS`."""
     import matplotlib
 
-    from flexapod.plots.style import INK
+    from flexapod.plots.style import INK, unshown
 
     module = import_module(f"flexapod.paper.{PARTS[name]}")
     words = dict.fromkeys(("text.color", "axes.labelcolor", "axes.edgecolor", "xtick.color", "ytick.color"), INK)
-    with matplotlib.rc_context(words):  # type: ignore[arg-type]
+    with matplotlib.rc_context(words), unshown():  # type: ignore[arg-type]
         found: Part = module.draw(name, settings)
         _ready(found.figure)
     return found

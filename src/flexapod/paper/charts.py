@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from matplotlib.figure import Figure
 
 from flexapod.conventions import Array
-from flexapod.plots.style import FAINT, dress, new_figure
+from flexapod.plots.style import FAINT, dress, new_figure, wide
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,7 +29,7 @@ def rows_of_dots(names: Sequence[str], dots: Iterable[Dots], label: str) -> tupl
     """Values on a logarithmic axis, a named row for each case, the first on top."""
     figure = new_figure(9.0, 1.1 + _ROW * len(names))
     ax = figure.add_subplot()
-    ax.hlines(range(len(names)), 0, 1, transform=ax.get_yaxis_transform(), color=FAINT, lw=0.4, alpha=0.5)
+    ax.hlines(range(len(names)), 0, 1, transform=ax.get_yaxis_transform(), color=FAINT, lw=wide(0.4), alpha=0.5)
     for kind in dots:
         place = [i for i, row in enumerate(kind.rows) for _ in row]
         values = [float(value) for row in kind.rows for value in row]

@@ -22,7 +22,7 @@ from flexapod.optimisation.design_search import optimise
 from flexapod.optimisation.objectives import Dexterity, LeastIndex, MeanIndex, Objective
 from flexapod.optimisation.variables import Variable
 from flexapod.paper import Claim, Part, Settings, agrees
-from flexapod.plots.style import BLUE, FAINT, GREEN, INK, ORANGE, dress, new_figure
+from flexapod.plots.style import BLUE, FAINT, GREEN, INK, ORANGE, dress, legend_below, letters, stage, wide
 from flexapod.pose import Pose
 
 DESIGN = "mukherjee-ii"
@@ -167,21 +167,22 @@ def _words(measured: pd.DataFrame) -> pd.DataFrame:
 
 def _figure(found: dict[str, _Machine]) -> Figure:
     """All machines, and those that were improved once more, closer."""
-    figure = new_figure(10.0, 4.4)
     share, bound = np.linspace(0, 1, _FINE), found[LEAST].along.min()
-    whole, close = figure.subplots(1, 2, sharex=True, width_ratios=[1, 1.4])
+    figure, (whole, close) = stage(None, (10.0, 4.4), (1, 2), sharex=True, width_ratios=[1, 1.4])
     for name, machine in found.items():
         colour, style = _STYLES[name]
-        whole.plot(share, machine.along, color=colour, ls=style, lw=1.9, label=name)
+        whole.plot(share, machine.along, color=colour, ls=style, lw=wide(1.9), label=name)
         if name != PRINTED:
-            close.plot(share, machine.along, color=colour, ls=style, lw=1.9)
+            close.plot(share, machine.along, color=colour, ls=style, lw=wide(1.9))
     for ax in (whole, close):
-        ax.axhline(bound, color=INK, lw=0.8)
+        ax.axhline(bound, color=INK, lw=wide(0.8))
         ax.axvspan(*CRITICAL, color=ORANGE, alpha=0.1, lw=0)
         ax.set(xlabel="share of the path", xlim=(0, 1))
         dress(ax)
-    close.annotate(f"bound {bound:.4g} rad/s", (0.5, bound), xytext=(0, -12), textcoords="offset points", fontsize=9)
+    close.annotate(
+        f"bound {bound:.4g} rad/s", (0.5, bound), xytext=(0, -12), textcoords="offset points", fontsize=letters()
+    )
     whole.set_ylabel(r"lowest natural frequency $\omega_1$, rad/s")
     whole.set_ylim(bottom=0)
-    figure.legend(*whole.get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False, fontsize=9)
+    legend_below(figure, 3, *whole.get_legend_handles_labels())
     return figure

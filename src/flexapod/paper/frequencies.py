@@ -15,7 +15,7 @@ from flexapod.mechanics.modes import advised_sampling_time, natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.charts import FAINT, Dots, rows_of_dots
 from flexapod.paper.vibration import PRINTED
-from flexapod.plots.style import BLUE, ORANGE
+from flexapod.plots.style import BLUE, ORANGE, letters, wide
 from flexapod.pose import Pose
 
 MODES = [f"omega_{mode}" for mode in range(1, 7)]
@@ -95,11 +95,11 @@ def _cond(case: Case) -> float:
 def _figure(table: pd.DataFrame) -> Any:
     rows = list(table[table.columns[:6]].values)
     figure, ax = rows_of_dots(list(table.index), [Dots("Eq. 5", rows, BLUE)], "natural frequency, rad/s")
-    ax.axvline(PRINTED, color=ORANGE, lw=1.4, ls=(0, (5, 2)))
-    ax.axvline(TWO_PI * PRINTED, color=FAINT, lw=1.4, ls=(0, (1, 2)))
+    ax.axvline(PRINTED, color=ORANGE, lw=wide(1.4), ls=(0, (5, 2)))
+    ax.axvline(TWO_PI * PRINTED, color=FAINT, lw=wide(1.4), ls=(0, (1, 2)))
     place: dict[str, Any] = {
         "xycoords": ("data", "axes fraction"),
-        "fontsize": 9,
+        "fontsize": letters(),
         "textcoords": "offset points",
         "va": "bottom",
     }

@@ -28,7 +28,7 @@ from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import advised_sampling_time
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.frequencies import home
-from flexapod.plots.style import ORANGE, dress, new_figure
+from flexapod.plots.style import ORANGE, dress, new_figure, wide
 from flexapod.rotations import skew
 
 DESIGN = "mukherjee-ii"
@@ -184,7 +184,7 @@ def _figure(table: pd.DataFrame) -> Figure:
     shades = TwoSlopeNorm(1.0, 0.0, _MOST)
     mesh = ax.pcolormesh(KD, KI, finite, cmap="PuOr_r", norm=shades, shading="nearest", rasterized=True)
     ax.set(xscale="log", yscale="log", xlabel="derivative gain kd, 1/s", ylabel="integral gain ki, 1/s³")
-    ax.contour(KD, KI, distance, levels=[NEAR], colors=[_LINE], linewidths=1.8)
+    ax.contour(KD, KI, distance, levels=[NEAR], colors=[_LINE], linewidths=wide(1.8))
     for word, (ki, kd) in RUNS.items():
         ax.plot(kd, ki, "o", ms=8, color=ORANGE, mec="white", clip_on=False, zorder=4)
         box = {"boxstyle": "round,pad=0.2", "fc": "#ffffff", "ec": "none", "alpha": 0.85}

@@ -28,7 +28,7 @@ from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.modes import advised_sampling_time
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.paper.frequencies import home
-from flexapod.plots.style import BLUE, FAINT, INK, ORANGE, dress, new_figure
+from flexapod.plots.style import BLUE, FAINT, INK, ORANGE, dress, letters, new_figure, wide
 
 DESIGN = "mukherjee-ii"
 DAMPING = 0.1  # of the highest mode, by the continuous controller
@@ -150,13 +150,13 @@ def _figure(damping: Array, bench: _Bench, edge: float) -> Figure:
     figure = new_figure(9.0, 3.8)
     ax = figure.add_subplot()
     ax.axhspan(-1, 0, color=ORANGE, alpha=0.12, lw=0)
-    ax.semilogx(FACTORS, damping, color=BLUE, lw=1.9)
-    ax.axhline(bench.continuous, color=FAINT, lw=1.2, ls=(0, (5, 2)))
-    ax.axvline(1.0, color=INK, lw=1.0)
-    ax.annotate("the paper's rule", (1.0, 0.0), xytext=(4, 6), textcoords="offset points", fontsize=9)
-    ax.annotate("unstable", (FACTORS[0], 0.0), xytext=(6, -14), textcoords="offset points", fontsize=9)
+    ax.semilogx(FACTORS, damping, color=BLUE, lw=wide(1.9))
+    ax.axhline(bench.continuous, color=FAINT, lw=wide(1.2), ls=(0, (5, 2)))
+    ax.axvline(1.0, color=INK, lw=wide(1.0))
+    ax.annotate("the paper's rule", (1.0, 0.0), xytext=(4, 6), textcoords="offset points", fontsize=letters())
+    ax.annotate("unstable", (FACTORS[0], 0.0), xytext=(6, -14), textcoords="offset points", fontsize=letters())
     ax.plot(edge, 0.0, "o", ms=7, color=ORANGE, mec="white", zorder=4)
-    ax.annotate(f"{edge:.2f}", (edge, 0.0), xytext=(6, 6), textcoords="offset points", fontsize=9)
+    ax.annotate(f"{edge:.2f}", (edge, 0.0), xytext=(6, 6), textcoords="offset points", fontsize=letters())
     low = max(float(damping.min()), -0.6 * bench.continuous)
     ax.set(xlabel="sampling time over 2π/(20 ω₆)", ylabel="least damping ratio of modes 4 to 6", xlim=FACTORS[[0, -1]])
     ax.set_ylim(low - 0.01, 1.25 * bench.continuous)

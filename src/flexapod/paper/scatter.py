@@ -15,6 +15,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.design.loading import load
 from flexapod.mechanics.kinematics import home_pose
 from flexapod.paper import Claim, Part, Settings, agrees
+from flexapod.plots import style
 from flexapod.plots import sweep as plots_sweep
 from flexapod.workspace.box import Box
 from flexapod.workspace.sampling import random_poses
@@ -85,7 +86,7 @@ def draw(name: str, settings: Settings) -> Part:
     most_cond = float(np.nanquantile(own["cond_H"], _SHOWN))
     axes = plots_sweep.index_scatter(own, most_cond=most_cond)
     title = f"Figure {figure}: {case.name}, platform {case.mass:g} kg"
-    axes.set_title(title, fontsize=11, color=plots_sweep.INK)
+    style.entitle(axes, title)
     axes.text(
         0.98,
         0.97,
@@ -93,15 +94,13 @@ def draw(name: str, settings: Settings) -> Part:
         transform=axes.transAxes,
         ha="right",
         va="top",
-        fontsize=9,
-        color=plots_sweep.INK,
+        fontsize=style.letters(),
+        color=style.ink(),
     )
-    drawn = axes.get_figure(root=True)
-    assert drawn is not None
     table = pd.DataFrame({name: own[name].values for name in ("cond_H", "omega_1")}).rename_axis("pose")
     table = table[table.cond_H <= most_cond].rename(columns={"omega_1": "omega_1_rad_s"})
     claims = _claims(case, numbers)
-    return Part(name, title, drawn, _caption(case, settings, summary), numbers, claims, table)
+    return Part(name, title, style.figure_of(axes), _caption(case, settings, summary), numbers, claims, table)
 
 
 def _claims(case: Case, numbers: dict[str, Any]) -> tuple[Claim, ...]:

@@ -20,6 +20,7 @@ from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paper import Claim, Part, Settings, agrees
 from flexapod.plots import response, simulation
+from flexapod.plots.style import entitle
 from flexapod.pose import Pose
 from flexapod.simulation.integrator import IntegratorOptions, integrate
 from flexapod.simulation.run import SimulationRun
@@ -109,7 +110,7 @@ def _ratio(settings: Settings) -> Part:
     line = transmissibility(hexapod, pose, omega=fine, joint=joint).absolute.sel(base="z")
     figure = response.stepped_ratio(stepped, resonances, line)
     title = "Fig. 9: ratio of response to base amplitude, base z, 1 µm"
-    figure.suptitle(f"{title}; dotted: the tangent's modes", fontsize=12)
+    entitle(figure, f"{title}; dotted: the tangent's modes")
     apart = float(np.nanmedian(np.abs(stepped.response - stepped.linear) / np.abs(stepped.linear)))
     peaks = _peaks(omega, stepped.ratio.values)
     elsewhere = [w for w in peaks if np.abs(w / resonances - 1).min() > 1e-3]
@@ -226,7 +227,7 @@ def _in_time(
     figure = simulation.displacements(
         shaken.times, shaken.displacement, bound=shaken.bound, bound_name="bound by the tangent"
     )
-    figure.suptitle(title, fontsize=12)
+    entitle(figure, title)
     columns = [f"{axis}_{'rad' if i > 2 else 'm'}" for i, axis in enumerate(AXES)]
     table = pd.DataFrame(shaken.displacement, index=pd.Index(shaken.times, name="time_s"), columns=columns)
     return Part(f"figure-{number}", title, figure, caption, numbers, claims, table)

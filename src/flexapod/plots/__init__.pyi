@@ -3,6 +3,7 @@ from . import control as control
 from . import envelope as envelope
 from . import optimisation as optimisation
 from . import path as path
+from . import printing as printing
 from . import response as response
 from . import simulation as simulation
 from . import statics as statics
@@ -13,3 +14,5 @@ from .animation import animate_simulation as animate_simulation
 from .machine_3d import machine as machine
 from .machine_3d import mode as mode
 from .natural_frequencies import frequencies as frequencies
+from .printing import for_print as for_print
+from .printing import save as save

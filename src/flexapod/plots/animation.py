@@ -25,7 +25,7 @@ from flexapod.mechanics.modes import natural_modes
 from flexapod.mechanics.point_motion import displacement_at
 from flexapod.optional import needed
 from flexapod.output_files import check_file, completed
-from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, VIEW, entitle
+from flexapod.plots.style import BASE, FAINT, LEG, PLATFORM, VIEW, entitle, ink, letters, wide
 from flexapod.pose import Pose, PoseLike
 from flexapod.rotations import rotation_from_vector
 
@@ -229,7 +229,7 @@ class _Film(NamedTuple):
             )
         figure, draw = _stage(self.top, self.feet, size + 2 * factor * travel)
         entitle(figure, title)
-        caption = figure.text(0.5, 0.03, "", ha="center", color=INK, fontsize=10)
+        caption = figure.text(0.5, 0.03, "", ha="center", color=ink(), fontsize=letters("axes.labelsize"))
         writer, settings = _writer(Path(path))
         with completed(path) as making, settings, writer.saving(figure, str(making), dpi=100):
             for i, (x, x_b) in enumerate(zip(factor * self.platform, factor * self.base, strict=True)):
@@ -273,9 +273,11 @@ def _stage(top: Array, feet: Array, width: float) -> tuple[Figure, Callable[[Arr
     ax.add_collection3d(Poly3DCollection([top[order]], **ghost))
     plates = []
     for joints, color in ((feet[order_b], BASE), (top[order], PLATFORM)):
-        plates.append(Poly3DCollection([joints], facecolor=to_rgba(color, 0.25), edgecolor=color, linewidth=1.5))
+        plates.append(Poly3DCollection([joints], facecolor=to_rgba(color, 0.25), edgecolor=color, linewidth=wide(1.5)))
         ax.add_collection3d(plates[-1])
-    legs = [ax.plot(*np.zeros((3, 2)), color=LEG, lw=2.4, marker="o", ms=4, mec="white", mew=0.5)[0] for _ in range(6)]
+    legs = [
+        ax.plot(*np.zeros((3, 2)), color=LEG, lw=wide(2.4), marker="o", ms=4, mec="white", mew=0.5)[0] for _ in range(6)
+    ]
     both = np.vstack([top, feet])
     middle = 0.5 * (both.max(axis=0) + both.min(axis=0))
     spread = 0.5 * width

@@ -12,7 +12,22 @@ from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_hexapod, single_pose
 from flexapod.mechanics.kinematics import force_transformation
 from flexapod.mechanics.modes import NaturalModes
-from flexapod.plots.style import BASE, FAINT, INK, LEG, PLATFORM, SHORTENED, STRETCHED, TRIAD, VIEW
+from flexapod.plots.style import (
+    BASE,
+    FAINT,
+    LEG,
+    NARROW,
+    PLATFORM,
+    SHORTENED,
+    STRETCHED,
+    TRIAD,
+    VIEW,
+    across,
+    ink,
+    letters,
+    new_axes,
+    wide,
+)
 from flexapod.pose import Pose, PoseLike
 from flexapod.rotations import rotation_from_vector
 
@@ -30,7 +45,7 @@ def machine(hexapod: Hexapod, pose: PoseLike | None = None, *, ax: Axes3D | None
     pose : Pose or array_like, optional
         One pose: a Pose, or x, y, z (m), roll, pitch, yaw (rad). Default: the home pose.
     ax : Axes3D, optional
-        Axes to draw on. Default: those of a new figure of pyplot.
+        Axes to draw on. Default: those of a new figure.
 
     Returns
     -------
@@ -59,8 +74,8 @@ def machine(hexapod: Hexapod, pose: PoseLike | None = None, *, ax: Axes3D | None
     _plate(ax, p, PLATFORM)
     for i in range(6):
         middle = b[i] + 0.55 * (p[i] - b[i])
-        _line(ax, b[i], middle, color=LEG, lw=4.5)
-        _line(ax, middle, p[i], color=LEG, lw=2.0)
+        _line(ax, b[i], middle, color=LEG, lw=wide(4.5))
+        _line(ax, middle, p[i], color=LEG, lw=wide(2.0))
     _numbers(ax, b, size)
     _points(ax, b, BASE)
     _points(ax, p, PLATFORM)
@@ -88,7 +103,7 @@ def mode(
     number : int
         Number of the mode, from 1 (the lowest) to 6.
     ax : Axes3D, optional
-        Axes to draw on. Default: those of a new figure of pyplot.
+        Axes to draw on. Default: those of a new figure.
 
     Returns
     -------
@@ -129,9 +144,9 @@ def mode(
     _plate(ax, moved, PLATFORM)
     largest = max(float(np.abs(strain).max()), 1e-9 * size)
     for i in range(6):
-        _line(ax, b[i], p[i], color=FAINT, lw=0.8, ls="--")
+        _line(ax, b[i], p[i], color=FAINT, lw=wide(0.8), ls="--")
         part = float(strain[i]) / largest
-        _line(ax, b[i], moved[i], color=_strain_colour(part), lw=1.6 + 3.4 * abs(part))
+        _line(ax, b[i], moved[i], color=_strain_colour(part), lw=wide(1.6 + 3.4 * abs(part)))
     _numbers(ax, b, size)
     _points(ax, b, BASE)
     _points(ax, moved, PLATFORM)
@@ -152,9 +167,10 @@ def _enlarged(twist: Array, joints: Array, travel: float) -> Array:
 
 
 def _axes_3d() -> Axes3D:
-    import matplotlib.pyplot as plt
-
-    return plt.figure(figsize=(6, 6)).add_subplot(projection="3d")
+    ax: Any = new_axes(6.0, 6.0, projection="3d")
+    if across(ax) < NARROW:
+        ax.set_position((0.0, 0.03, 0.9, 0.97))
+    return ax
 
 
 def _at(pose: Pose, points: Array) -> Array:
@@ -168,7 +184,7 @@ def _frame(ax: Axes3D, b: Array, p: Array, margin: float = 0.06) -> float:
     size = float((high - low).max())
     low, high = low - margin * size, high + margin * size
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
-    ax.set_box_aspect(high - low, zoom=1.15)
+    ax.set_box_aspect(high - low, zoom=1.15 if across(ax) > NARROW else 0.95)
     ax.set_proj_type("ortho")
     ax.view_init(**VIEW)
     return size
@@ -178,10 +194,10 @@ def _ticks(ax: Axes3D) -> None:
     for axis, name in ((ax.xaxis, "x, m"), (ax.yaxis, "y, m"), (ax.zaxis, "z, m")):
         axis.set_pane_color((1, 1, 1, 0))
         axis.line.set_color(FAINT)
-        axis._axinfo["grid"].update(color=FAINT, linewidth=0.3)
-        axis.set_label_text(name, color=INK)
+        axis._axinfo["grid"].update(color=FAINT, linewidth=wide(0.3))
+        axis.set_label_text(name, color=ink())
         axis.set_major_locator(_few())
-    ax.tick_params(colors=INK, labelsize=8)
+    ax.tick_params(colors=ink(), labelsize=letters("xtick.labelsize"))
 
 
 def _few() -> Any:
@@ -200,7 +216,9 @@ def _plate(ax: Axes3D, joints: Array, color: str, alpha: float = 0.22, ls: str =
     order = np.argsort(np.arctan2(spread @ second, spread @ first))
     face = to_rgba(color, alpha)
     ax.add_collection3d(
-        Poly3DCollection([joints[order]], facecolor=face, edgecolor=color, linewidth=1.4, linestyle=ls, clip_on=False)
+        Poly3DCollection(
+            [joints[order]], facecolor=face, edgecolor=color, linewidth=wide(1.4), linestyle=ls, clip_on=False
+        )
     )
 
 
@@ -216,7 +234,15 @@ def _numbers(ax: Axes3D, b: Array, size: float) -> None:
     same = np.linalg.norm(b[:, None] - b, axis=2) < 1e-6 * size
     for first in np.unique(same.argmax(axis=1)):
         number = ", ".join(leg for leg, here in zip(LEGS, same[first], strict=True) if here)
-        ax.text(*places[first], number, color=INK, ha="center", va="center", fontsize=10, fontweight="bold")
+        ax.text(
+            *places[first],
+            number,
+            color=ink(),
+            ha="center",
+            va="center",
+            fontsize=letters("axes.labelsize"),
+            fontweight="bold",
+        )
 
 
 def _points(ax: Axes3D, points: Array, color: str) -> None:
@@ -226,10 +252,10 @@ def _points(ax: Axes3D, points: Array, color: str) -> None:
 def _triad(ax: Axes3D, frame: Pose, length: float, names: bool) -> None:
     for i, (name, color) in enumerate(TRIAD):
         tip = frame.position + length * frame.matrix[:, i]
-        _line(ax, frame.position, tip, color=color, lw=1.6)
+        _line(ax, frame.position, tip, color=color, lw=wide(1.6))
         if names:
             place = frame.position + 1.22 * length * frame.matrix[:, i]
-            ax.text(*place, name, color=color, fontsize=9, ha="center", va="center")
+            ax.text(*place, name, color=color, fontsize=letters(), ha="center", va="center")
 
 
 def _strain_colour(part: float) -> Any:

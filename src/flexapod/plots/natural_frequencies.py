@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.conventions import TWO_PI, Array
 from flexapod.mechanics.cautions import GROWS, other_than_vibration
-from flexapod.plots.style import FAINT, INK, PLATFORM, STRETCHED
+from flexapod.plots.style import FAINT, PLATFORM, STRETCHED, ink, letters, new_axes, wide
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -30,7 +30,7 @@ def frequencies(
     omega : array_like
         (6,) natural frequencies, rad/s; those that are zero are left out.
     ax : Axes, optional
-        Axes to draw on. Default: those of a new figure of pyplot.
+        Axes to draw on. Default: those of a new figure.
     tangent : array_like, optional
         (6,) frequencies of the exact tangent that belong to the same modes, rad/s, or its poles; NaN: there is none.
         Of poles that do not vibrate, or grow, the figure says so instead.
@@ -52,30 +52,29 @@ def frequencies(
     >>> ax.get_xlabel()
     'natural frequency, Hz'
     """
-    if ax is None:
-        import matplotlib.pyplot as plt
-
-        ax = plt.figure(figsize=(7, 2.6), layout="constrained").add_subplot()
+    ax = new_axes(7.0, 2.6) if ax is None else ax
     y = np.arange(1, 7)
     hz = np.asarray(omega) / TWO_PI
     seen = hz > 0
-    ax.hlines(y, 0, 1, transform=ax.get_yaxis_transform(), color=FAINT, lw=0.4, alpha=0.5)
+    ax.hlines(y, 0, 1, transform=ax.get_yaxis_transform(), color=FAINT, lw=wide(0.4), alpha=0.5)
     ax.plot(hz[seen], y[seen], "o", ms=8, color=PLATFORM, label="Eq. 5", clip_on=False, zorder=3)
     if tangent is not None:
         hz = np.append(hz, _tangent(ax, y, np.asarray(tangent)))
-        ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False, labelcolor=INK, fontsize=10)
+        ax.legend(
+            loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False, labelcolor=ink(), fontsize=letters()
+        )
     _logarithmic(ax, hz)
     names = (
         [f"mode {i}" for i in y] if labels is None else [f"{i}  {label}" for i, label in zip(y, labels, strict=True)]
     )
-    ax.set_yticks(y, names, color=INK)
+    ax.set_yticks(y, names, color=ink())
     ax.set_ylim(6.6, 0.4)
-    ax.set_xlabel("natural frequency, Hz", color=INK)
+    ax.set_xlabel("natural frequency, Hz", color=ink())
     for side in ("top", "right", "left"):
         ax.spines[side].set_visible(False)
     ax.spines["bottom"].set_color(FAINT)
     ax.tick_params(axis="y", length=0)
-    ax.tick_params(axis="x", which="both", color=FAINT, labelcolor=INK)
+    ax.tick_params(axis="x", which="both", color=FAINT, labelcolor=ink())
     return ax
 
 
@@ -89,7 +88,9 @@ def _tangent(ax: Axes, rows: NDArray[np.int64], tangent: NDArray[Any]) -> Array:
     across = ax.get_yaxis_transform()
     for row, one, grown in zip(rows, pole, grows, strict=True):
         if words := other_than_vibration(one, grown) if np.isfinite(one) else "":
-            ax.text(1.0, row - 0.08, words, transform=across, color=STRETCHED, fontsize=10, ha="right", va="bottom")
+            ax.text(
+                1.0, row - 0.08, words, transform=across, color=STRETCHED, fontsize=letters(), ha="right", va="bottom"
+            )
     return hz
 
 

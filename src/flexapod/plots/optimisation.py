@@ -1,4 +1,4 @@
-"""Figures of optimal design and of robustness. Each function draws a result on a new Figure and returns it."""
+"""Figures of optimal design and of robustness. Without `ax` or `figure` a new one is made."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator, NullLocator
 
@@ -21,14 +21,18 @@ from flexapod.plots.style import (
     DASHED,
     FAINT,
     GREEN,
-    INK,
-    LEGEND,
     ORANGE,
-    OUTSIDE,
     SKY,
     dress,
     entitle,
-    new_figure,
+    ink,
+    legend,
+    legend_below,
+    legend_of,
+    letters,
+    new_axes,
+    stage,
+    wide,
 )
 
 if TYPE_CHECKING:
@@ -38,18 +42,20 @@ _PARAMETERS = 14  # most that are drawn
 INDEX = "index, rad/s"
 
 
-def search(found: OptimalDesign) -> Figure:
+def search(found: OptimalDesign, *, ax: Axes | None = None) -> Axes:
     """Draw every trial of a search in its order, the best so far, and the result.
 
     Parameters
     ----------
     found : OptimalDesign
         The result of `optimise`.
+    ax : Axes, optional
+        Axes to draw on. Default: those of a new figure.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        The figure.
+    matplotlib.axes.Axes
+        The axes; their ``figure`` can be saved.
 
     Notes
     -----
@@ -58,41 +64,46 @@ def search(found: OptimalDesign) -> Figure:
 
     Examples
     --------
-    >>> fx.plots.optimisation.search(found).savefig("search.png")  # doctest: +SKIP
+    >>> fx.plots.optimisation.search(found).figure.savefig("search.png")  # doctest: +SKIP
     """
-    figure, ax = _figure(7.6, 4.0)
+    below = ax is None
+    ax = _axes(7.6, 4.0) if ax is None else ax
     trial, index = found.history.trial.values, found.history["index"].values
     feasible = found.history["feasible"].values
     if trial.size:
         ax.plot(trial[~feasible], index[~feasible], "x", ms=5, color=FAINT, mew=1.0, label="breaks a constraint")
         ax.plot(trial[feasible], index[feasible], "o", ms=4, color=BLUE, mew=0, alpha=0.75, label="trial")
         best = np.fmax.accumulate(np.where(feasible, index, np.nan))
-        ax.step(trial, best, where="post", color=BLUE, lw=1.4, label="best so far")
+        ax.step(trial, best, where="post", color=BLUE, lw=wide(1.4), label="best so far")
         if trial[0] == 0:
             ax.plot(0, index[0], "s", ms=10, color=ORANGE, mfc="none", label="the same as the variables make it")
-    ax.axhline(found.index, color=GREEN, lw=1.8, label=f"finished and verified: {found.index:.5g}")
-    ax.axhline(found.start_index, color=ORANGE, lw=1.4, ls=DASHED, label=f"design begun with: {found.start_index:.5g}")
+    ax.axhline(found.index, color=GREEN, lw=wide(1.8), label=f"finished and verified: {found.index:.5g}")
+    ax.axhline(
+        found.start_index, color=ORANGE, lw=wide(1.4), ls=DASHED, label=f"design begun with: {found.start_index:.5g}"
+    )
     ax.xaxis.set_major_locator(MaxNLocator(integer=True) if trial.size else NullLocator())
     told = found.history["index"].attrs
     ax.set(xlabel="trial", ylabel=told["label"] + (f", {told['units']}" if told["units"] != "1" else ""))
     ax.set_ylim(bottom=0, top=1.08 * max(found.index, found.start_index, *index[np.isfinite(index)]))
-    figure.legend(ncols=3, **OUTSIDE)
-    entitle(figure, f"{found.start.name}: search")
-    return figure
+    legend_of(ax, below, 3)
+    entitle(ax, f"{found.start.name}: search")
+    return ax
 
 
-def plan(found: OptimalDesign) -> Figure:
+def plan(found: OptimalDesign, *, figure: Figure | SubFigure | None = None) -> Figure:
     """Draw both designs from above and from the side, at home and to one scale: joints and numbered legs, in mm.
 
     Parameters
     ----------
     found : OptimalDesign
         The result of `optimise`.
+    figure : Figure or SubFigure, optional
+        Where the panels are drawn. Default: a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The figure.
+        The figure, or the SubFigure that was given.
 
     Notes
     -----
@@ -102,8 +113,7 @@ def plan(found: OptimalDesign) -> Figure:
     --------
     >>> fx.plots.optimisation.plan(found).savefig("plan.png")  # doctest: +SKIP
     """
-    figure = new_figure(9.6, 4.8)
-    above, beside = figure.subplots(1, 2)
+    page, (above, beside) = stage(figure, (9.6, 4.8), (1, 2))
     shapes = ((found.start, ORANGE, (0, (4, 2)), 1.2), (found.hexapod, BLUE, "-", 1.8))
     views = ((above, (0, 1)), (beside, (0, 2)))
     corners = []
@@ -128,9 +138,9 @@ def plan(found: OptimalDesign) -> Figure:
     names = ["design begun with", "design found", "base joint", "platform joint"]
     for ax in (above, beside):
         dress(ax)
-        ax.title.set(color=INK, fontsize=10)
-    figure.legend(lines, names, ncols=4, **OUTSIDE)
-    return figure
+        ax.title.set(color=ink(), fontsize=letters("axes.titlesize"))
+    legend_below(page, 4, lines, names)
+    return page
 
 
 def _one_scale(views: Sequence[tuple[Axes, tuple[int, int]]], points: Array) -> None:
@@ -147,7 +157,7 @@ def _number(ax: Axes, base: Array, platform: Array) -> None:
     rows = (_apart(base + along * (platform - base), near) for along in (0.4, 0.3, 0.5, 0.2, 0.6))
     frame = {"boxstyle": "round,pad=0.2", "fc": "white", "ec": "none"}
     for (x, y), names in max(rows, key=len):
-        ax.text(x, y, ", ".join(names), ha="center", va="center", fontsize=8, color=INK, bbox=frame, zorder=5)
+        ax.text(x, y, ", ".join(names), ha="center", va="center", fontsize=letters(), color=ink(), bbox=frame, zorder=5)
 
 
 def _apart(points: Array, near: float) -> list[tuple[Array, list[str]]]:
@@ -162,18 +172,20 @@ def _apart(points: Array, near: float) -> list[tuple[Array, list[str]]]:
     return places
 
 
-def front(found: ParetoFront) -> Figure:
+def front(found: ParetoFront, *, ax: Axes | None = None) -> Axes:
     """Draw a Pareto front among all trials, and the design one began with.
 
     Parameters
     ----------
     found : ParetoFront
         The result of `pareto_front`.
+    ax : Axes, optional
+        Axes to draw on. Default: those of a new figure.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        The figure.
+    matplotlib.axes.Axes
+        The axes; their ``figure`` can be saved.
 
     Notes
     -----
@@ -181,13 +193,15 @@ def front(found: ParetoFront) -> Figure:
 
     Examples
     --------
-    >>> fx.plots.optimisation.front(found).savefig("front.png")  # doctest: +SKIP
+    >>> fx.plots.optimisation.front(found).figure.savefig("front.png")  # doctest: +SKIP
     """
-    figure, ax = _figure(7.2, 4.6)
+    ax = _axes(7.2, 4.6) if ax is None else ax
     told = found.history
     keep = told["feasible"].values & (told["index"].values > 0)
     ax.plot(told["against"].values[keep], told["index"].values[keep], ".", ms=5, color=FAINT, mew=0, label="trial")
-    ax.plot(found.against, found.index, "-o", ms=5.5, lw=1.6, color=BLUE, mec="white", mew=0.7, label="Pareto front")
+    ax.plot(
+        found.against, found.index, "-o", ms=5.5, lw=wide(1.6), color=BLUE, mec="white", mew=0.7, label="Pareto front"
+    )
     ax.plot(
         found.start[1],
         found.start[0],
@@ -204,23 +218,25 @@ def front(found: ParetoFront) -> Figure:
         ax.set_xscale("log")
     ax.set(xlabel=f"{found.name}{f', {found.unit}' if found.unit else ''}", ylabel=INDEX)
     ax.set_ylim(bottom=0)
-    ax.legend(**LEGEND)
-    entitle(figure, f"{found.hexapod.name}: index against {found.name}")
-    return figure
+    legend(ax)
+    entitle(ax, f"{found.hexapod.name}: index against {found.name}")
+    return ax
 
 
-def spread(found: Robustness) -> Figure:
+def spread(found: Robustness, *, ax: Axes | None = None) -> Axes:
     """Draw the distribution of the index of uncertain designs, with the nominal and the worst case.
 
     Parameters
     ----------
     found : Robustness
         The result of `robustness`.
+    ax : Axes, optional
+        Axes to draw on. Default: those of a new figure.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        The figure.
+    matplotlib.axes.Axes
+        The axes; their ``figure`` can be saved.
 
     Notes
     -----
@@ -229,9 +245,10 @@ def spread(found: Robustness) -> Figure:
     Examples
     --------
     >>> found = fx.robustness(fx.load("motion-base"), fx.Uncertain("legs.stiffness", 0.1), samples=64, sensitivity=0)
-    >>> fx.plots.optimisation.spread(found).savefig("spread.png")
+    >>> fx.plots.optimisation.spread(found).figure.savefig("spread.png")
     """
-    figure, ax = _figure(7.2, 4.0)
+    below = ax is None
+    ax = _axes(7.2, 4.0) if ax is None else ax
     values = found.samples["index"].values
     ax.hist(values, bins=min(80, max(12, int(np.sqrt(values.size)))), color=BLUE, alpha=0.55, density=True, lw=0)
     lines = [
@@ -240,25 +257,27 @@ def spread(found: Robustness) -> Figure:
         (found.worst, ORANGE, "-", f"worst case: {found.worst:.5g}"),
     ]
     for value, color, style, label in lines:
-        ax.axvline(value, color=color, lw=1.8, ls=style, label=label)
+        ax.axvline(value, color=color, lw=wide(1.8), ls=style, label=label)
     ax.set(xlabel=f"least {INDEX}" if found.samples.attrs["poses"] > 1 else INDEX, ylabel="share of designs per rad/s")
-    figure.legend(ncols=3, **OUTSIDE)
-    entitle(figure, f"{found.samples.attrs['design']}: index of {values.size} uncertain designs")
-    return figure
+    legend_of(ax, below, 3)
+    entitle(ax, f"{found.samples.attrs['design']}: index of {values.size} uncertain designs")
+    return ax
 
 
-def importance(found: Robustness) -> Figure:
+def importance(found: Robustness, *, ax: Axes | None = None) -> Axes:
     """Draw the Sobol indices of the parameters, the most important first, with their 95 % confidence.
 
     Parameters
     ----------
     found : Robustness
         The result of `robustness` with a sensitivity.
+    ax : Axes, optional
+        Axes to draw on. Default: those of a new figure.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        The figure.
+    matplotlib.axes.Axes
+        The axes; their ``figure`` can be saved.
 
     Raises
     ------
@@ -271,29 +290,29 @@ def importance(found: Robustness) -> Figure:
 
     Examples
     --------
-    >>> fx.plots.optimisation.importance(found).savefig("importance.png")  # doctest: +SKIP
+    >>> fx.plots.optimisation.importance(found).figure.savefig("importance.png")  # doctest: +SKIP
     """
     if found.sensitivity is None:
         raise ArgumentError("found has no sensitivity. Give robustness a number of base samples: sensitivity=1024.")
     told = found.sensitivity.sortby("total", ascending=False).isel(parameter=slice(0, _PARAMETERS))
-    figure, ax = _figure(7.2, 1.4 + 0.34 * told.sizes["parameter"])
+    below = ax is None
+    ax = _axes(7.2, 1.4 + 0.34 * told.sizes["parameter"]) if ax is None else ax
     y = np.arange(told.sizes["parameter"])[::-1]
     bars = (("total", 0.19, BLUE, "with interactions"), ("first", -0.19, SKY, "on its own"))
     for name, offset, color, label in bars:
         error = told[f"{name}_confidence"].values
         ax.barh(
             y + offset, np.maximum(told[name].values, 0), 0.36, color=color, label=label, xerr=error,
-            error_kw={"ecolor": INK, "lw": 0.8, "capsize": 2},
+            error_kw={"ecolor": ink(), "lw": wide(0.8), "capsize": 2},
         )  # fmt: skip
     ax.set_yticks(y, [found.ranges[str(name)].words for name in told.parameter.values])
     ax.set(xlabel="share of the variance of the index")
     ax.set_xlim(left=0)
-    figure.legend(ncols=2, **OUTSIDE)
-    return figure
+    legend_of(ax, below, 2)
+    return ax
 
 
-def _figure(width: float, height: float) -> tuple[Figure, Axes]:
-    figure = new_figure(width, height)
-    ax = figure.subplots()
+def _axes(width: float, height: float) -> Axes:
+    ax = new_axes(width, height)
     dress(ax)
-    return figure, ax
+    return ax

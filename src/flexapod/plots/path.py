@@ -1,13 +1,15 @@
 """Figures of paths: the index along them, the plan beside the straight line, leg forces and travel.
 
-Each function draws a result of a study on a new matplotlib Figure and returns it.
+Each function draws a result of a study, on a new figure where none is given.
 """
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.ticker import EngFormatter
 
 from flexapod.paths.analysis import PathIndex
@@ -15,21 +17,30 @@ from flexapod.plots.style import (
     BLUE,
     DASHED,
     FAINT,
-    INK,
-    LEGEND,
     ORANGE,
-    OUTSIDE,
     SIX,
     VALUES,
     dress,
     entitle,
-    new_figure,
+    ink,
+    legend,
+    legend_below,
+    legend_of,
+    letters,
+    new_axes,
+    stage,
+    wide,
 )
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 STYLES = ("-", "-", "-", (0, (5, 1.5)), (0, (5, 1.5)), (0, (5, 1.5)))
 
 
-def index_along(found: PathIndex, beside: PathIndex | None = None) -> Figure:
+def index_along(
+    found: PathIndex, beside: PathIndex | None = None, *, figure: Figure | SubFigure | None = None
+) -> Figure:
     """Draw the index along a path against its bound, and the condition number below.
 
     Parameters
@@ -38,11 +49,13 @@ def index_along(found: PathIndex, beside: PathIndex | None = None) -> Figure:
         The result of `path_index`.
     beside : PathIndex, optional
         That of another path, such as the straight one.
+    figure : Figure or SubFigure, optional
+        Where the panels are drawn. Default: a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The figure.
+        The figure, or the SubFigure that was given.
 
     Notes
     -----
@@ -54,22 +67,21 @@ def index_along(found: PathIndex, beside: PathIndex | None = None) -> Figure:
     >>> way = fx.Trajectory(fx.Pose([[0, 0, 0.89], [0.05, 0, 0.89]]), [0, 1])
     >>> fx.plots.path.index_along(fx.path_index(hexapod, way, bound=100.0)).savefig("index.png")
     """
-    figure = new_figure(8.2, 5.4)
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
+    page, (above, below) = stage(figure, (8.2, 5.4), (2, 1), sharex=True, height_ratios=[2, 1])
     shared = beside is not None and beside.samples.time.values[-1] != found.samples.time.values[-1]
     paths = [(found, BLUE, "-", "path"), *([] if beside is None else [(beside, FAINT, DASHED, "straight line")])]
     for result, color, style, label in paths:
         x = _x(result, shared)
-        above.plot(x, result.samples["index"], color=color, ls=style, lw=1.9, label=label)
-        below.plot(x, result.samples.condition_number, color=color, ls=style, lw=1.5)
+        above.plot(x, result.samples["index"], color=color, ls=style, lw=wide(1.9), label=label)
+        below.plot(x, result.samples.condition_number, color=color, ls=style, lw=wide(1.5))
     where = np.interp(found.minimum_time, found.samples.time.values, _x(found, shared))
     above.plot(where, found.minimum, "o", ms=6, color=BLUE, mec="white", mew=0.9)
     above.annotate(
         f"{found.minimum:.4g}", (where, found.minimum), xytext=(0, -14), textcoords="offset points", ha="center",
-        color=INK, fontsize=9,
+        color=ink(), fontsize=letters(),
     )  # fmt: skip
     if found.bound is not None:
-        above.axhline(found.bound, color=ORANGE, lw=1.3, label=f"bound {found.bound:.4g} rad/s")
+        above.axhline(found.bound, color=ORANGE, lw=wide(1.3), label=f"bound {found.bound:.4g} rad/s")
         for result, color, *_ in paths:
             values = result.samples["index"].values
             above.fill_between(
@@ -77,15 +89,15 @@ def index_along(found: PathIndex, beside: PathIndex | None = None) -> Figure:
             )
     above.set(ylabel=r"lowest natural frequency $\omega_1$, rad/s")
     above.set_ylim(bottom=0)
-    above.legend(**LEGEND)
+    legend(above)
     conditions = np.concatenate([result.samples.condition_number.values for result, *_ in paths])
     largest, least = np.nanmax(conditions), np.nanmin(conditions)
     below.set_yscale("log" if largest > 10 * least else "linear")  # a part of a decade has no round numbers
     below.set(ylabel="cond(H)", xlabel="share of the path's time" if shared else "time, s")
     for ax in (above, below):
         dress(ax)
-    entitle(figure, f"{found.samples.attrs['design']}: index along the path")
-    return figure
+    entitle(page, f"{found.samples.attrs['design']}: index along the path")
+    return page
 
 
 def _x(result: PathIndex, shared: bool) -> np.ndarray:
@@ -93,18 +105,20 @@ def _x(result: PathIndex, shared: bool) -> np.ndarray:
     return (t - t[0]) / (t[-1] - t[0]) if shared else t
 
 
-def plan_map(dataset: xr.Dataset) -> Figure:
+def plan_map(dataset: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     """Draw the index on the plane through start, goal and the planned path's farthest point.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The result of `paths.plan_slice`.
+    ax : Axes, optional
+        Axes to draw on. Default: those of a new figure.
 
     Returns
     -------
-    matplotlib.figure.Figure
-        The figure.
+    matplotlib.axes.Axes
+        The axes; their ``figure`` can be saved.
 
     Notes
     -----
@@ -112,26 +126,26 @@ def plan_map(dataset: xr.Dataset) -> Figure:
 
     Examples
     --------
-    >>> fx.plots.path.plan_map(plane).savefig("plan.png")  # doctest: +SKIP
+    >>> fx.plots.path.plan_map(plane).figure.savefig("plan.png")  # doctest: +SKIP
     """
     width, height = np.ptp(dataset.along.values), np.ptp(dataset.aside.values)
-    figure = new_figure(7.4, 1.4 + 5.6 * min(height / width, 1.2))
-    ax = figure.subplots()
+    alone = ax is None
+    ax = new_axes(7.4, 1.4 + 5.6 * min(height / width, 1.2)) if ax is None else ax
     bound = dataset.attrs["bound"]
     x, y, values = dataset.along.values, dataset.aside.values, dataset["index"].values
     mesh = ax.pcolormesh(x, y, values, cmap=VALUES, shading="gouraud", rasterized=True, vmin=0)
-    bar = figure.colorbar(mesh, ax=ax)
-    bar.set_label(r"lowest natural frequency $\omega_1$, rad/s", color=INK)
-    bar.ax.axhline(bound, color="white", lw=2)
-    weak = ax.contour(x, y, values, levels=[bound], colors="white", linewidths=1.6)
-    ax.clabel(weak, fmt={bound: f"{bound:.4g} rad/s"}, fontsize=9, colors="white")
+    bar = ax.figure.colorbar(mesh, ax=ax)
+    bar.set_label(r"lowest natural frequency $\omega_1$, rad/s", color=ink())
+    bar.ax.axhline(bound, color="white", lw=wide(2))
+    weak = ax.contour(x, y, values, levels=[bound], colors="white", linewidths=wide(1.6))
+    ax.clabel(weak, fmt={bound: f"{bound:.4g} rad/s"}, fontsize=letters(), colors="white")
     blocked = np.where(dataset.met.values, np.nan, 1.0)
     ax.contourf(x, y, np.nan_to_num(blocked), levels=[0.5, 1.5], colors="none", hatches=["////"])
-    ax.plot([0, dataset.attrs["straight"]], [0, 0], color=ORANGE, lw=2.0, ls=DASHED, label="straight line")
-    ax.plot(dataset.path_along, dataset.path_aside, color="white", lw=4.0)
-    ax.plot(dataset.path_along, dataset.path_aside, color=INK, lw=2.2, label="planned path")
+    ax.plot([0, dataset.attrs["straight"]], [0, 0], color=ORANGE, lw=wide(2.0), ls=DASHED, label="straight line")
+    ax.plot(dataset.path_along, dataset.path_aside, color="white", lw=wide(4.0))
+    ax.plot(dataset.path_along, dataset.path_aside, color=ink(), lw=wide(2.2), label="planned path")
     for place, name in ((0.0, "start"), (dataset.attrs["straight"], "goal")):
-        ax.plot(place, 0.0, "o", ms=8, color="white", mec=INK, mew=1.5, zorder=5)
+        ax.plot(place, 0.0, "o", ms=8, color="white", mec=ink(), mew=1.5, zorder=5)
         ax.annotate(name, (place, 0.0), xytext=(0, -17), textcoords="offset points", ha="center", color="white")
     ax.set(
         xlabel="along the straight line from start to goal, m",
@@ -140,24 +154,26 @@ def plan_map(dataset: xr.Dataset) -> Figure:
         ylim=(y[0], y[-1]),
         aspect="equal",
     )
-    ax.legend(loc="upper right", **LEGEND)
-    ax.tick_params(color=FAINT, labelcolor=INK, labelsize=9)
-    entitle(figure, f"{dataset.attrs['design']}: round the weak region (hatched: a requirement is broken)")
-    return figure
+    legend_of(ax, alone, 2)
+    ax.tick_params(color=FAINT, labelcolor=ink(), labelsize=letters("xtick.labelsize"))
+    entitle(ax, f"{dataset.attrs['design']}: round the weak region (hatched: a requirement is broken)")
+    return ax
 
 
-def loads(dataset: xr.Dataset) -> Figure:
+def loads(dataset: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> Figure:
     """Draw leg forces and leg lengths along a path.
 
     Parameters
     ----------
     dataset : xarray.Dataset
         The result of `paths.path_loads`.
+    figure : Figure or SubFigure, optional
+        Where the panels are drawn. Default: a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The figure.
+        The figure, or the SubFigure that was given.
 
     Notes
     -----
@@ -169,18 +185,17 @@ def loads(dataset: xr.Dataset) -> Figure:
     >>> found = fx.paths.path_loads(fx.load("mukherjee-i"), way)
     >>> fx.plots.path.loads(found).savefig("loads.png")
     """
-    figure = new_figure(10.5, 4.4)
-    left, right = figure.subplots(1, 2, sharex=True)
+    page, (left, right) = stage(figure, (10.5, 4.4), (1, 2), sharex=True)
     for i, leg in enumerate(dataset.leg.values):
         line = {"color": SIX[i], "ls": STYLES[i]}
-        left.plot(dataset.time, dataset.leg_force[:, i], lw=1.7, label=f"leg {leg}", **line)
-        left.plot(dataset.time, dataset.static_force[:, i], lw=0.6, alpha=0.7, **line)
-        right.plot(dataset.time, dataset.leg_length[:, i], lw=1.7, **line)
+        left.plot(dataset.time, dataset.leg_force[:, i], lw=wide(1.7), label=f"leg {leg}", **line)
+        left.plot(dataset.time, dataset.static_force[:, i], lw=wide(0.6), alpha=0.7, **line)
+        right.plot(dataset.time, dataset.leg_length[:, i], lw=wide(1.7), **line)
     left.set(ylabel="leg force, N (thin: at rest)", xlabel="time, s")
     right.set(ylabel="leg length, m", xlabel="time, s")
     left.yaxis.set_major_formatter(EngFormatter())
     for ax in (left, right):
         dress(ax)
-    figure.legend(ncols=6, **OUTSIDE)
-    entitle(figure, f"{dataset.attrs['design']}: legs along the path")
-    return figure
+    legend_below(page, 6, *left.get_legend_handles_labels())
+    entitle(page, f"{dataset.attrs['design']}: legs along the path")
+    return page

@@ -1,7 +1,7 @@
 """Figures of vibration: frequency response, random response, stepped sine.
 
-Each function draws a result of a study on a new matplotlib Figure and returns it. Frequencies are in Hz unless asked
-for in rad/s; the rest is in SI units.
+Each function draws a result of a study, on a new figure where none is given. Frequencies are in Hz unless asked for in
+rad/s; the rest is in SI units.
 """
 
 from __future__ import annotations
@@ -11,23 +11,28 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, TWO_PI, Array, unit_of
 from flexapod.mechanics.point_motion import of_point
 from flexapod.plots.style import (
     FAINT,
-    INK,
     OUTPUT_NAMES,
     SIX,
     dress,
+    entitle,
+    fitting,
+    legend,
+    legend_below,
+    letters,
     moves,
     name_panel,
-    new_figure,
     note_still,
     panels,
+    stage,
     state_words,
+    wide,
 )
 
 if TYPE_CHECKING:
@@ -44,7 +49,12 @@ _VARIABLES = {
 
 
 def frequency_response(
-    dataset: xr.Dataset, variable: str = "absolute", given: str = "z", natural: Iterable[float] = ()
+    dataset: xr.Dataset,
+    variable: str = "absolute",
+    given: str = "z",
+    natural: Iterable[float] = (),
+    *,
+    figure: Figure | SubFigure | None = None,
 ) -> Figure:
     """Draw amplitude and phase of the six motions of the platform for one input.
 
@@ -58,11 +68,13 @@ def frequency_response(
         The input: an axis, or a leg's number for commands.
     natural : iterable of float, optional
         Frequencies to mark, rad/s.
+    figure : Figure or SubFigure, optional
+        Where the panels are drawn. Default: a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The figure.
+        The figure, or the SubFigure that was given.
 
     Notes
     -----
@@ -78,12 +90,12 @@ def frequency_response(
     hertz = dataset.omega.values / TWO_PI
     unit = "m" if dimension == "leg" else str(dataset[f"{dimension}_unit"].sel({dimension: given}).values)
     drawn = dict(zip(AXES, moves(response.values), strict=True))
-    figure, grid, groups = _halves((TRANSLATIONS, ROTATIONS), drawn, height_ratios=[2, 1])
-    for (above, below), outputs in zip(grid.T, groups, strict=True):
+    page, grid, groups = _halves(figure, (TRANSLATIONS, ROTATIONS), drawn, [2, 1])
+    for (above, below), outputs in zip(grid, groups, strict=True):
         for i, output in enumerate(outputs):
             if drawn[output]:
                 values = response.sel(output=output).values
-                line = {"color": COLOURS[i], "ls": STYLES[i], "lw": 1.6}
+                line = {"color": COLOURS[i], "ls": STYLES[i], "lw": wide(1.6)}
                 above.loglog(hertz, _positive(np.abs(values)), label=OUTPUT_NAMES[output], **line)
                 below.semilogx(hertz, _unwrapped_once(np.degrees(np.angle(values))), **line)
         above.set_ylabel(f"amplitude, {_ratio_unit(unit_of(outputs[0]), unit)}")
@@ -93,16 +105,18 @@ def frequency_response(
             dress(ax)
             _mark(ax, natural)
             _plain_decades(ax)
-        above.legend(loc="best", frameon=True, framealpha=0.85, edgecolor="none", fontsize=9)
-    note_still(figure, [OUTPUT_NAMES[axis] for axis in AXES if not drawn[axis]])
+        legend(above)
+    note_still(page, [OUTPUT_NAMES[axis] for axis in AXES if not drawn[axis]])
     source = f"leg {given}" if dimension == "leg" else f"{dimension} {given}"
     state = state_words(dataset.attrs)
     words = f"{words}, {source}{of_point(dataset.attrs)}{state}"
-    figure.suptitle(f"{dataset.attrs['design']}: {words}", color=INK, fontsize=12)
-    return figure
+    entitle(page, f"{dataset.attrs['design']}: {words}")
+    return page
 
 
-def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figure:
+def random_spectra(
+    dataset: xr.Dataset, quantity: str = "acceleration", *, figure: Figure | SubFigure | None = None
+) -> Figure:
     """Draw spectral density and cumulative RMS of a quantity on a base that moves at random.
 
     Parameters
@@ -111,11 +125,13 @@ def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figur
         The result of `random_response`.
     quantity : {"acceleration", "displacement", "relative", "leg_force"}, optional
         What is drawn.
+    figure : Figure or SubFigure, optional
+        Where the panels are drawn. Default: a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The figure.
+        The figure, or the SubFigure that was given.
 
     Notes
     -----
@@ -132,11 +148,11 @@ def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figur
     groups: list[Sequence[str]] = [TRANSLATIONS, ROTATIONS] if along == "output" else [LEGS[:3], LEGS[3:]]
     everything = [name for group in groups for name in group]
     drawn = dict(zip(everything, moves(cumulative.values[-1:]), strict=True))
-    figure, grid, groups = _halves(groups, drawn)
-    for (above, below), names in zip(grid.T, groups, strict=True):
+    page, grid, groups = _halves(figure, groups, drawn, [1, 1])
+    for (above, below), names in zip(grid, groups, strict=True):
         for i, name in enumerate(names):
             if drawn[name]:
-                line = {"color": COLOURS[i], "ls": STYLES[i], "lw": 1.6}
+                line = {"color": COLOURS[i], "ls": STYLES[i], "lw": wide(1.6)}
                 rms = cumulative.sel({along: name}).values
                 above.loglog(hertz, _positive(TWO_PI * density.sel({along: name}).values), **line)
                 below.loglog(hertz, _positive(rms), label=f"{_named(name)}: {rms[-1]:.4g}", **line)
@@ -147,11 +163,11 @@ def random_spectra(dataset: xr.Dataset, quantity: str = "acceleration") -> Figur
             dress(ax)
             _span(ax)
             _plain_decades(ax)
-        below.legend(loc="best", fontsize=9, framealpha=0.85, edgecolor="none", title=f"total RMS, {unit}")
-    note_still(figure, [_named(name) for name in everything if not drawn[name]], "nothing")
+        legend(below, title=f"total RMS, {unit}", title_fontsize=letters())
+    note_still(page, [_named(name) for name in everything if not drawn[name]], "nothing")
     words = f"{quantity.replace('_', ' ')} on the moving base{of_point(dataset.attrs)}"
-    figure.suptitle(f"{dataset.attrs['design']}: {words}", color=INK, fontsize=12)
-    return figure
+    entitle(page, f"{dataset.attrs['design']}: {words}")
+    return page
 
 
 def stepped_ratio(
@@ -160,6 +176,8 @@ def stepped_ratio(
     linear: xr.DataArray | None = None,
     scale: Literal["linear", "log"] = "linear",
     unit: Literal["rad/s", "Hz"] = "rad/s",
+    *,
+    figure: Figure | SubFigure | None = None,
 ) -> Figure:
     """Draw the ratio of response amplitude to base amplitude against frequency, a panel for each motion.
 
@@ -175,11 +193,13 @@ def stepped_ratio(
         Scale of the frequencies.
     unit : {"rad/s", "Hz"}, optional
         Unit of the frequencies.
+    figure : Figure or SubFigure, optional
+        Where the panels are drawn. Default: a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The figure.
+        The figure, or the SubFigure that was given.
 
     Notes
     -----
@@ -194,12 +214,12 @@ def stepped_ratio(
     per = TWO_PI if unit == "Hz" else 1.0
     natural, drawn = list(natural), moves(line.transpose(..., "output").values)
     shown = [axis for axis, seen in zip(AXES, drawn, strict=True) if seen]
-    figure = new_figure(10.5, 4.5 if len(shown) <= 3 else 6.2)
-    for place, (name, ax) in enumerate(zip(shown, panels(figure, len(shown), sharex=True), strict=False)):
+    page, axes = panels(figure, len(shown), sharex=True)
+    for place, (name, ax) in enumerate(zip(shown, axes, strict=False)):
         smooth = np.abs(line.sel(output=name).values)
         dots = dataset.ratio.sel(output=name).values
         ax.set_xscale(scale)
-        ax.semilogy(line.omega.values / per, _positive(smooth), color=FAINT, lw=1.2, label="tangent")
+        ax.semilogy(line.omega.values / per, _positive(smooth), color=FAINT, lw=wide(1.2), label="tangent")
         ax.semilogy(
             dataset.omega.values / per, _positive(dots), "o", color=COLOURS[0], ms=2.6, mew=0, label="non-linear"
         )
@@ -211,19 +231,23 @@ def stepped_ratio(
         name_panel(ax, place, name)
         ax.set_ylabel(f"ratio, {_ratio_unit(unit_of(name), dataset.attrs['amplitude_unit'])}")
         ax.set_xlabel(f"base frequency, {unit}")
-    note_still(figure, [OUTPUT_NAMES[axis] for axis in AXES if axis not in shown])
-    handles = ax.get_legend_handles_labels()
-    figure.legend(*handles, loc="outside lower right", ncols=2, frameon=False, labelcolor=INK)
-    return figure
+    note_still(page, [OUTPUT_NAMES[axis] for axis in AXES if axis not in shown])
+    legend_below(page, 2, *ax.get_legend_handles_labels())
+    return page
 
 
 def _halves(
-    groups: Sequence[Sequence[str]], drawn: Mapping[str, bool], **shares: Any
-) -> tuple[Figure, Any, list[Sequence[str]]]:
-    """A figure with two axes above one another for each group of curves in which one is drawn, (2, n)."""
+    figure: Figure | SubFigure | None, groups: Sequence[Sequence[str]], drawn: Mapping[str, bool], heights: list[int]
+) -> tuple[Any, Any, list[Sequence[str]]]:
+    """A figure with two axes above one another, (n, 2), for each of the n groups of curves in which one is drawn."""
     seen = [group for group in groups if any(drawn[name] for name in group)] or list(groups[:1])
-    figure = new_figure(10 if len(seen) > 1 else 6.6, 6.2)
-    return figure, figure.subplots(2, len(seen), sharex=True, squeeze=False, **shares), seen
+    n = len(seen)
+    inches = (10.0 if n > 1 else 6.6, 6.2)
+    if fitting(figure, inches, n) == n:
+        figure, axes = stage(figure, inches, (2, n), sharex=True, height_ratios=heights)
+        return figure, axes.reshape(2, n).T, seen
+    figure, axes = stage(figure, (5.0, n * 4.6), (2 * n, 1), sharex=True, height_ratios=heights * n)
+    return figure, axes.reshape(n, 2), seen
 
 
 def _named(name: str) -> str:
@@ -235,7 +259,7 @@ def _mark(ax: Axes, natural: Iterable[float], hertz: bool = True) -> None:
     for omega in natural:
         place = omega / TWO_PI if hertz else omega
         if low < place < high:
-            ax.axvline(place, color=FAINT, lw=0.7, ls=(0, (1, 2)), zorder=0)
+            ax.axvline(place, color=FAINT, lw=wide(0.7), ls=(0, (1, 2)), zorder=0)
 
 
 def _plain_decades(ax: Axes) -> None:

@@ -6,16 +6,18 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, SubFigure
 from matplotlib.ticker import EngFormatter, MaxNLocator
 
 from flexapod.conventions import Array
 from flexapod.mechanics.point_motion import of_point
 from flexapod.plots.path import STYLES
-from flexapod.plots.style import FAINT, LEGEND, OUTSIDE, SIX, TRIAD, dress, entitle, new_figure
+from flexapod.plots.style import FAINT, SIX, TRIAD, dress, entitle, legend, legend_below, stage, wide
 
 
-def load_cases(found: xr.Dataset, elevation: Array | None = None) -> Figure:
+def load_cases(
+    found: xr.Dataset, elevation: Array | None = None, *, figure: Figure | SubFigure | None = None
+) -> Figure:
     """Draw leg forces, and the deflection and the rotation of the point, over elevation or over the cases.
 
     Parameters
@@ -24,11 +26,13 @@ def load_cases(found: xr.Dataset, elevation: Array | None = None) -> Figure:
         The result of `load_cases`.
     elevation : ndarray, optional
         The elevation of each case, rad, (n,).
+    figure : Figure or SubFigure, optional
+        Where the panels are drawn. Default: a new figure.
 
     Returns
     -------
     matplotlib.figure.Figure
-        The figure.
+        The figure, or the SubFigure that was given.
 
     Examples
     --------
@@ -36,16 +40,15 @@ def load_cases(found: xr.Dataset, elevation: Array | None = None) -> Figure:
     >>> cases = fx.load_cases(fx.load("motion-base"), gravity=fx.mechanics.gravity_at(elevation), reference=0)
     >>> fx.plots.statics.load_cases(cases, elevation).savefig("elevation.png")
     """
-    figure = new_figure(12.0, 4.6)
-    forces, moved, turned = figure.subplots(1, 3)
+    page, (forces, moved, turned) = stage(figure, (12.0, 4.6), (1, 3))
     over = found.case.values + 1 if elevation is None else np.degrees(elevation)
-    marks: dict[str, Any] = {"marker": "o", "ms": 4, "lw": 0} if elevation is None else {"lw": 1.4}
+    marks: dict[str, Any] = {"marker": "o", "ms": 4, "lw": 0} if elevation is None else {"lw": wide(1.4)}
     for i in range(6):
         forces.plot(over, found.leg_force.values[:, i], color=SIX[i], ls=STYLES[i], label=f"leg {i + 1}", **marks)
     for k, (axis, color) in enumerate(TRIAD):
         moved.plot(over, found.deflection.values[:, k], color=color, label=axis, **marks)
         turned.plot(over, found.rotation.values[:, k], color=color, label=f"about {axis}", **marks)
-    forces.axhline(0, color=FAINT, lw=0.8)
+    forces.axhline(0, color=FAINT, lw=wide(0.8))
     forces.set(ylabel="leg force, N (positive: compression)")
     moved.set(ylabel="deflection, m")
     turned.set(ylabel="rotation, rad")
@@ -55,8 +58,8 @@ def load_cases(found: xr.Dataset, elevation: Array | None = None) -> Figure:
         if elevation is None:
             ax.xaxis.set_major_locator(MaxNLocator(integer=True))
         dress(ax)
-    moved.legend(**LEGEND)
-    turned.legend(**LEGEND)
-    figure.legend(*forces.get_legend_handles_labels(), ncols=6, **OUTSIDE)
-    entitle(figure, f"{found.attrs['design']}: load cases at rest{of_point(found.attrs)}")
-    return figure
+    legend(moved)
+    legend(turned)
+    legend_below(page, 6, *forces.get_legend_handles_labels())
+    entitle(page, f"{found.attrs['design']}: load cases at rest{of_point(found.attrs)}")
+    return page

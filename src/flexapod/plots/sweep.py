@@ -8,14 +8,13 @@ Without `ax` a new figure is made. Colour maps are even in lightness and safe fo
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from flexapod.conventions import Array
-from flexapod.output_files import write_figure
-from flexapod.plots.style import BLUE, FAINT, INK, LEGEND, NO_VALUE, ORANGE, VALUES
+from flexapod.plots.printing import save
+from flexapod.plots.style import BLUE, FAINT, NO_VALUE, ORANGE, VALUES, ink, legend, letters, wide
 from flexapod.plots.sweep_axes import (
     LABELS,
     axis_of,
@@ -82,7 +81,7 @@ def index_map(sweep: xr.Dataset, quantity: str = "omega_1", *, ax: Axes | None =
     ax.set_facecolor(NO_VALUE)
     mesh = ax.pcolormesh(x, y, numbers, cmap=VALUES, shading="nearest", rasterized=True)
     if numbers.count() and numbers.max() > numbers.min():
-        lines = ax.contour(x, y, numbers, 7, colors="white", linewidths=0.9)
+        lines = ax.contour(x, y, numbers, 7, colors="white", linewidths=wide(0.9))
         _label_contours(ax, lines)
     beyond = beyond_limits(sweep, (down, across))
     _marks(ax, (x, y), numbers, beyond, all_poses)
@@ -99,61 +98,31 @@ def _marks(
     """A cross at the least of the numbers that count, hatches beyond the limits, and a legend of both."""
     from matplotlib.patches import Patch
 
-    legend: list[Any] = []
+    shown: list[Any] = []
     counted = numbers if beyond is None or all_poses else np.ma.masked_where(beyond, numbers)
     if counted.count() and numbers.max() > numbers.min():
         worst = np.unravel_index(np.ma.argmin(counted), counted.shape)
         words = "least of all" if beyond is None or all_poses else "least within the limits"
         style: dict[str, Any] = {"color": ORANGE, "mec": "white", "ms": 10, "zorder": 5, "clip_on": False}
         place = axes[0][worst[1]], axes[1][worst[0]]
-        legend += ax.plot(*place, "X", ls="none", label=f"{words}: {counted.min():.5g}", **style)
+        shown += ax.plot(*place, "X", ls="none", label=f"{words}: {counted.min():.5g}", **style)
     if beyond is not None and beyond.any():
         levels = [-0.5, 0.5, 1.5]
         ax.contourf(*axes, beyond.astype(float), levels, hatches=[None, "///"], colors="none")
-        legend.append(Patch(facecolor="none", edgecolor=INK, hatch="///", label="beyond the limits"))
+        shown.append(Patch(facecolor="none", edgecolor=ink(), hatch="///", label="beyond the limits"))
     if np.ma.is_masked(numbers):
-        legend.append(Patch(color=NO_VALUE, label="no value"))
-    if legend:
-        below: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.14), "ncols": 3}
-        ax.legend(handles=legend, fontsize=8, frameon=False, **below)
+        shown.append(Patch(color=NO_VALUE, label="no value"))
+    if shown:
+        under = 3.6 * letters("axes.labelsize") / 72 / (ax.bbox.height / ax.figure.dpi)  # numbers and label
+        below: dict[str, Any] = {"loc": "upper center", "bbox_to_anchor": (0.5, -under), "ncols": 3}
+        ax.legend(handles=shown, fontsize=letters(), frameon=False, **below)
 
 
 def _label_contours(ax: Axes, lines: Any) -> None:
     from matplotlib.patheffects import withStroke
 
-    for text in ax.clabel(lines, fmt="%.4g", fontsize=8):
-        text.set_path_effects([withStroke(linewidth=2, foreground=INK)])
-
-
-def save(ax: Axes, path: str | Path) -> None:
-    """Write the figure of some axes to a file.
-
-    Parameters
-    ----------
-    ax : Axes
-        The axes.
-    path : str or Path
-        The file; its name says the format.
-
-    Returns
-    -------
-    None
-        Nothing; the file is written.
-
-    Raises
-    ------
-    OutputError
-        If the file cannot be written, or its format is unknown.
-
-    Notes
-    -----
-    At 160 dots per inch.
-
-    Examples
-    --------
-    >>> fx.plots.sweep.save(fx.plots.frequencies(np.arange(1.0, 7.0)), "six.png")
-    """
-    write_figure(ax.figure, path)  # type: ignore[arg-type]
+    for text in ax.clabel(lines, fmt="%.4g", fontsize=letters()):
+        text.set_path_effects([withStroke(linewidth=wide(2), foreground=ink())])
 
 
 def auto(sweep: xr.Dataset, level: float | None = None, *, all_poses: bool = False) -> Axes:
@@ -228,11 +197,11 @@ def index_line(sweep: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     positions, label = axis_of(values, across)
     beyond = beyond_limits(sweep, (across,))
     if beyond is None or not beyond.any():
-        ax.plot(positions, values.values, color=BLUE, lw=1.8)
+        ax.plot(positions, values.values, color=BLUE, lw=wide(1.8))
     else:
-        ax.plot(positions, values.values, color=FAINT, lw=1.2, ls=":", label="beyond the limits")
-        ax.plot(positions, np.where(beyond, np.nan, values.values), color=BLUE, lw=1.8, label="within the limits")
-        ax.legend(**LEGEND)
+        ax.plot(positions, values.values, color=FAINT, lw=wide(1.2), ls=":", label="beyond the limits")
+        ax.plot(positions, np.where(beyond, np.nan, values.values), color=BLUE, lw=wide(1.8), label="within the limits")
+        legend(ax)
     data_range(ax, np.asarray(values.values))
     ax.set_xlabel(label)
     ax.set_ylabel(LABELS["omega_1"])

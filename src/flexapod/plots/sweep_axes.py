@@ -9,7 +9,7 @@ import xarray as xr
 
 from flexapod.conventions import AXES, ROTATIONS, TRANSLATIONS, Array
 from flexapod.errors import ArgumentError
-from flexapod.plots.style import INK
+from flexapod.plots import style
 from flexapod.workspace.quantities import QUANTITIES
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ def held(values: xr.DataArray) -> str:
 def entitle(ax: Axes, sweep: xr.Dataset, *lines: str) -> None:
     """The design above the axes, and lines of words."""
     design = str(sweep.attrs.get("design", ""))
-    ax.set_title("\n".join(filter(None, (design, *lines))), fontsize=10, color=INK)
+    style.entitle(ax, "\n".join(filter(None, (design, *lines))))
 
 
 def data_range(ax: Axes, values: Array) -> None:
@@ -80,10 +80,10 @@ def data_range(ax: Axes, values: Array) -> None:
 
 
 def new_axes() -> Axes:
-    from matplotlib.figure import Figure
-
-    ax: Axes = Figure(figsize=(6.4, 4.8), layout="constrained").add_subplot()
+    ax = style.new_axes(6.4, 4.8)
     ax.spines[["top", "right"]].set_visible(False)
+    for axis in (ax.xaxis, ax.yaxis):
+        axis.label.set(color=style.ink(), fontsize=style.letters("axes.labelsize"))
     return ax
 
 

@@ -10,7 +10,7 @@ import xarray as xr
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError
 from flexapod.optional import needed
-from flexapod.plots.style import BLUE
+from flexapod.plots.style import BLUE, NARROW, across, new_axes, wide
 from flexapod.plots.sweep_axes import LABELS, axis_of, beyond_limits, entitle, grid_values, held, spelled
 
 if TYPE_CHECKING:
@@ -84,7 +84,7 @@ def iso_surface(
             f"the poses that count are too few for a surface of {quantity} = {level:.6g}. Take a finer grid."
         )
     ax = _axes_3d() if ax is None else ax
-    ax.plot_trisurf(*points.T, triangles=faces, color=BLUE, lw=0.1, edgecolor=(1, 1, 1, 0.25), antialiased=True)
+    ax.plot_trisurf(*points.T, triangles=faces, color=BLUE, lw=wide(0.1), edgecolor=(1, 1, 1, 0.25), antialiased=True)
     for name, (positions, label) in zip("xyz", axes, strict=True):
         getattr(ax, f"set_{name}lim")(positions.min(), positions.max())
         getattr(ax, f"set_{name}label")(label, labelpad=8)
@@ -112,9 +112,8 @@ def _whole_cells(inside: np.ndarray) -> np.ndarray:
 
 
 def _axes_3d() -> Axes3D:
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.4, 5.6))
-    figure.subplots_adjust(left=0.02, right=0.92, bottom=0.06, top=0.88)
-    ax: Any = figure.add_subplot(projection="3d")
+    ax: Any = new_axes(6.4, 5.6, projection="3d")
+    ax.figure.subplots_adjust(left=0.02, right=0.92, bottom=0.06, top=0.88)
+    if across(ax) < NARROW:
+        ax.set_box_aspect(None, zoom=0.85)
     return ax

@@ -18,6 +18,8 @@ from flexapod.report.study import Drawing
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from flexapod.plots.style import Drawn
+
 # Colours that change between light and dark paper, and the names they have in the page's style sheet.
 FOLLOWS = {
     style.INK: "ink",
@@ -34,10 +36,12 @@ def inline(drawing: Drawing) -> str:
     return drawn(drawing.draw, drawing.name, drawing.title, tight=drawing.tight)
 
 
-def drawn(draw: Callable[[], Figure], prefix: str, words: str, tight: bool = False) -> str:
+def drawn(draw: Callable[[], Drawn], prefix: str, words: str, tight: bool = False) -> str:
     """A figure as <svg>; `prefix` tells its names from those of others on the page. tight: cut to what lines cover."""
-    with matplotlib.rc_context(_STYLE):
-        figure = draw()
+    with matplotlib.rc_context(), style.unshown():
+        matplotlib.rcdefaults()  # a page has a style of its own
+        matplotlib.rcParams.update(_STYLE)
+        figure = style.figure_of(draw())
         return _inline(figure, prefix, words, _extent(figure, figure.axes[0]) if tight else None)
 
 

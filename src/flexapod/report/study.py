@@ -15,10 +15,10 @@ from flexapod.mechanics.cautions import Caution
 
 if TYPE_CHECKING:
     import xarray as xr
-    from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
     from flexapod.design.hexapod import Hexapod
+    from flexapod.plots.style import Drawn
 
 Shown = Literal["both", "page", "terminal"]  # where something is shown
 
@@ -77,7 +77,7 @@ class Drawing:
 
     name: str
     title: str
-    draw: Callable[[], Figure]
+    draw: Callable[[], Drawn]
     caption: str = ""
     tag: str = ""
     wide: bool = False
@@ -111,7 +111,7 @@ class Study:
     rows: Sequence[Row] = ()
     sections: Sequence[Section] = ()
     cautions: Sequence[Caution] = ()
-    files: Mapping[str, Callable[[], str | Figure | xr.Dataset] | None] = field(default_factory=dict)
+    files: Mapping[str, Callable[[], str | Drawn | xr.Dataset] | None] = field(default_factory=dict)
     dataset: xr.Dataset | None = None
 
     def to_dict(self) -> dict[str, Any]:

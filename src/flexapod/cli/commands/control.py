@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from flexapod.cli.options import common
+from flexapod.cli.options import common, figures
 from flexapod.cli.options.control import Options, law_options, run_options
 from flexapod.cli.output.results import emit
 from flexapod.cli.output.stages import stages
@@ -16,6 +16,7 @@ from flexapod.cli.output.stages import stages
 @common.machine_options
 @law_options
 @run_options
+@figures.options("--out")
 @common.json_option
 def command(**given: Any) -> None:
     """A control law on DESIGN at a pose: its poles, how near they come to the natural frequencies, how it isolates.

@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from flexapod.cli.options import common
+from flexapod.cli.options import common, figures
 from flexapod.cli.options.points import point_option
 from flexapod.cli.options.quantities import FREQUENCY, POSITIVE_LENGTH, SIX
 from flexapod.cli.output.results import emit_or_csv
@@ -36,6 +36,7 @@ from flexapod.cli.output.results import emit_or_csv
 @common.set_option
 @common.joint_option
 @common.out_option("Where to write the report, the figure and the tables. Default: nothing is written.")
+@figures.options("--out")
 @common.json_option
 def command(**given: Any) -> None:
     """How far DESIGN moves from home along each axis, each two, and all in combination, and what stops it.

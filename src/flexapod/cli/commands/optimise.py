@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from flexapod.cli.options import common
+from flexapod.cli.options import common, figures
 from flexapod.cli.options.optimise import Options, optimise_options
 from flexapod.cli.output.results import emit
 
@@ -14,6 +14,7 @@ from flexapod.cli.output.results import emit
 @click.command()
 @common.design_argument
 @optimise_options
+@figures.options()
 @common.set_option
 @common.joint_option
 @common.json_option

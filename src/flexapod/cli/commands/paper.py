@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from flexapod.cli.options import common
+from flexapod.cli.options import common, figures
 from flexapod.cli.output.stages import stages
 from flexapod.conventions import JOINT_MODELS
-from flexapod.output_files import make_directory, write_figure, write_file
+from flexapod.output_files import make_directory, write_file
 
 if TYPE_CHECKING:
     from flexapod.conventions import JointModel
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 PAGE = "index.html"
 _MANY = 50_000  # rows from which five digits must do, more than a drawing shows
-_SVG = {"svg.hashsalt": "flexapod"}  # the same numbers give the same file
+_SUBJECT = "test manipulators of Mukherjee, Dasgupta and Mallik (2007)"
 
 
 class FigureNumber(click.ParamType):
@@ -39,7 +39,7 @@ class FigureNumber(click.ParamType):
 @click.command()
 @click.option(
     "--figure",
-    "figures",
+    "numbers",
     type=FigureNumber(),
     multiple=True,
     help="Number of a figure in the paper, for this figure without the page. Repeatable.  [default: everything]",
@@ -60,9 +60,10 @@ class FigureNumber(click.ParamType):
     show_default=True,
     help="Model of the base joints: the paper's legs that do not spin, or exact.",
 )
+@figures.options()
 @common.json_option
 def command(
-    figures: tuple[int, ...], points: int | None, seed: int, out: Path, joint: JointModel, as_json: bool
+    numbers: tuple[int, ...], points: int | None, seed: int, out: Path, joint: JointModel, as_json: bool
 ) -> None:
     """Do the work of Mukherjee, Dasgupta and Mallik (2007) anew with the packaged test manipulators.
 
@@ -74,44 +75,41 @@ def command(
 
     make_directory(out)
     settings = Settings(points, seed, joint)
-    names = [f"figure-{number}" for number in figures] or list(PARTS)
-    parts = []
+    names = [f"figure-{number}" for number in numbers] or list(PARTS)
+    parts, files = [], dict[str, Path]()
     with stages(quiet=as_json) as report:
         for name in names:
             report(name, 0.0)
-            parts.append(draw(name, settings))
-            _write(parts[-1], out)
+            with figures.printed():
+                parts.append(draw(name, settings))
+            files[name] = _write(parts[-1], out)
             report(name, 1.0)
-        told = {
-            part.name.removeprefix("figure-"): {"file": str(out / f"{part.name}.png"), **_record(part)}
-            for part in parts
-        }
-        if not figures:
+        told = {part.name.removeprefix("figure-"): {"file": str(files[part.name]), **_record(part)} for part in parts}
+        if not numbers:
             report("page", 0.0)
             told["page"] = _page(parts, out)
     if as_json:
         common.print_json(told)
         return
     for part in parts:
-        _print(part, out)
-    if not figures:
+        _print(part, files[part.name])
+    if not numbers:
         page = told["page"]
         counts = ", ".join(f"{count} {verdict}" for verdict, count in page["statements"].items())
         click.echo(f"{page['file']}\n  the paper's statements: {counts}")
 
 
-def _write(part: Part, out: Path) -> None:
-    """The part's files."""
-    import matplotlib
-
-    write_figure(part.figure, out / f"{part.name}.png")
-    with matplotlib.rc_context(_SVG):  # type: ignore[arg-type]
-        write_figure(part.figure, out / f"{part.name}.svg")
+def _write(part: Part, out: Path) -> Path:
+    """The part's files; returns that of its figure."""
+    endings = figures.endings(("png", "svg"))
+    for ending in endings:
+        figures.write(lambda: part.figure, out / f"{part.name}.{ending}", _SUBJECT)
     write_file(out / f"{part.name}.json", json.dumps(_record(part), indent=2, ensure_ascii=False) + "\n")
     digits = "%.9g" if len(part.table) < _MANY else "%.5g"
     write_file(out / f"{part.name}.csv", part.table.to_csv(float_format=digits))
     if part.shown is not None:
         write_file(out / f"{part.name}-table.csv", part.shown.to_csv())
+    return out / f"{part.name}.{endings[0]}"
 
 
 def _record(part: Part) -> dict[str, Any]:
@@ -127,7 +125,7 @@ def _page(parts: list[Part], out: Path) -> dict[str, Any]:
     return {"file": str(out / PAGE), "statements": dict(paper_page.verdicts(parts))}
 
 
-def _print(part: Part, out: Path) -> None:
-    click.echo(f"{out / part.name}.png\n  {part.caption}")
+def _print(part: Part, file: Path) -> None:
+    click.echo(f"{file}\n  {part.caption}")
     for claim in part.claims:
         click.echo(f"  [{claim.verdict}] {claim.paper}\n      {claim.ours}")

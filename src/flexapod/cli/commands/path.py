@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from flexapod.cli.options import common
+from flexapod.cli.options import common, figures
 from flexapod.cli.options.path import Options, path_options
 from flexapod.cli.output.results import emit_or_csv
 from flexapod.cli.output.stages import stages
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 @click.command()
 @common.design_argument
 @path_options
+@figures.options("--out")
 @common.set_option
 @common.joint_option
 @common.json_option

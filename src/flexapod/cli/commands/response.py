@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from flexapod.cli.options import common
+from flexapod.cli.options import common, figures
 from flexapod.cli.options.response import response_options
 from flexapod.cli.output.results import emit
 
@@ -14,6 +14,7 @@ from flexapod.cli.output.results import emit
 @click.command()
 @common.machine_options
 @response_options
+@figures.options("--out")
 @common.json_option
 def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...], as_json: bool, **given: Any) -> None:
     """Frequency response of DESIGN at a pose, from its exact tangent with gravity and damping.

@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from flexapod.cli.options import common
+from flexapod.cli.options import common, figures
 from flexapod.cli.options.optimise import out_option, threads_option, where_options
 from flexapod.cli.output.results import emit
 from flexapod.cli.output.stages import stages
@@ -44,6 +44,7 @@ from flexapod.cli.output.stages import stages
 @click.option("--seed", type=common.SEED, default=0, show_default=True)
 @threads_option
 @out_option
+@figures.options()
 @common.set_option
 @common.joint_option
 @common.json_option

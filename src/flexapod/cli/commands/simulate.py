@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from flexapod.cli.options import common
+from flexapod.cli.options import common, figures
 from flexapod.cli.options.simulate import simulate_options
 from flexapod.cli.output.results import emit
 
@@ -14,6 +14,7 @@ from flexapod.cli.output.results import emit
 @click.command()
 @common.machine_options
 @simulate_options
+@figures.options("--out")
 @common.json_option
 def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...], as_json: bool, **given: Any) -> None:
     """Motion of DESIGN in time from rest at a pose, by its complete non-linear equations.

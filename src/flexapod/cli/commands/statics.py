@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from flexapod.cli.options import common
+from flexapod.cli.options import common, figures
 from flexapod.cli.options.points import point_option
 from flexapod.cli.output.results import emit_or_csv
 
@@ -39,6 +39,7 @@ from flexapod.cli.output.results import emit_or_csv
 @common.set_option
 @common.joint_option
 @common.out_option("Where to write the report, the figure and the tables. Default: nothing is written.")
+@figures.options("--out")
 @common.json_option
 def command(**given: Any) -> None:
     """Leg forces, deflections and stiffness of DESIGN at rest in many load cases, from --elevation or FILE.

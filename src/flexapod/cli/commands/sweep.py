@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from flexapod.cli.options import common
+from flexapod.cli.options import common, figures
 from flexapod.cli.options.sweep import Options, machine_options, output_options, poses_options, reading_options
 from flexapod.cli.output.results import emit
 
@@ -17,6 +17,7 @@ from flexapod.cli.output.results import emit
 @output_options
 @machine_options
 @reading_options
+@figures.options("--figure")
 @common.set_option
 @common.joint_option
 @common.json_option

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from flexapod.cli.options import common
+from flexapod.cli.options import common, figures
 from flexapod.cli.output.interrupt import exit_code
-from flexapod.output_files import make_directory, write_figure, write_file, write_netcdf
+from flexapod.output_files import make_directory, write_file, write_netcdf
 
 if TYPE_CHECKING:
     from flexapod.report.study import Study
@@ -38,7 +38,8 @@ def emit(study: Study, out: Path | None, as_json: bool, *, listed: str = "files"
 
 
 def write(study: Study, directory: Path) -> list[Path]:
-    """Write the study's files, each of the kind that its name ends with."""
+    """Write the study's files, each of the kind that its name ends with, figures as the options say."""
+    written = []
     for name, make in study.files.items():
         path = directory / name
         if make is None:
@@ -48,10 +49,12 @@ def write(study: Study, directory: Path) -> list[Path]:
         elif path.suffix == ".nc":
             write_netcdf(make(), path)  # type: ignore[arg-type]
         elif path.suffix in (".png", ".svg"):
-            write_figure(make(), path)  # type: ignore[arg-type]
+            path = figures.named(path)
+            figures.write(make, path, study.hexapod.name)  # type: ignore[arg-type]
         else:
             write_file(path, make())  # type: ignore[arg-type]
-    return [directory / name for name in study.files]
+        written.append(path)
+    return written
 
 
 def emit_or_csv(compute: Callable[[], Study], out: Path | None, as_json: bool, table: str | None) -> None:

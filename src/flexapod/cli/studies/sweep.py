@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 import xarray as xr
 
-from flexapod.cli.options import common
+from flexapod.cli.options import common, figures
 from flexapod.cli.options.poses import box_of, grid_of, read_poses
 from flexapod.cli.options.sweep import DEFAULT_POINTS, Options
 from flexapod.cli.output.interrupt import CutShort, Stopping
@@ -45,6 +46,7 @@ def compute(options: Options) -> Study:
     if not options.streamed and (options.resume or options.scheduler):
         raise click.UsageError("--resume and --scheduler need a store to write to. Give --out NAME.zarr.")
     if options.figure is not None:
+        figures.check(options.figure)
         sweep_axes.check_swept(points.dims, quantities)
     found = (_streamed if options.streamed else _in_memory)(hexapod, points, quantities, options)
     everywhere, notes = options.all_poses, list[str]()
@@ -73,7 +75,8 @@ def compute(options: Options) -> Study:
 
 def _draw(found: xr.Dataset, options: Options) -> None:
     assert options.figure is not None
-    plots.save(plots.auto(found, options.level, all_poses=options.all_poses), options.figure)
+    draw = partial(plots.auto, found, options.level, all_poses=options.all_poses)
+    figures.write(draw, options.figure, str(found.attrs["design"]))
     click.echo(f"wrote {options.figure}", err=True)
 
 

@@ -104,7 +104,7 @@ def _figure(f: ResponseFindings, name: str) -> Figure:
     title = (
         f"{f.hexapod.name}: non-linear stepped sine, base {f.axis}, amplitude {amplitude}{of_point(f.stepped.attrs)}"
     )
-    figure.suptitle(title, fontsize=12)
+    plots.style.entitle(figure, title)
     return figure
 
 

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from flexapod import plots
 from flexapod.conventions import AXES, Array
@@ -46,7 +45,9 @@ def study(
     if worst is not None:
         data["worst_pose"] = _worst_data(worst)
         rows += _worst_rows(worst, within)
-    drawing = Drawing("sweep", f"The index over the poses{within}", partial(_figure, sweep, all_poses))
+    drawing = Drawing(
+        "sweep", f"The index over the poses{within}", partial(plots.sweep.auto, sweep, all_poses=all_poses)
+    )
     return Study(
         hexapod=hexapod,
         subject="sweep",
@@ -64,12 +65,6 @@ def _cautions(
 ) -> list[Caution]:
     least = worst.pose if worst is not None else None if summary is None else summary.worst.pose
     return [] if least is None else least_index.cautions(hexapod, least, sweep.attrs["joint"])
-
-
-def _figure(sweep: xr.Dataset, all_poses: bool) -> Figure:
-    figure = plots.sweep.auto(sweep, all_poses=all_poses).figure
-    assert isinstance(figure, Figure)
-    return figure
 
 
 def pose_text(pose: Array) -> str:
