@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
-from flexapod.control.active_damping import assumptions
+from flexapod.control.losses import assumptions
 
 ISOLATOR = fx.load("cubic-isolator").replace({"gravity": [0, 0, 0]})
 

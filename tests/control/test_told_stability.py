@@ -7,8 +7,8 @@ import pytest
 import scipy.linalg
 
 import flexapod as fx
-from flexapod.control.active_damping import assumptions
 from flexapod.control.closed_loop_poles import assess, loop_sampling_time
+from flexapod.control.losses import assumptions
 from flexapod.control.plant import Plant
 
 ISOLATOR = fx.load("cubic-isolator")

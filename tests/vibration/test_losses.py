@@ -9,6 +9,7 @@ from tests.helpers.drawn import machine
 import flexapod as fx
 from flexapod.mechanics.springs import axial_stiffness
 from flexapod.mechanics.viscous_losses import LEFT_OUT, has_losses
+from flexapod.vibration.harmonic import complex_poles
 
 JOINTS = {"universal": 15.0, "spherical": 15.0, "torsion": 15.0, "loss_factor": 0.1}
 ISOLATOR = fx.load("cubic-isolator").replace({"legs.damping": None})
@@ -181,3 +182,28 @@ def test_the_commands_know_losses(run, result):
         for options in (lossy, ("--loss-factor", "0.05"))
     ]
     assert ratio[0] == ratio[1]
+
+
+STIFF_IN_TORSION = {"universal": [20.0, 5.0], "spherical": 2.0, "torsion": 200.0, "loss_factor": 0.05}
+
+
+@pytest.mark.parametrize("joint", ["universal", "spin_free"])
+@pytest.mark.parametrize("mode", range(6))
+def test_in_its_mode_the_viscous_equivalent_takes_what_joints_of_any_stiffness_lose(joint, mode):
+    """Against the poles of the complex stiffness; bending, twist and both axes of a joint differ a hundredfold."""
+    changes = {"legs.joint_stiffness": STIFF_IN_TORSION, "gravity": [0, 0, 0], "platform.mass_center": [0.01, 0.02, 0]}
+    hexapod = ISOLATOR.replace(changes)
+    linear = fx.linearise(hexapod, joint=joint)
+    pole = complex_poles(linear, linear.losses)[mode]
+    viscous = fx.mechanics.viscous_equivalent(hexapod, abs(pole), joint=joint)
+    ratio = fx.linearise(viscous, joint=joint).modes().damping_ratio[mode]
+    assert ratio == pytest.approx(-pole.real / abs(pole), rel=2e-3)
+    assert ratio > 2e-4
+
+
+def test_a_joint_gets_a_mean_of_the_stiffnesses_it_has():
+    """And one that moves a mean between the two stiffnesses of its axes; without stiffness there is nothing to lose."""
+    rest = ISOLATOR.replace({"legs.joint_stiffness": {"universal": [3.0, 1.0], "loss_factor": 0.1}})
+    found = fx.mechanics.viscous_equivalent(rest, 40.0).legs.damping
+    assert (found.spherical == 0).all()
+    assert ((found.universal >= 0.1 * 1.0 / 40.0) & (found.universal <= 0.1 * 3.0 / 40.0)).all()

@@ -15,34 +15,14 @@ from flexapod.checks import instance, numbers, one_of
 from flexapod.control.closed_loop_poles import least_damping
 from flexapod.control.controllers import ALL_LEGS, GAIN_UNIT, Feedback, check_legs, damping_law
 from flexapod.control.gain_search import ascending_gains, best_gain, default_gains
+from flexapod.control.losses import assumptions
 from flexapod.control.plant import Plant, damping_ratios, poles
 from flexapod.conventions import Array, Complex, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import response_attributes
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import Linearisation, linearise
-from flexapod.mechanics.viscous_losses import has_losses
 from flexapod.pose import PoseLike
-
-_NO_LOSS = (
-    "The machine without control has the friction of its design and no structural loss. Real legs lose energy by "
-    "themselves, so that control gains less than is told here."
-)
-_LOSS = (
-    "The loss factors of the design are left out here: the states of a controlled machine have viscous friction only. "
-    "mechanics.viscous_equivalent, or --loss-frequency of the command, gives the friction that takes as much at one "
-    "frequency."
-)
-_NO_JOINTS = (
-    "Its joints have no stiffness; with joints that resist turning the zeros of force feedback lie above 0 and damping "
-    "ends below 1: a damping ratio of 1 and zeros at 0 are limits of the model."
-)
-
-
-def assumptions(hexapod: Hexapod) -> str:
-    """What the model of control leaves out of a machine, and what that does to its numbers."""
-    joints = hexapod.legs.joint_stiffness
-    return " ".join(filter(None, (_LOSS if has_losses(hexapod) else _NO_LOSS, "" if joints.any else _NO_JOINTS)))
 
 
 def open_zeros(linear: Linearisation, feedback: Feedback, legs: Sequence[int] = ALL_LEGS) -> Array:

@@ -18,7 +18,7 @@ from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.point_motion import shift
 from flexapod.pose import PoseLike
 from flexapod.vibration.grid import asked, grid_around
-from flexapod.vibration.harmonic import complex_poles
+from flexapod.vibration.harmonic import complex_poles, loss_matrix
 
 
 def controlled_transmissibility(
@@ -35,6 +35,8 @@ def controlled_transmissibility(
     joint: JointModel = "universal",
 ) -> xr.Dataset:
     """Compute the transmissibility of base motion to the platform with and without control.
+
+    Loss factors of the design are exact in the responses.
 
     Parameters
     ----------
@@ -65,7 +67,8 @@ def controlled_transmissibility(
         rad) per displacement of the base (m, rad); and ``leg_force`` (omega, leg, base), N per displacement of the
         base.
         Attributes: ``stability`` of the loop ("stable" or "unstable"), ``passive_stability`` of the machine without
-        control ("stable" or "falls over"), and ``caution``, what that means where one of them does not decay.
+        control ("stable" or "falls over"), and ``caution``, what that means where one of them does not decay;
+        ``loss_factor``, of the legs' springs, and ``joint_loss_factor``.
 
     Raises
     ------
@@ -78,7 +81,10 @@ def controlled_transmissibility(
 
     Notes
     -----
-    The response of the hexapod linearised with exact derivatives (see `flexapod.linearise`) in closed loop.
+    The response of the hexapod linearised with exact derivatives (see `flexapod.linearise`) in closed loop. Springs
+    with a loss factor eta have the stiffness K (1 + i eta), in the machine and in the leg forces that are measured, as
+    in `flexapod.transmissibility`; forces of the controller act beside them. Stability is judged by the poles, in which
+    loss factors are left out: `mechanics.viscous_equivalent` makes friction of them.
 
     Examples
     --------
@@ -95,7 +101,7 @@ def controlled_transmissibility(
     plant = Plant(linearise(hexapod, where, base=base, force=force, moment=moment, joint=joint))
     law = controller_for(plant.linear, controller)
     if w is None:
-        w = grid_around(complex_poles(plant.linear))
+        w = grid_around(complex_poles(plant.linear, plant.linear.losses))
         w = w if law.dt is None else w[w < 0.99 * np.pi / law.dt]
     if not w.size or w.min() == 0:
         raise ArgumentError("omega is empty or holds zero; the loop needs frequencies > 0.")
@@ -130,6 +136,8 @@ def controlled_transmissibility(
             "digest": hexapod.digest,
             "controller": law.name,
             **point_attributes(hexapod, point),
+            "loss_factor": hexapod.legs.loss_factor.tolist(),
+            "joint_loss_factor": hexapod.legs.joint_stiffness.loss_factor.tolist(),
             **_stability(plant, law),
         },
     )
@@ -152,11 +160,12 @@ def _stability(plant: Plant, law: Controller) -> dict[str, str]:
 
 def _response(plant: Plant, omega: Array, controller: Controller | None) -> tuple[Complex, Complex]:
     """Absolute displacement and leg force per base displacement."""
+    A, C = _with_losses(plant)
     s = 1j * omega[:, None, None]
     base = np.concatenate([s**2 * np.eye(6), np.broadcast_to(np.eye(6), (*s.shape[:1], 6, 6))], axis=1)
     right = np.concatenate([np.broadcast_to(plant.B, (*s.shape[:1], 12, 6)), plant.E @ base], axis=2)
-    z = np.linalg.solve(s * np.eye(12) - plant.A, right.astype(complex))
-    y = plant.C @ z + np.concatenate([np.broadcast_to(plant.D, (*s.shape[:1], *plant.D.shape)), plant.G @ base], axis=2)
+    z = np.linalg.solve(s * np.eye(12) - A, right.astype(complex))
+    y = C @ z + np.concatenate([np.broadcast_to(plant.D, (*s.shape[:1], *plant.D.shape)), plant.G @ base], axis=2)
     by_force, by_base = y[..., :6], y[..., 6:]
     force = np.zeros((omega.size, 6, 6), dtype=complex)
     if controller is not None:
@@ -165,6 +174,18 @@ def _response(plant: Plant, omega: Array, controller: Controller | None) -> tupl
         force = np.linalg.solve(np.eye(6) - K @ by_force[:, rows], K @ by_base[:, rows])
     rows = plant.measured(("acceleration",))
     return (by_base[:, rows] + by_force[:, rows] @ force) / s**2, force
+
+
+def _with_losses(plant: Plant) -> tuple[Complex, Complex]:
+    """The plant's A and C at frequencies > 0, where the stiffness of each spring is k (1 + i eta)."""
+    linear = plant.linear
+    eta = linear.losses
+    A, C = plant.A.astype(np.complex128), plant.C.astype(np.complex128)
+    slowed = 1j * np.linalg.solve(linear.M, loss_matrix(linear, eta)) / plant.omega_0
+    A[6:, :6] -= slowed
+    C[plant.measured(("acceleration",)), :6] -= slowed
+    C[plant.measured(("leg_force",)), :6] -= 1j * (eta[:6] * linear.leg_stiffness)[:, None] * linear.H.T / plant.omega_0
+    return A, C
 
 
 def _gain_at(controller: Controller, omega: Array) -> Complex:

@@ -15,13 +15,13 @@ from numpy.typing import ArrayLike
 from flexapod.checks import positive
 from flexapod.control.h_infinity_synthesis import suboptimal_controller, weighted_plant
 from flexapod.control.linear_controller import Controller, Measurement
-from flexapod.control.plant import Plant, is_stable, poles
+from flexapod.control.losses import plant_with_losses
+from flexapod.control.plant import is_stable, poles
 from flexapod.control.scaled_plant import ScaledPlant, measurements
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, UnstableError
 from flexapod.mechanics.inputs import ZERO
-from flexapod.mechanics.linearisation import linearise
 from flexapod.optional import needed
 from flexapod.pose import PoseLike
 
@@ -36,6 +36,7 @@ def lqg(
     effort: float = 0.1,
     stroke: float = 0.1,
     noise: float = 0.1,
+    loss_frequency: float | None = None,
     base: PoseLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
@@ -59,6 +60,9 @@ def lqg(
         Weight of relative displacement times omega_1^2, which keeps the platform over a base that drifts.
     noise : float, optional
         Sensor noise relative to the signal that the moving base causes.
+    loss_frequency : float, optional
+        Frequency, rad/s, at which viscous friction of the plant takes as much as the loss factors of the design (see
+        `mechanics.viscous_equivalent`). Left out, loss factors are left out, and the controller's name says so.
     base : Pose or array_like, shape (6,), optional
         Pose of the base in the inertial frame. The identity by default.
     force, moment : array_like, shape (3,), optional
@@ -104,7 +108,8 @@ def lqg(
     for name, value in (("effort", effort), ("stroke", stroke), ("noise", noise)):
         _weight(value, name)
     measures = measurements(measure)
-    task = ScaledPlant(Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint)), measures)
+    plant, told = plant_with_losses(hexapod, pose, loss_frequency, base=base, force=force, moment=moment, joint=joint)
+    task = ScaledPlant(plant, measures)
     control = needed("control", "control", "LQG design needs python-control")
     drift = stroke * task.omega_1**2 / (task.plant.omega_0 * task.pace)
     held = np.hstack([np.diag(drift / task.axis), np.zeros((6, 6))])
@@ -115,7 +120,7 @@ def lqg(
     V = noise**2 * np.eye(len(C)) + task.G @ task.G.T
     observer = _riccati(control, A.T, C.T, E @ E.T, V, E @ task.G.T).T
     A_c = A - B @ gain - observer @ (C - task.D @ gain)
-    return task.controller(A_c, observer, -gain, np.zeros((6, len(C))), "LQG isolation")
+    return task.controller(A_c, observer, -gain, np.zeros((6, len(C))), f"LQG isolation{told}")
 
 
 def h_infinity(
@@ -128,6 +133,7 @@ def h_infinity(
     effort: float = 0.1,
     noise: float = 0.1,
     bandwidth: float | None = None,
+    loss_frequency: float | None = None,
     base: PoseLike | None = None,
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
@@ -155,6 +161,9 @@ def h_infinity(
     bandwidth : float, optional
         Frequency, rad/s, at which the weight of forces reaches that of acceleration, and beyond which the controller
         does nothing. Twice the highest natural frequency by default.
+    loss_frequency : float, optional
+        Frequency, rad/s, at which viscous friction of the plant takes as much as the loss factors of the design (see
+        `mechanics.viscous_equivalent`). Left out, loss factors are left out, and the controller's name says so.
     base : Pose or array_like, shape (6,), optional
         Pose of the base in the inertial frame. The identity by default.
     force, moment : array_like, shape (3,), optional
@@ -204,7 +213,8 @@ def h_infinity(
             positive(value, name, "rad/s")
     for name, value in (("depth", depth), ("effort", effort), ("noise", noise)):
         _weight(value, name)
-    task = ScaledPlant(Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint)), measures)
+    plant, told = plant_with_losses(hexapod, pose, loss_frequency, base=base, force=force, moment=moment, joint=joint)
+    task = ScaledPlant(plant, measures)
     omega = task.plant.omega
     low = 0.5 * float(omega[0]) if corner is None else corner
     high = 2.0 * float(omega[-1]) if bandwidth is None else bandwidth
@@ -212,7 +222,7 @@ def h_infinity(
         task, corner=low / task.pace, depth=depth, bandwidth=high / task.pace, effort=effort, noise=noise
     )
     gamma, (A, B, C, D) = suboptimal_controller(system, len(task.C))
-    name = f"H-infinity isolation (gamma {gamma:.3g})"
+    name = f"H-infinity isolation (gamma {gamma:.3g}{told})"
     found = task.controller(A, B, C, D, name)
     if not is_stable(poles(task.plant, found), task.plant):
         raise UnstableError(f"{name}: the design is too badly conditioned to be used. Raise effort and noise.")

@@ -103,6 +103,9 @@ def closed_loop(
     The paper's conclusion 2 demands gains that keep the poles away from the natural frequencies. The hexapod is
     linearised with exact derivatives (see `flexapod.linearise`); poles of a sampled loop are log(z)/dt.
 
+    Loss factors of the design are left out, for poles and motions in time have viscous friction only:
+    `mechanics.viscous_equivalent` makes friction of them.
+
     Examples
     --------
     >>> hexapod = fx.load("cubic-isolator")
@@ -189,6 +192,9 @@ def gain_map(
     Notes
     -----
     See `closed_loop`, and the paper's conclusion 2.
+
+    Loss factors of the design are left out, for poles and motions in time have viscous friction only:
+    `mechanics.viscous_equivalent` makes friction of them.
 
     Examples
     --------

@@ -110,6 +110,9 @@ def simulate_control(
     Both cases integrate the full equations of motion (Eq. 35) with the Runge-Kutta method of order 8 of Dormand and
     Prince at a fixed step.
 
+    Loss factors of the design are left out, for poles and motions in time have viscous friction only:
+    `mechanics.viscous_equivalent` makes friction of them.
+
     Examples
     --------
     >>> hexapod = fx.load("cubic-isolator")

@@ -99,6 +99,9 @@ def gain_schedule(
     At each pose the damping of the linearised closed loop is evaluated over the gains and refined between them; active
     damping after A. Preumont, Vibration Control of Active Structures (2011).
 
+    Loss factors of the design are left out, for poles and motions in time have viscous friction only:
+    `mechanics.viscous_equivalent` makes friction of them.
+
     Examples
     --------
     >>> poses = fx.pose_grid(z=[2.2, 2.6])

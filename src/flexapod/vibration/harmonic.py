@@ -57,6 +57,12 @@ def losses(hexapod: Hexapod, linear: Linearisation, value: ArrayLike | None) -> 
     return eta
 
 
+def loss_matrix(linear: Linearisation, losses: Array) -> Array:
+    """Imaginary part of the stiffness matrix at frequencies > 0, (6, 6), for the loss factors (m,) of all springs."""
+    along, others = linear.H * (losses[:6] * linear.leg_stiffness), linear.springs[:, 6:]
+    return np.asarray(along @ linear.H.T + (others * losses[6:]) @ others.T)
+
+
 def steady_response(linear: Linearisation, omega: Array, losses: ArrayLike = 0.0) -> SteadyResponse:
     """Steady response at omega (n,) rad/s; infinite at an undamped resonance.
 
@@ -87,8 +93,7 @@ class _Modes:
         self.square = square
         self.skew = left @ (0.5 * (linear.K - linear.K.T)) @ self.shape  # only a wrench that turns makes K unsymmetric
         eta = np.broadcast_to(losses, linear.springs.shape[1])
-        along, others = linear.H * (eta[:6] * linear.leg_stiffness), linear.springs[:, 6:]
-        self.loss = left @ (along @ linear.H.T + (others * eta[6:]) @ others.T) @ self.shape
+        self.loss = left @ loss_matrix(linear, eta) @ self.shape
         self.friction = left @ linear.C @ self.shape
         # Rigid motion with the base meets no spring, and a turned base turns gravity: K carry + K_b is known without
         # the cancellation, which would drown slow motion. It meets no friction either, but in the model "spin_free".

@@ -14,13 +14,14 @@ import xarray as xr
 from flexapod.cli.options import common
 from flexapod.cli.options.control import Options
 from flexapod.cli.output.stages import Report
-from flexapod.control.active_damping import assumptions, root_locus
+from flexapod.control.active_damping import root_locus
 from flexapod.control.closed_loop_poles import loop_sampling_time
 from flexapod.control.controlled_response import controlled_transmissibility
 from flexapod.control.controllers import GAIN_UNIT, PID, damping_law, pid_units
 from flexapod.control.gain_search import best_gain, default_gains
 from flexapod.control.isolation import h_infinity, lqg
 from flexapod.control.linear_controller import ControlLaw, Controller
+from flexapod.control.losses import assumptions
 from flexapod.control.plant import Plant
 from flexapod.control.position_control import closed_loop, gain_map
 from flexapod.control.sampled_simulation import Hardware, simulate_control
@@ -71,11 +72,12 @@ def compute(options: Options, report: Report) -> Study:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the study says what the library warns of
         omega = options.loss_frequency
-        machine = hexapod if omega is None else viscous_equivalent(hexapod, omega, pose)
-        return study(hexapod, _find(machine, pose, options, report))
+        machine = hexapod if omega is None else viscous_equivalent(hexapod, omega, pose, joint=options.joint)
+        model = assumptions(hexapod, omega)
+        return study(hexapod, _find(machine, pose, model, options, report))
 
 
-def _find(hexapod: Hexapod, pose: Pose, options: Options, report: Report) -> ControlFindings:
+def _find(hexapod: Hexapod, pose: Pose, model: str, options: Options, report: Report) -> ControlFindings:
     report("design", 0.0)
     tangent = linearise(hexapod, pose, joint=options.joint)
     machine_alone = sampling_time(hexapod, pose, joint=options.joint)
@@ -103,7 +105,7 @@ def _find(hexapod: Hexapod, pose: Pose, options: Options, report: Report) -> Con
         run, shaking = _run(hexapod, pose, sampled, shaken, options, report), _shaking(shaken, options)
     return ControlFindings(
         pose=pose,
-        assumptions=assumptions(hexapod),
+        assumptions=model,
         ideal=ideal,
         sampled=real,
         recommended=recommended,
