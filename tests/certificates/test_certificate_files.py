@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod import _core
@@ -18,7 +19,7 @@ from flexapod.certificates.certificate import Certificate
 from flexapod.workspace import proof
 from flexapod.workspace.store.integrity import sealed
 
-BASE, II = fx.load("motion-base"), fx.load("mukherjee-ii")
+BASE, II = plain_machine("motion-base"), fx.load("mukherjee-ii")
 SMALL = fx.Box.about(fx.home_pose(BASE), 0.05, np.radians(2))
 PATH = fx.Trajectory([[0, 0, 2.4, 0, 0, 0], [0.1, 0, 2.5, 0, 0.1, 0.2]], [0, 1])
 HARD = fx.Box.about(fx.home_pose(II), 0.02, np.radians(12))

@@ -4,12 +4,13 @@ import time
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.certificates.question import place_of, rotated
 from flexapod.workspace.proof import Boxes, six_of
 
-BASE, CUBIC, II, I = (fx.load(name) for name in ("motion-base", "cubic-isolator", "mukherjee-ii", "mukherjee-i"))
+BASE, CUBIC, II, I = (plain_machine(name) for name in ("motion-base", "cubic-isolator", "mukherjee-ii", "mukherjee-i"))
 HOME = fx.home_pose(BASE)
 SMALL = fx.Box.about(HOME, 0.05, np.radians(2))
 

@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 import pytest
 from scipy.linalg import eigh
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.control.controllers import damping_law
@@ -18,7 +19,7 @@ ORBIT = {"gravity": [0, 0, 0], "legs.damping.prismatic": 0.0}
 
 @pytest.fixture(scope="module")
 def isolator():
-    return fx.load("cubic-isolator")
+    return plain_machine("cubic-isolator")
 
 
 @pytest.fixture(scope="module")
@@ -181,7 +182,7 @@ def python_control_poles(hexapod, pose, kp, kd):
 
 @pytest.mark.parametrize("name", ["cubic-isolator", "precision-positioner", "motion-base"])
 def test_pd_poles_agree_with_python_control(name, measured):
-    h = fx.load(name)
+    h = plain_machine(name)
     pose = fx.home_pose(h)
     k = float(h.legs.stiffness[0])
     kp, kd = 0.7 * k, 0.4 * k / fx.stability_index(h, pose)
@@ -263,7 +264,7 @@ def test_gain_map_marks_unstable_gains(isolator):
 
 
 def test_schedule_keeps_the_damping_that_one_gain_loses():
-    h = fx.load("motion-base")
+    h = plain_machine("motion-base")
     poses = fx.pose_grid(z=[2.2, 2.4, 2.6, 2.8], yaw=[0.0, 0.2])
     found = fx.control.gain_schedule(h, poses, "velocity", damping=0.3)
     assert found.gain.dims == ("z", "yaw")
@@ -280,7 +281,7 @@ def test_schedule_keeps_the_damping_that_one_gain_loses():
 
 
 def test_schedule_of_an_own_law_and_of_bad_poses():
-    h = fx.load("cubic-isolator")
+    h = plain_machine("cubic-isolator")
     home = fx.home_pose(h)
     poses = fx.Pose(np.stack([home.position, [0.0, 0.0, 0.0]]), np.stack([home.matrix, home.matrix]))
     found = fx.control.gain_schedule(
@@ -363,9 +364,9 @@ def test_studies_take_a_hexapod_and_refuse_a_name(call):
     with pytest.raises(fx.DesignError, match="it must be a flexapod Hexapod"):
         call("cubic-isolator")
     with pytest.raises(fx.ArgumentError, match="joint is 'spin-free'"):
-        call(fx.load("cubic-isolator"), joint="spin-free")
+        call(plain_machine("cubic-isolator"), joint="spin-free")
     with pytest.raises(TypeError, match="dampling"):
-        call(fx.load("cubic-isolator"), dampling=0.1)
+        call(plain_machine("cubic-isolator"), dampling=0.1)
 
 
 def test_the_home_pose_is_taken_where_none_is_given(isolator):

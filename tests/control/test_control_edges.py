@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import slycot
+from tests.helpers.plain import plain_machine
 
 import control
 import flexapod as fx
@@ -14,7 +15,7 @@ from flexapod.mechanics.linearisation import linearise
 
 @pytest.fixture(scope="module")
 def isolator():
-    hexapod = fx.load("cubic-isolator")
+    hexapod = plain_machine("cubic-isolator")
     return hexapod, fx.home_pose(hexapod)
 
 

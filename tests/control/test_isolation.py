@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.linalg import solve_continuous_lyapunov, solve_discrete_lyapunov
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import apart
 
 import control
@@ -22,7 +23,7 @@ NAMES = ("cubic-isolator", "precision-positioner", "motion-base")
 
 @pytest.fixture(scope="module")
 def isolator():
-    return fx.load("cubic-isolator")
+    return plain_machine("cubic-isolator")
 
 
 def shaken(scale=1.0, count=24, seed=4):
@@ -73,7 +74,7 @@ def test_lqg_is_optimal(isolator, measure):
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("design", ["lqg", "h_infinity"])
 def test_designs_take_the_resonance_away_at_the_recommended_rate(name, design):
-    h = fx.load(name)
+    h = plain_machine(name)
     pose = fx.home_pose(h)
     law = getattr(fx.control, design)(h, pose)
     omega = np.geomspace(0.1, 4.0, 300) * fx.stability_index(h, pose)

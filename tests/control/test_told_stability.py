@@ -5,13 +5,14 @@ import dataclasses
 import numpy as np
 import pytest
 import scipy.linalg
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.control.closed_loop_poles import assess, loop_sampling_time
 from flexapod.control.losses import assumptions
 from flexapod.control.plant import Plant
 
-ISOLATOR = fx.load("cubic-isolator")
+ISOLATOR = plain_machine("cubic-isolator")
 TOPPLES = ISOLATOR.replace({"platform.mass": 4000.0})
 LAW = fx.control.VelocityFeedback(300.0)
 

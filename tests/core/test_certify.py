@@ -10,6 +10,7 @@ import pytest
 from scipy.interpolate import BSpline, PPoly
 from scipy.optimize import minimize
 from tests.helpers.drawn import machine
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import JOINTS, size
 from tests.oracles.exact_modes import exact_modes
 
@@ -83,7 +84,7 @@ def volume(boxes) -> float:
 @pytest.mark.parametrize("joint", JOINTS)
 @pytest.mark.parametrize("name", ["motion-base", "cubic-isolator", "mukherjee-ii"])
 def test_a_gap_of_one_per_cent_is_closed_and_nothing_lies_below(name, joint, rng):
-    hexapod, model = fx.load(name), _core.Joint[joint]
+    hexapod, model = plain_machine(name), _core.Joint[joint]
     box = around(hexapod, 0.03, 3)
     true, where = least(hexapod, box, rng, model)
     found = certify(hexapod, box, INDEX, true, gap=0.01, joint=model)
@@ -97,7 +98,7 @@ def test_a_gap_of_one_per_cent_is_closed_and_nothing_lies_below(name, joint, rng
 
 @pytest.mark.parametrize("name", ["motion-base", "cubic-isolator"])
 def test_a_target_above_the_true_least_is_never_proved(name, rng):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     box = around(hexapod, 0.05, 5)
     true, _ = least(hexapod, box, rng)
     for factor in (1 + 1e-6, 1 + 1e-3):
@@ -159,7 +160,7 @@ def contradiction_free(seed: int, count: int = 2000) -> str:
 
 def test_boxes_with_singular_poses_are_never_proved():
     """Turned by 90 deg about z, a symmetric machine is singular; the sign of det H changes there."""
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     box = around(hexapod, 0.01, 1)
     box[0, 5] = np.radians([60, 120])
     mid = box.mean(axis=-1)
@@ -177,14 +178,14 @@ def test_boxes_with_singular_poses_are_never_proved():
 
 
 def test_no_pose_is_singular_where_none_is():
-    found = certify(fx.load("motion-base"), around(fx.load("motion-base"), 0.1, 10), REGULAR)
+    found = certify(plain_machine("motion-base"), around(plain_machine("motion-base"), 0.1, 10), REGULAR)
     assert found.status == PROVED
     assert found.boxes < 1000
 
 
 @pytest.mark.parametrize("name", ["motion-base", "mukherjee-ii"])
 def test_the_condition_of_h(name, rng):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     box = around(hexapod, 0.01, 1)
     greatest = swept(hexapod, samples(box, 5000, rng), "cond_H").max()
     assert certify(hexapod, box, CONDITION, 1.02 * greatest).status == PROVED
@@ -224,7 +225,7 @@ def limits_of(hexapod, poses, length=(0.0, 0.0), universal=None, spherical=None,
 
 @pytest.mark.parametrize("name", ["motion-base", "mukherjee-i", "cubic-isolator"])
 def test_limits_are_kept_in_the_whole_box_or_a_pose_breaks_one(name, rng):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     box = around(hexapod, 0.04, 4)
     poses = samples(box, 20000, rng)
     kept = limits_of(hexapod, poses, (0.005, 0.005), 0.02, 0.02, 0.03)
@@ -256,7 +257,7 @@ def test_the_distance_of_legs_is_bounded(rng):
 
 
 def test_boxes_outside_of_limits_are_left_out(rng):
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     box = around(hexapod, 0.1, 10)
     poses = samples(box, 20000, rng)
     limits = limits_of(hexapod, poses, (-0.15, -0.15))
@@ -293,7 +294,7 @@ def path(hexapod, rng):
 
 @pytest.mark.parametrize("name", ["motion-base", "mukherjee-ii"])
 def test_a_path_is_proved_by_pieces(name, rng):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     middle, pieces, spans, rows = path(hexapod, rng)
     true = swept(hexapod, rows).min()
 
@@ -317,7 +318,7 @@ def test_a_path_is_proved_by_pieces(name, rng):
 
 
 def test_another_splitting_and_more_threads_prove_the_same(rng):
-    hexapod = fx.load("cubic-isolator")
+    hexapod = plain_machine("cubic-isolator")
     box = around(hexapod, 0.05, 5)
     level = 0.99 * least(hexapod, box, rng)[0]
     found = [
@@ -329,7 +330,7 @@ def test_another_splitting_and_more_threads_prove_the_same(rng):
 
 
 def test_a_box_may_have_no_width_and_pass_through_a_pole():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     home = around(hexapod, 0.0, 0.0)
     point = certify(hexapod, home, INDEX, 0.999 * swept(hexapod, home[..., 0])[0])
     assert (point.status, point.boxes) == (PROVED, 1)
@@ -377,14 +378,14 @@ def test_calls_end_on_time_and_when_they_are_told_to():
     ],
 )
 def test_wrong_input_is_refused(change, words):
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     given = {"boxes": around(hexapod, 0.01, 1), "kind": INDEX, "level": 1.0, **change}
     with pytest.raises(ValueError, match=words):
         certify(hexapod, **given)
 
 
 def test_a_design_with_other_springs_is_refused():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     packed = hexapod.packed.copy()
     packed[_core.plain_size] = 1e-9  # a spring in series
     with pytest.raises(ValueError, match="springs in joints"):
@@ -392,7 +393,7 @@ def test_a_design_with_other_springs_is_refused():
 
 
 def test_limits_of_moments_are_refused():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     limits = _core.SweepLimits(
         neutral=neutral_directions(hexapod),
         leg_length=np.tile([0.0, 9.0], (6, 1)),
@@ -426,7 +427,7 @@ def test_every_instruction_set_proves_it():
 def test_ball_arithmetic_proves_the_same(rng):
     """A second implementation, of other equations, on a small box."""
     exact_bounds = pytest.importorskip("tests.oracles.exact_bounds", reason="python-flint is not installed")
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     box = around(hexapod, 0.005, 0.5)
     found = certify(hexapod, box, INDEX, least(hexapod, box, rng)[0], gap=0.05)
     assert found.status == PROVED

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 
@@ -31,13 +32,13 @@ from flexapod import _core
 from flexapod.design.layout import PLACES, describe, entries, numbers
 
 assert _core.plain_size == 217
-machine = fx.load("motion-base").replace({"legs.lead_mm": [4, 5, 6, 7, 8, 9], "legs.stiffness": [2e7, 3e7, 4e7, 5e7, 6e7, 7e7]})
+machine = plain_machine("motion-base").replace({"legs.lead_mm": [4, 5, 6, 7, 8, 9], "legs.stiffness": [2e7, 3e7, 4e7, 5e7, 6e7, 7e7]})
 assert np.array_equal(machine.legs.more["lead"], np.arange(4, 10) / 1000)
 assert np.array_equal(machine.packed[PLACES["legs.lead"]], machine.legs.more["lead"])
 assert np.array_equal(machine.packed[PLACES["legs.stiffness"]], machine.legs.stiffness)
 assert np.array_equal(machine.packed[PLACES["legs.upper.inertia"]], machine.legs.upper.inertia)
 assert fx.Hexapod.from_toml(machine.to_toml()) == machine
-assert fx.load("motion-base").legs.more["lead"][3] == 0.005  # its default
+assert plain_machine("motion-base").legs.more["lead"][3] == 0.005  # its default
 try:
     machine.replace({"legs.lead": -1.0})
 except fx.errors.DesignError as error:
@@ -113,6 +114,6 @@ def test_a_number_of_each_leg_is_one_line_in_the_core_and_one_in_the_schema(tmp_
     command = [sys.executable, "-S", "-c", USE]  # -S: no import hook of an editable install
     run = subprocess.run(command, env=outside, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
-    same = fx.load("motion-base").replace({"legs.stiffness": [2e7, 3e7, 4e7, 5e7, 6e7, 7e7]})
+    same = plain_machine("motion-base").replace({"legs.stiffness": [2e7, 3e7, 4e7, 5e7, 6e7, 7e7]})
     omega = np.frombuffer(bytes.fromhex(run.stdout))
     np.testing.assert_allclose(omega, fx.natural_modes(same).omega, rtol=1e-12)  # rounding of another instruction set

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from tests.helpers.cases import case
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import relative
 
 import flexapod as fx
@@ -150,7 +151,7 @@ def test_platform_joints_where_they_stand_at_home(write, tmp_path):
 
 
 def test_joints_of_a_table_replace_those_of_a_design(write):
-    hexapod = fx.load("motion-base").replace(fx.design.read_joints(write(table())))
+    hexapod = plain_machine("motion-base").replace(fx.design.read_joints(write(table())))
     assert relative(hexapod.base_joints, BASE) < 1e-15
     assert relative(hexapod.universal_axes, tangent_axes(BASE)[0]) < 1e-15
 
@@ -161,7 +162,7 @@ def test_a_text_from_elsewhere_reads_no_file(write, tmp_path, monkeypatch):
     with pytest.raises(fx.DesignError, match=r"joints\.csv is 'joints\.csv'.*read_joints"):
         fx.Hexapod.from_toml(DESIGN)
     with pytest.raises(fx.DesignError, match=r"joints\.csv is 'joints\.csv'.*read_joints"):
-        fx.load("motion-base").replace({"joints.csv": "joints.csv"})
+        plain_machine("motion-base").replace({"joints.csv": "joints.csv"})
 
 
 def test_a_design_for_the_page_holds_its_joints(write, tmp_path):

@@ -6,13 +6,14 @@ import pickle
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.design.design_file import template
 
 OWN = fx.Hexapod.from_toml(template("own"))
-CUBE = fx.load("cubic-isolator")
-TABLES = {"own": OWN, "cube": CUBE, **{name: fx.load(name) for name in ("motion-base", "precision-positioner")}}
+CUBE = plain_machine("cubic-isolator")
+TABLES = {"own": OWN, "cube": CUBE, **{name: plain_machine(name) for name in ("motion-base", "precision-positioner")}}
 
 
 def edited(text, old, new):
@@ -138,7 +139,7 @@ def test_half_angles():
     with pytest.raises(
         fx.DesignError, match="pairs are at 60, 180 and 300 degrees; the joints of this design are else"
     ):
-        fx.load("precision-positioner").replace({"base.circle.half_angle": 0.2})
+        plain_machine("precision-positioner").replace({"base.circle.half_angle": 0.2})
 
 
 def test_a_circle_takes_the_place_of_a_cube_and_back():

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod import _core
@@ -12,8 +13,8 @@ from flexapod.design.packing import PLACES, compliance_slope
 from flexapod.optimisation.design_map import DesignMap
 from flexapod.optimisation.ensemble import Ensemble
 
-PLAIN = fx.load("precision-positioner")
-BASE = fx.load("motion-base")
+PLAIN = plain_machine("precision-positioner")
+BASE = plain_machine("motion-base")
 OIL = {
     "kind": "hydraulic",
     "bulk_modulus_GPa": 1.4,
@@ -95,7 +96,7 @@ def test_limits_of_the_two_moments_are_told_apart():
 
 
 def test_digests_of_machines_without_such_springs_are_those_of_earlier_versions():
-    digests = {name: fx.load(name).digest for name in ("mukherjee-i", "mukherjee-ii")}
+    digests = {name: plain_machine(name).digest for name in ("mukherjee-i", "mukherjee-ii")}
     assert digests == {"mukherjee-i": "465568b080e0be8f", "mukherjee-ii": "e3006217886c9d9f"}
 
 
@@ -275,7 +276,7 @@ def test_a_leg_along_its_axis_at_rest_has_no_neutral_joint():
         (with_law(PLAIN, TABLE), [fx.Variable("legs.stiffness_law.stiffnesses_N_per_um[3]", 10, 90)]),
         (with_law(BASE, OIL), [fx.Variable("legs.stiffness_law.area_cm2", 1, 100)]),
         (
-            fx.load("cubic-isolator").replace({"legs.joint_stiffness.torsion": 1}),
+            plain_machine("cubic-isolator").replace({"legs.joint_stiffness.torsion": 1}),
             [fx.Variable("cubic.edge", 0.3, 0.6)],
         ),
     ],

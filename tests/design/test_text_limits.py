@@ -6,6 +6,7 @@ import threading
 import tomllib
 
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.design import design_file, text_limits
@@ -97,15 +98,15 @@ def test_many_keys_are_refused_without_comparing_each(monkeypatch):
         with pytest.raises(DesignError, match="more than 250 keys"):
             fx.Hexapod.from_toml(text)
     with pytest.raises(DesignError, match="there are 5000 changes"):
-        fx.load("motion-base").replace({f"legs.stiffness[{i}]": 1 for i in range(5000)})
+        plain_machine("motion-base").replace({f"legs.stiffness[{i}]": 1 for i in range(5000)})
 
 
 def test_a_long_key_is_cut_where_it_is_told():
     for call in (
         lambda: fx.Hexapod.from_toml(f"{'k' * 100_000} = 1"),
-        lambda: fx.load("motion-base").replace({"platform." + "k" * 100_000: 1}),
-        lambda: fx.load("motion-base").replace({"k" * 100_000: None}),
-        lambda: fx.load("motion-base").replace({"k" * 100_000 + "[0]": 1}),
+        lambda: plain_machine("motion-base").replace({"platform." + "k" * 100_000: 1}),
+        lambda: plain_machine("motion-base").replace({"k" * 100_000: None}),
+        lambda: plain_machine("motion-base").replace({"k" * 100_000 + "[0]": 1}),
     ):
         with pytest.raises(DesignError) as caught:
             call()
@@ -115,7 +116,7 @@ def test_a_long_key_is_cut_where_it_is_told():
 @pytest.mark.parametrize("name", ["", "  ", "x" * 256, "\udcff"])
 def test_names_that_are_none(name):
     with pytest.raises(DesignError, match="name"):
-        fx.load("motion-base").replace({"name": name})
+        plain_machine("motion-base").replace({"name": name})
 
 
 @pytest.mark.parametrize("name", ["", ".", "..", "/", "x" * 300, "\udcff", "\u00e9" * 150])

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 
@@ -14,7 +15,7 @@ pivot_mm = [0, 0, 300]
 
 
 def text(home):
-    whole = fx.load("motion-base").to_toml()
+    whole = plain_machine("motion-base").to_toml()
     return whole[: whole.index("[home]")] + home
 
 

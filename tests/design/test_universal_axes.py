@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import relative
 
 import flexapod as fx
@@ -43,7 +44,7 @@ def test_struts_along_the_tangent_get_axes_across(name, joint):
 
 def test_packaged_machines_without_axes_keep_their_tangents():
     for name in ("motion-base", "precision-positioner", "cubic-isolator"):
-        hexapod = fx.load(name)
+        hexapod = plain_machine(name)
         assert relative(hexapod.universal_axes, tangent_axes(hexapod.base_joints)[0]) == 0
         assert leg_angles(hexapod).min() > ACROSS
 
@@ -55,7 +56,7 @@ def test_every_way_to_a_design_gives_the_same_axes():
     assert relative(built.universal_axes, file.universal_axes) == 0
     assert fx.Hexapod.from_toml(file.to_toml()) == file
     joints = {"base.joints": file.base_joints, "platform.joints": file.platform_joints, "base.universal_axes": None}
-    other = fx.load("motion-base").replace({**joints, "home.position": file.home.position})
+    other = plain_machine("motion-base").replace({**joints, "home.position": file.home.position})
     assert relative(other.universal_axes, file.universal_axes) == 0
 
 

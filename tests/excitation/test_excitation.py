@@ -5,6 +5,7 @@ import pickle
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.errors import ArgumentError
@@ -243,7 +244,7 @@ def test_a_random_force_has_the_rms_of_its_spectrum():
 )
 def test_a_drive_goes_where_its_quantity_belongs(argument, drive, is_a):
     with pytest.raises(ArgumentError, match=f"{argument} drives 'z' by what is a {is_a}; it takes a"):
-        fx.simulate(fx.load("cubic-isolator"), duration=0.1, **{argument: drive})
+        fx.simulate(plain_machine("cubic-isolator"), duration=0.1, **{argument: drive})
 
 
 # --- recordings ------------------------------------------------------------------------------------------------------

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from tests.helpers.cases import case
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 
@@ -72,7 +73,7 @@ def test_a_bad_row_is_told_by_its_line(tmp_path):
 def test_a_column_drives_what_its_unit_can_drive(tmp_path, unit, use):
     rows = "\n".join(f"{0.01 * i:g},{1e-3 * np.sin(i):.6f}" for i in range(20))
     found = fx.read_time_series(written(tmp_path / "a.csv", f"time,x_{unit}\n{rows}"))
-    machine = fx.load("cubic-isolator")
+    machine = plain_machine("cubic-isolator")
     for name, taken in (("base_motion", "motion"), ("force", "force"), ("moment", "moment")):
         if taken == use:
             fx.simulate(machine, duration=0.01, samples=2, **{name: found})

@@ -10,6 +10,7 @@ import pytest
 from scipy.io import loadmat
 from scipy.linalg import expm
 from tests.helpers.drawn import machine
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import MACHINES, away, center, size
 from tests.oracles import loaded
 from tests.oracles.reduced import tangent
@@ -72,7 +73,7 @@ def test_the_whole_tangent_agrees_and_the_machine_is_at_rest(tmp_path, kind, see
 @pytest.mark.parametrize("kind", FORMATS)
 @pytest.mark.parametrize("name", MACHINES)
 def test_packaged_machines_agree_at_home(tmp_path, kind, name):
-    hexapod = fx.interchange.nearest_physical(fx.load(name))
+    hexapod = fx.interchange.nearest_physical(plain_machine(name))
     found = tangent(opened(tmp_path, kind, hexapod, center(hexapod), gravity=False)).omega
     assert found == pytest.approx(fx.natural_modes(hexapod, center(hexapod)).omega, rel=1e-8)
 
@@ -147,7 +148,7 @@ def test_a_frequency_read_off_mujocos_motion(mode):
 
 def test_legs_without_mass_can_be_simulated():
     legs = {"legs.lower": None, "legs.upper": None}
-    hexapod = fx.interchange.nearest_physical(fx.load("motion-base").replace(legs))
+    hexapod = fx.interchange.nearest_physical(plain_machine("motion-base").replace(legs))
     motion, _, _ = simulated(hexapod, np.full(6, 1e-6), 1)
     assert np.abs(motion).max() < 1e-4  # it does not fly apart
 
@@ -172,7 +173,7 @@ def test_bodies_that_do_not_exist_are_refused_with_the_remedy(tmp_path, write):
     hexapod = fx.load("mukherjee-ii")
     with pytest.raises(fx.DesignError, match=r"legs.lower of leg 1 .* -2.84e-06 kg m2.*nearest_physical"):
         write(tmp_path / "a", hexapod)
-    massless = fx.load("motion-base").replace({"legs.lower": None, "legs.upper": None})
+    massless = plain_machine("motion-base").replace({"legs.lower": None, "legs.upper": None})
     with pytest.raises(fx.DesignError, match="its mass is 0"):
         write(tmp_path / "a", massless)
     assert not list(tmp_path.iterdir())
@@ -193,7 +194,7 @@ def test_nearest_physical_is_near_and_changes_only_what_it_must():
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_nearest_physical_bodies_are_solid(name):
-    hexapod = fx.interchange.nearest_physical(fx.load(name))
+    hexapod = fx.interchange.nearest_physical(plain_machine(name))
     assert not hexapod.warnings
     parts = [hexapod.platform_inertia, *hexapod.legs.lower.inertia, *hexapod.legs.upper.inertia]
     for a, b, c in map(np.linalg.eigvalsh, parts):
@@ -204,7 +205,7 @@ def test_nearest_physical_bodies_are_solid(name):
 
 def massless(size, friction=0.0):
     """A motion base of another size, of the same density, whose legs have no mass; friction: of its spherical joints."""
-    given = fx.load("motion-base")
+    given = plain_machine("motion-base")
     return given.replace(
         {
             "base.joints": given.base_joints * size,
@@ -348,7 +349,7 @@ def test_export_writes_the_files(run, result, tmp_path, kind):
     found = result("export", "motion-base", "--to", kind, "--out", out, "--set", "platform.mass=4000")
     assert found["files"] == [str(tmp_path / name) for name in KINDS[kind]]
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(KINDS[kind])
-    heavy = fx.load("motion-base").replace({"platform.mass": 4000})
+    heavy = plain_machine("motion-base").replace({"platform.mass": 4000})
     assert found["omega_rad_s"] == fx.natural_modes(heavy, fx.home_pose(heavy)).omega.tolist()
     assert found["bodies_replaced"] is False
     code, text, _ = run("export", "motion-base", "--to", kind, "--out", out, "--pose", "0", "0", "2.5", "0", "5", "0")
@@ -387,6 +388,6 @@ def test_the_code_of_the_page_runs(tmp_path, monkeypatch):
     there: dict = {}
     for block in re.findall(r"```python\n(.*?)```", page, re.DOTALL):
         exec(block, there)
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     assert np.sqrt(there["squares"]) == pytest.approx(fx.natural_modes(hexapod, fx.home_pose(hexapod)).omega, rel=1e-9)
     assert there["plant"](1j) == pytest.approx(there["same"](1j), rel=1e-12)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.io import loadmat
 from tests.helpers.drawn import machine
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import away
 from tests.interchange.test_interchange import FORMATS, opened
 from tests.oracles.reduced import tangent
@@ -72,7 +73,7 @@ def test_damping_of_hinges_is_that_of_the_ball(tmp_path, kind):
 def test_universal_springs_and_laws_in_all_formats(tmp_path, kind):
     """Series springs and a law count as they do at the pose."""
     law = {"kind": "screw", "fixed": 5e7, "axial_rigidity": 2e7, "zero_length": 0.01}
-    plain = fx.load("precision-positioner")
+    plain = plain_machine("precision-positioner")
     hexapod = plain.replace(
         {
             "legs.stiffness_law": law,

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from tests.helpers.cases import case
 from tests.helpers.drawn import machines, seeds
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import MACHINES
 
 import flexapod as fx
@@ -72,7 +73,7 @@ def test_the_four_of_the_three_three_machine():
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_every_pose_is_among_the_assemblies_of_its_lengths(name):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     poses = near(hexapod, np.random.default_rng(1), 12)
     found = fx.forward_kinematics_all(hexapod, fx.inverse_kinematics(hexapod, poses))
     assert (found.status == "complete").all()
@@ -99,7 +100,7 @@ def test_assemblies_of_drawn_machines(hexapod, seed):
 
 def test_planar_joints_have_mirrored_assemblies():
     """Reflected in the plane of the base and turned back, a platform with flat joints has the same lengths."""
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     assert np.ptp(hexapod.base_joints[:, 2]) == np.ptp(hexapod.platform_joints[:, 2]) == 0
     pose = fx.Pose.from_rpy(0.1, 0.2, 2.3, 5, -10, 20, degrees=True)
     found = fx.forward_kinematics_all(hexapod, fx.inverse_kinematics(hexapod, pose))
@@ -113,21 +114,21 @@ def test_planar_joints_have_mirrored_assemblies():
 
 
 def test_the_nearest_to_the_start_comes_first():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     lengths = fx.inverse_kinematics(hexapod)
     below = fx.forward_kinematics_all(hexapod, lengths, start=[0, 0, -2.4, 0, 0, 0])
     assert below.pose[0].position[2] < 0 < fx.forward_kinematics_all(hexapod, lengths).pose[0].position[2]
 
 
 def test_a_singular_pose_is_found_with_side_zero():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     found = fx.forward_kinematics_all(hexapod, fx.inverse_kinematics(hexapod, SINGULAR), start=SINGULAR)
     assert found.side[0] == 0
     assert found.misfit[0] < 1e-10
 
 
 def test_lengths_that_nothing_has():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     lengths = fx.inverse_kinematics(hexapod) * [10, 1, 1, 1, 1, 1]
     found = fx.forward_kinematics_all(hexapod, lengths)
     assert (found.status, found.pose.shape, found.row.shape) == ("complete", (0,), (0,))
@@ -135,7 +136,7 @@ def test_lengths_that_nothing_has():
 
 
 def test_bad_rows_among_many():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     good = fx.inverse_kinematics(hexapod)
     rows = np.stack([good, good * NAN, good * [-1, 1, 1, 1, 1, 1], good])
     found = fx.forward_kinematics_all(hexapod, rows)
@@ -146,7 +147,7 @@ def test_bad_rows_among_many():
 
 
 def test_threads_change_nothing():
-    hexapod = fx.load("precision-positioner")
+    hexapod = plain_machine("precision-positioner")
     lengths = fx.inverse_kinematics(hexapod, near(hexapod, np.random.default_rng(3), 5))
     one, two = (fx.forward_kinematics_all(hexapod, lengths, threads=n) for n in (1, 2))
     assert one.pose == two.pose
@@ -168,7 +169,7 @@ def test_not_from_beyond_a_singular_pose():
 
 @pytest.mark.parametrize("name", ["mukherjee-i", "cubic-isolator"])
 def test_many_poses_of_homes_side_come_back_on_it(name):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     poses = near(hexapod, np.random.default_rng(5), 600, turn=35.0)
     poses = poses[side(hexapod, poses) == side(hexapod, hexapod.home)]
     found = fx.forward_kinematics(hexapod, fx.inverse_kinematics(hexapod, poses))
@@ -177,7 +178,7 @@ def test_many_poses_of_homes_side_come_back_on_it(name):
 
 
 def test_a_bad_row_does_not_stop_a_batch():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     pose = fx.Pose.from_rpy(0.1, 0, 2.4, pitch=3, degrees=True)
     good = fx.inverse_kinematics(hexapod, pose)
     rows = np.stack([good, np.ones(6), good * NAN, good - 10, good])
@@ -193,14 +194,14 @@ def test_a_bad_row_does_not_stop_a_batch():
 
 
 def test_a_batch_without_rows():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     assert fx.forward_kinematics(hexapod, np.empty((0, 6))).shape == (0,)
 
 
 def test_a_found_pose_is_a_pose():
     import pickle
 
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     found = fx.forward_kinematics(hexapod, fx.inverse_kinematics(hexapod))
     again = pickle.loads(pickle.dumps(found))
     assert again == found

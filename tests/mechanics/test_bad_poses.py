@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import MACHINES, center
 
 import flexapod as fx
 
-HEXAPOD = fx.load("motion-base")
+HEXAPOD = plain_machine("motion-base")
 HOME = center(HEXAPOD)
 MEETING = HEXAPOD.base_joints[2] - HEXAPOD.platform_joints[2]  # the third leg's joints at one point
 NAN, INF = float("nan"), float("inf")
@@ -224,7 +225,7 @@ def test_a_bad_pose_in_a_batch_is_outside_the_limits():
 @pytest.mark.parametrize("name", ["motion-base", "precision-positioner", "cubic-isolator"])
 @pytest.mark.parametrize("call", [fx.hold, fx.inverse_dynamics, fx.linearise])
 def test_singular_pose(name, call):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     x, y, z = center(hexapod).position
     with refused(fx.SingularPoseError, "at this pose", "H is singular", "Choose another pose"):
         call(hexapod, fx.Pose.from_rpy(x, y, z, yaw=np.pi / 2))
@@ -234,7 +235,7 @@ def test_singular_pose(name, call):
 @pytest.mark.parametrize("start", [False, True])
 def test_lengths_that_admit_no_pose(name, start):
     """One leg ten times as long as the others: the triangle of legs cannot close."""
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     lengths = fx.inverse_kinematics(hexapod, center(hexapod)) * [10, 1, 1, 1, 1, 1]
     parts = "leg lengths", "admit no pose", "misses a length by", "m; check the lengths"
     with refused(fx.KinematicsError, *parts) as caught:
@@ -245,7 +246,7 @@ def test_lengths_that_admit_no_pose(name, start):
 
 
 def test_no_equilibrium():
-    isolator = fx.load("cubic-isolator")
+    isolator = plain_machine("cubic-isolator")
     with pytest.raises((fx.SingularPoseError, fx.KinematicsError), match=r"Pose\(x=") as caught:
         fx.static_equilibrium(isolator, [0.13] * 6, start=center(isolator), force=[0, 0, -1e4])
     assert "stiffen the legs" in str(caught.value)

@@ -5,11 +5,12 @@ import inspect
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from tests.helpers.plain import plain_machine
 from tests.helpers.public import FUNCTIONS, PUBLIC
 
 import flexapod as fx
 
-MACHINE = fx.load("motion-base")
+MACHINE = plain_machine("motion-base")
 HOME = MACHINE.home
 SIX = [0.1, -0.05, 2.4, 0.02, -0.03, 0.1]
 POSE = fx.Pose.from_rpy(*SIX)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.mechanics.cautions import NEAR_SINGULAR, singularity
@@ -25,7 +26,7 @@ def test_report_and_page_give_the_same_cautions(name, yaw, code):
     pytest.importorskip("starlette")
     from flexapod.web import requests, state
 
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     six = [*fx.home_pose(hexapod).position, 0.0, 0.0, yaw]
     found = gather(hexapod, fx.Pose.from_rpy(*six[:3], 0, 0, np.radians(yaw)))
     shown = state.snapshot(requests.question({"design": hexapod.to_toml(), "pose": six}))

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from tests.helpers.plain import plain_machine
 from tests.helpers.states import appendix_a, draw_state, perturbed
 from tests.helpers.support import apart, relative
 from tests.oracles.closed_chain import ClosedChain, bench_constraint_dynamics
@@ -53,7 +54,7 @@ def test_engine_reproduces_golden(case, measured):
 def test_forward_dynamics_agrees_with_engine(name, block, measured):
     """200 states in all, half of them of the packaged designs, half of perturbed ones with strong friction."""
     rng = np.random.default_rng([2007, block])
-    packaged = fx.load(name)
+    packaged = plain_machine(name)
     for hexapod in [packaged] * 10 + [perturbed(packaged, rng) for _ in range(10)]:
         state = draw_state(hexapod, rng)
         expected = ClosedChain(hexapod).acceleration(state.platform, state.base, **state.loads)
@@ -67,7 +68,7 @@ def test_forward_dynamics_agrees_with_engine(name, block, measured):
 def test_equations_of_motion_agree_with_engine(name, measured):
     rng = np.random.default_rng(34)
     for _ in range(10):
-        hexapod = perturbed(fx.load(name), rng)
+        hexapod = perturbed(plain_machine(name), rng)
         state, chain = draw_state(hexapod, rng), ClosedChain(hexapod)
         equations = fx.equations_of_motion(hexapod, state.platform, base=state.base, joint="universal")
         measured("motion/J_p", relative(equations.J_p, chain.mass_matrix(state.platform, state.base)), 1e-11)
@@ -79,7 +80,7 @@ def test_equations_of_motion_agree_with_engine(name, measured):
 def test_joint_reactions_agree_with_engine(name, measured):
     rng = np.random.default_rng(12)
     for _ in range(10):
-        hexapod = perturbed(fx.load(name), rng)
+        hexapod = perturbed(plain_machine(name), rng)
         state, chain = draw_state(hexapod, rng), ClosedChain(hexapod)
         expected = chain.joint_forces(state.platform, state.base, **state.loads)
         linear, angular = chain.acceleration(state.platform, state.base, **state.loads)
@@ -99,7 +100,7 @@ def test_joint_reactions_agree_with_engine(name, measured):
 def test_moment_in_the_prismatic_pair_depends_on_the_section(name):
     """Moving the section along the leg changes the moment by the lever of the force."""
     rng = np.random.default_rng(13)
-    hexapod = perturbed(fx.load(name), rng)
+    hexapod = perturbed(plain_machine(name), rng)
     state = draw_state(hexapod, rng)
     near, far = (
         fx.joint_reactions(hexapod, state.platform, base=state.base, leg_force=state.leg_force, section=f)
@@ -115,7 +116,7 @@ def test_moment_in_the_prismatic_pair_depends_on_the_section(name):
 def test_energies_agree_with_engine(name, measured):
     rng = np.random.default_rng(14)
     for _ in range(10):
-        hexapod = perturbed(fx.load(name), rng)
+        hexapod = perturbed(plain_machine(name), rng)
         state, chain = draw_state(hexapod, rng), ClosedChain(hexapod)
         found = fx.energy(hexapod, state.platform, base=state.base)
         # Sums of positive terms (or nearly so: the paper's leg inertias are not) of a few dozen products.

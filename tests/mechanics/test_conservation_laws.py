@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from scipy.spatial.transform import Rotation
 from tests.helpers.drawn import Situation, machines, seeds, situations, with_round_legs
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import (
     EPS,
     JOINTS,
@@ -329,7 +330,7 @@ def _leg_axes(S, k):
 @pytest.mark.parametrize("name", ["precision-positioner", "cubic-isolator"])
 def test_symmetric_machine_has_double_modes(name, joint):
     """Three-fold symmetry about z: modes in x and y, roll and pitch, come in pairs."""
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     omega = fx.natural_modes(hexapod, center(hexapod), joint=joint).omega
     pairs = fx.mechanics.near_repeated(omega, gap=1e-3)
     assert len([p for p in pairs if np.isclose(*omega[list(p)], rtol=1e-12, atol=0)]) == 2  # eps times cond(B), 1e2
@@ -341,7 +342,7 @@ def test_symmetric_machine_has_double_modes(name, joint):
 @pytest.mark.parametrize("name", MACHINES)
 def test_joint_models_agree_where_legs_stand_across_their_axes(name, measured):
     """tau = 0: with k normal to every leg and a still base, the exact model has no spin along the leg."""
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     pose = center(hexapod)
     legs = pose.position + hexapod.platform_joints @ pose.matrix.T - hexapod.base_joints
     crosswise = hexapod.replace({"base.universal_axes": np.cross(legs, [0.3, 0.5, 1.0])})

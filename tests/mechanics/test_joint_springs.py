@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from scipy.spatial.transform import Rotation
 from tests.helpers.drawn import machine, machines, seeds, sprung
+from tests.helpers.plain import plain_machine
 from tests.helpers.states import State, draw_state, perturbed
 from tests.helpers.support import JOINTS, away, difference, displaced, relative, size
 from tests.oracles import chain_springs
@@ -85,7 +86,7 @@ def test_two_hundred_machines_have_the_engines_joint_moments(block, measured):
 def test_joints_carry_what_the_engine_says(name, measured):
     rng = np.random.default_rng(12)
     for _ in range(10):
-        hexapod = perturbed(fx.load(name), rng)
+        hexapod = perturbed(plain_machine(name), rng)
         home = draw_state(hexapod, rng, moving_base=False).platform.pose
         hexapod = sprung(hexapod.replace({"home.position": home.position, "home.orientation": home.rpy}), rng)
         state, chain = draw_state(hexapod, rng), ClosedChain(hexapod)
@@ -244,7 +245,7 @@ def test_a_turned_and_moved_machine_bears_the_same(joint):
 
 def test_a_suspension_alone_holds_the_platform_at_its_own_frequencies():
     """Legs of nearly no stiffness and no mass: the platform on the suspension, at its mass centre."""
-    hexapod = fx.load("cubic-isolator")
+    hexapod = plain_machine("cubic-isolator")
     k = np.array([1e4, 2e4, 4e4, 50.0, 70.0, 90.0])
     inertia = np.diag([0.02, 0.03, 0.05])
     alone = hexapod.replace(
@@ -269,7 +270,7 @@ def test_flexures_of_upright_legs_are_guided_beams():
     angle = np.radians([0, 60, 120, 180, 240, 300])
     ring = np.stack([0.3 * np.cos(angle), 0.3 * np.sin(angle), np.zeros(6)], axis=1)
     L, mass, inertia, k_u, k_s, k_t = 0.5, 10.0, np.array([0.4, 0.5, 0.6]), 15.0, 20.0, 10.0
-    upright = fx.load("cubic-isolator").replace(
+    upright = plain_machine("cubic-isolator").replace(
         {
             "base.joints": ring,
             "platform.joints": ring,

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 from tests.helpers.drawn import machines, seeds, situations
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import EPS, MACHINES, apart, away, center, displaced, relative, size
 
 import flexapod as fx
@@ -91,7 +92,7 @@ def test_lengths_are_distances_between_joints(case, measured):
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_condition_number_with_a_characteristic_length(name):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     pose = away(hexapod)
     H = fx.force_transformation(hexapod, pose)
     assert fx.condition_number(hexapod, pose) == pytest.approx(np.linalg.cond(H), rel=1e-12)
@@ -133,7 +134,7 @@ def assert_same_pose(hexapod, found, pose):
 @pytest.mark.parametrize("name", MACHINES)
 def test_forward_kinematics_from_a_start(name):
     """Many poses of every packaged machine, from starts some way off."""
-    hexapod, rng = fx.load(name), np.random.default_rng(6)
+    hexapod, rng = plain_machine(name), np.random.default_rng(6)
     for _ in range(40):
         pose = nearby(hexapod, rng, 0.08, 0.15)
         start = displaced(pose, np.concatenate([0.03 * size(hexapod) * rng.normal(size=3), 0.05 * rng.normal(size=3)]))
@@ -144,7 +145,7 @@ def test_forward_kinematics_from_a_start(name):
 @pytest.mark.parametrize("name", MACHINES)
 def test_forward_kinematics_without_a_start(name, measured):
     """The assembly found has the lengths; near home it is the one near home."""
-    hexapod, rng = fx.load(name), np.random.default_rng(7)
+    hexapod, rng = plain_machine(name), np.random.default_rng(7)
     for _ in range(40):
         pose = nearby(hexapod, rng, 0.1, 0.3)
         lengths = fx.inverse_kinematics(hexapod, pose)
@@ -156,7 +157,7 @@ def test_forward_kinematics_without_a_start(name, measured):
 
 @pytest.mark.parametrize("name", ["motion-base", "precision-positioner", "mukherjee-i"])
 def test_forward_kinematics_without_a_home(name):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     lengths = fx.inverse_kinematics(hexapod, away(hexapod))
     found = fx.forward_kinematics(hexapod.replace({"home": None}), lengths)
     np.testing.assert_allclose(fx.inverse_kinematics(hexapod, found), lengths, rtol=2e-11)
@@ -172,7 +173,7 @@ def test_forward_kinematics_of_drawn_machines(hexapod, seed):
 
 
 def test_forward_kinematics_of_many_with_one_start_or_one_each():
-    hexapod, rng = fx.load("motion-base"), np.random.default_rng(8)
+    hexapod, rng = plain_machine("motion-base"), np.random.default_rng(8)
     poses = fx.Pose(center(hexapod).position + rng.uniform(-0.2, 0.2, (2, 3, 3)))
     lengths = fx.inverse_kinematics(hexapod, poses)
     for start in (None, center(hexapod), poses):
@@ -183,7 +184,7 @@ def test_forward_kinematics_of_many_with_one_start_or_one_each():
 
 def test_forward_kinematics_starts_each_from_its_own():
     """Two assemblies of the same lengths, above and below the base: each start leads to its own."""
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     above = center(hexapod)
     below = fx.Pose(above.position * [1, 1, -1])
     lengths = fx.inverse_kinematics(hexapod, above)
@@ -220,7 +221,7 @@ def test_joint_angles_rebuild_the_leg(case):
 
 
 def test_joint_angles_are_zero_at_home_and_frame_z_is_neutral_without_one():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     for angle in fx.joint_angles(hexapod, center(hexapod)):
         np.testing.assert_allclose(angle, 0, atol=1e-15)
     homeless = fx.joint_angles(hexapod.replace({"home": None}), center(hexapod))
@@ -271,7 +272,7 @@ def test_leg_distance_of_any_two_segments(seed, measured):
         "platform.joints": np.vstack([ends[2:], far + up]),
         "base.universal_axes": np.cross([*legs, *[up] * 4], [0.36, 0.48, 0.8]),
     }
-    found = fx.mechanics.leg_distance(fx.load("motion-base").replace(changes), fx.Pose([0, 0, 0]))
+    found = fx.mechanics.leg_distance(plain_machine("motion-base").replace(changes), fx.Pose([0, 0, 0]))
     # SciPy's minimum of the square is good to about 1e-9.
     measured("geometry/clearance", found - segments_apart(ends[0], legs[0], ends[1], legs[1]), 3e-5)
 
@@ -279,7 +280,7 @@ def test_leg_distance_of_any_two_segments(seed, measured):
 @pytest.mark.parametrize("offset", [0.0, 0.4, 1.0, 1.7])
 def test_leg_distance_of_parallel_legs(offset):
     """Two parallel legs of length 1, 0.3 apart, shifted along each other."""
-    hexapod = fx.load("motion-base").replace({"home": None, "limits": None})
+    hexapod = plain_machine("motion-base").replace({"home": None, "limits": None})
     base = np.array([[0, 0, 0], [0.3, 0, offset], [9, 0, 0], [0, 9, 0], [9, 9, 0], [18, 0, 0]], dtype=float)
     apart = hexapod.replace({"base.joints": base, "platform.joints": base, "base.universal_axes": [[1, 0, 0]] * 6})
     found = fx.mechanics.leg_distance(apart, fx.Pose([0, 0, 1]))
@@ -290,7 +291,7 @@ def test_leg_distance_of_parallel_legs(offset):
 
 
 def test_limits_hold_at_home_and_say_what_is_exceeded():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     assert fx.check_limits(hexapod, center(hexapod)) == (True, ())
     high = displaced(center(hexapod), [0, 0, 0.8, 0, 0, 0])
     ok, exceeded = fx.check_limits(hexapod, high)
@@ -310,7 +311,7 @@ def test_limits_hold_at_home_and_say_what_is_exceeded():
     ],
 )
 def test_each_limit_counts(change, words):
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     pose = fx.Pose.from_rpy(0.3, 0, 2.39, 0, 0, 0.2)
     assert fx.check_limits(hexapod, pose).ok
     ok, exceeded = fx.check_limits(hexapod.replace(change), pose)
@@ -319,7 +320,7 @@ def test_each_limit_counts(change, words):
 
 
 def test_without_limits_everything_is_allowed_and_a_batch_is_checked_pose_by_pose():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     poses = fx.Pose(center(hexapod).position + np.array([[0, 0, 0], [0, 0, 0.8], [0, 0, 0.1]]))
     np.testing.assert_array_equal(fx.check_limits(hexapod, poses).ok, [True, False, True])
     assert fx.check_limits(hexapod.replace({"limits": None}), poses).ok.all()

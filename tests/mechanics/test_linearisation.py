@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from tests.helpers.drawn import machines
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import EPS, JOINTS, MACHINES, apart, away, center, difference, displaced, relative, size
 
 import flexapod as fx
@@ -14,7 +15,7 @@ both_models = pytest.mark.parametrize("joint", JOINTS)
 
 def soft(name: str) -> fx.Hexapod:
     """The machine with legs so soft that gravity and preload matter, and with all frictions."""
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     weight, length = 10 * hexapod.platform_mass, size(hexapod)
     damping = {"prismatic": 0.3, "universal": 0.1 * length**2, "spherical": 0.2 * length**2}
     c = weight / np.sqrt(10 * length)
@@ -160,7 +161,7 @@ def test_frequencies_approach_eq_5_as_legs_stiffen(name, joint, measured):
 
 def test_gravity_topples_a_soft_machine_that_eq_5_calls_stable():
     """A tall mass on soft legs, an inverted pendulum: its tangent loses all stiffness where Eq. 5 sees nothing."""
-    tall = fx.load("cubic-isolator").replace(
+    tall = plain_machine("cubic-isolator").replace(
         {"platform.mass_center": [0, 0, 0.5], "legs.lower": None, "legs.upper": None, "legs.damping": None}
     )
     pose = center(tall)
@@ -204,7 +205,7 @@ def test_damping_ratio_of_massless_legs_in_closed_form(measured):
     """C = c H H^T and K = k H H^T: every damping ratio is c omega / (2 k)."""
     k, c = 1e4, 12.0
     changes = {"gravity": [0, 0, 0], "legs.lower": None, "legs.upper": None, "legs.stiffness": k}
-    hexapod = fx.load("cubic-isolator").replace(changes | {"legs.damping.prismatic": c})
+    hexapod = plain_machine("cubic-isolator").replace(changes | {"legs.damping.prismatic": c})
     pose = away(hexapod)
     modes = fx.linearise(hexapod, pose).modes()
     omega = fx.natural_modes(hexapod, pose).omega
@@ -220,7 +221,7 @@ def test_damping_ratio_of_massless_legs_in_closed_form(measured):
 def test_overdamped_modes_are_given_by_their_slow_pole():
     k, c = 1e4, 4000.0
     changes = {"gravity": [0, 0, 0], "legs.lower": None, "legs.upper": None, "legs.stiffness": k}
-    hexapod = fx.load("cubic-isolator").replace(changes | {"legs.damping.prismatic": c})
+    hexapod = plain_machine("cubic-isolator").replace(changes | {"legs.damping.prismatic": c})
     modes = fx.linearise(hexapod, away(hexapod)).modes()
     omega = fx.natural_modes(hexapod, away(hexapod)).omega
     ratio = c * omega / (2 * k)
@@ -290,7 +291,7 @@ def test_state_space_is_the_second_order_equation(name, gravity, measured):
 
 
 def test_state_space_names_its_signals():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     t = fx.linearise(hexapod, center(hexapod))
     system, plain = t.to_control(), t.state_space()
     assert (system.nstates, system.ninputs, system.noutputs) == (12, 24, 24)
@@ -321,7 +322,7 @@ def test_slow_base_carries_the_platform_along(hexapod):
 @pytest.mark.parametrize("name", MACHINES)
 def test_a_leg_command_moves_the_platform_as_kinematics_does(name):
     """Slow commands of leg length on stiff legs: the platform goes where the lengths say."""
-    hexapod = fx.load(name).replace({"gravity": [0, 0, 0]})
+    hexapod = plain_machine(name).replace({"gravity": [0, 0, 0]})
     s = fx.linearise(hexapod, away(hexapod)).state_space()
     still = -s.C @ np.linalg.solve(s.A, s.B) + s.D
     H = fx.force_transformation(hexapod, away(hexapod))

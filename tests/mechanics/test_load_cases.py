@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 from scipy.spatial.transform import Rotation
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.mechanics import gravity_at
@@ -112,7 +113,7 @@ def test_stiffness_is_that_of_differences(machine, axes):
 
 @pytest.mark.parametrize("reference", [None, 0])
 def test_derivatives_are_those_of_differences(reference):
-    machine = fx.load("precision-positioner")  # legs with mass
+    machine = plain_machine("precision-positioner")  # legs with mass
     given = {"gravity": gravity_at(np.radians([90, 25])), "force": [[0, 0, 0], [4.0, 3, 2]], "point": POINT / 10}
     found = fx.load_cases(machine, **given, reference=reference).isel(case=1)
 
@@ -147,7 +148,7 @@ def test_derivatives_are_those_of_differences(reference):
 
 
 def test_reactions_balance_the_weight_and_the_load():
-    machine = fx.load("motion-base")
+    machine = plain_machine("motion-base")
     force = np.array([1000.0, 2000, -500])
     found = fx.load_cases(machine, gravity=gravity_at([1.2, 0.3]), force=force, axes="base")
     mass = machine.platform_mass + machine.legs.lower.mass.sum() + machine.legs.upper.mass.sum()
@@ -210,7 +211,7 @@ def test_what_is_refused(machine, more, error, words):
 
 def test_derivatives_under_a_stiffness_law_and_springs_in_joints():
     """Legs of screws, whose stiffness depends on their commanded lengths, with stiff joints and springs in series."""
-    machine = fx.load("precision-positioner").replace(
+    machine = plain_machine("precision-positioner").replace(
         {
             "legs.stiffness": None,
             "legs.stiffness_law": {"kind": "screw", "fixed_N_per_um": 60, "axial_rigidity": 4e6, "zero_length": 0.1},

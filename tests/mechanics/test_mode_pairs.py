@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.optimize import linear_sum_assignment
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import MACHINES, away
 
 import flexapod as fx
@@ -10,7 +11,7 @@ from flexapod.mechanics.at_rest import pose_state
 from flexapod.mechanics.linearisation import DampedModes
 from flexapod.mechanics.modes import NaturalModes
 
-HEAVY = fx.load("cubic-isolator").replace({"platform.mass": 200})
+HEAVY = plain_machine("cubic-isolator").replace({"platform.mass": 200})
 TILTED = fx.Pose.from_rpy(0.004, 0, 0.0346, 0, 2, 0, degrees=True)
 
 
@@ -52,7 +53,7 @@ def test_among_repeated_modes_the_one_that_moves_alike():
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_without_gravity_and_friction_every_mode_is_its_own(name):
-    hexapod = fx.load(name).replace({"gravity": [0, 0, 0], "legs.damping": None})
+    hexapod = plain_machine(name).replace({"gravity": [0, 0, 0], "legs.damping": None})
     pose = away(hexapod)
     pairs = fx.mechanics.pair_modes(fx.natural_modes(hexapod, pose), fx.linearise(hexapod, pose).modes())
     assert pairs.damped.tolist() == list(range(6))
@@ -82,7 +83,7 @@ def test_mixtures_of_repeated_modes_are_no_strangers():
 
 def test_two_real_poles_of_one_mode_are_one_mode():
     """Overdamped along all directions: each of the six modes keeps its slower pole, and none is told twice."""
-    hexapod = fx.load("cubic-isolator").replace({"gravity": [0, 0, 0], "legs.damping": None})
+    hexapod = plain_machine("cubic-isolator").replace({"gravity": [0, 0, 0], "legs.damping": None})
     linear = fx.linearise(hexapod)
     omega, shape = fx.natural_modes(hexapod)
     over = np.array([1.2, 1.5, 1.1, 3.0, 1.0001, 2.0])  # damping ratios: poles -omega (ratio -+ sqrt(ratio^2 - 1))
@@ -97,7 +98,7 @@ def test_two_real_poles_of_one_mode_are_one_mode():
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_undamped_machines_have_damping_ratios_of_zero(name):
-    hexapod = fx.load(name).replace({"legs.damping": None})
+    hexapod = plain_machine(name).replace({"legs.damping": None})
     for pose in (away(hexapod), away(hexapod, 0.01)):
         modes = fx.linearise(hexapod, pose).modes()
         vibrates = modes.pole.imag > 0
@@ -130,7 +131,7 @@ def test_heave_that_falls_is_a_fall_along_z():
 
 @pytest.mark.parametrize("name", ["motion-base", "precision-positioner"])
 def test_a_singular_pose_is_one_thing_everywhere(name, result):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     six = [*fx.home_pose(hexapod).position, 0.0, 0.0, 90.0]
     state = pose_state(hexapod, fx.Pose.from_rpy(*six[:3], 0, 0, np.pi / 2))
     assert (state.stability, state.condition, state.modes.omega[0], state.tangent) == ("singular", np.inf, 0, None)
@@ -148,7 +149,7 @@ def test_a_singular_pose_is_one_thing_everywhere(name, result):
 
 
 def test_a_sweep_tells_a_singular_pose_as_the_others_do():
-    hexapod = fx.load("precision-positioner")
+    hexapod = plain_machine("precision-positioner")
     six = np.array([*fx.home_pose(hexapod).position, 0, 0, 0.0])
     poses = np.stack([six, six])
     poses[1, 5] = np.pi / 2

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from tests.helpers.drawn import machines, situations
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import EPS, JOINTS, MACHINES, apart, away, center, difference, displaced, size
 from tests.oracles.exact import natural_frequencies
 
@@ -50,7 +51,7 @@ def test_energy_shares_sum_to_one(joint, case):
 
 
 def test_energy_shares_of_known_machines():
-    cube = fx.load("cubic-isolator").replace({"legs.lower": None, "legs.upper": None})
+    cube = plain_machine("cubic-isolator").replace({"legs.lower": None, "legs.upper": None})
     shares = fx.mechanics.energy_shares(cube, center(cube))
     np.testing.assert_allclose(shares.kinetic[0], 1, rtol=1e-13)  # massless legs carry none
     omega = fx.natural_modes(cube, center(cube)).omega
@@ -72,7 +73,7 @@ def test_energy_shares_of_known_machines():
 @pytest.mark.parametrize("off", [1e-2, 1e-4, 1e-6])
 def test_frequencies_near_a_singular_pose_against_50_digits(name, joint, off, measured):
     """Turned to within `off` degrees of the singular pose: cond(B) up to 1e8 and more."""
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     pose = turned(hexapod, 90 - off)
     found = fx.natural_modes(hexapod, pose, joint=joint).omega
     expected = [float(w) for w in natural_frequencies(hexapod, pose, joint)]
@@ -85,7 +86,11 @@ def test_frequencies_near_a_singular_pose_against_50_digits(name, joint, off, me
 
 def test_near_singular_conditions_span_what_is_promised():
     conditions = [
-        np.divide(*fx.natural_modes(fx.load("motion-base"), turned(fx.load("motion-base"), 90 - off)).omega[[-1, 0]])
+        np.divide(
+            *fx.natural_modes(plain_machine("motion-base"), turned(plain_machine("motion-base"), 90 - off)).omega[
+                [-1, 0]
+            ]
+        )
         for off in (1e-2, 1e-4, 1e-6)
     ]
     assert conditions[0] < 2e4
@@ -95,7 +100,7 @@ def test_near_singular_conditions_span_what_is_promised():
 @both_models
 @pytest.mark.parametrize("name", MACHINES)
 def test_frequencies_at_ordinary_poses_against_50_digits(name, joint, measured):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     for pose in (center(hexapod), away(hexapod)):
         found = fx.natural_modes(hexapod, pose, joint=joint).omega
         expected = [float(w) for w in natural_frequencies(hexapod, pose, joint)]
@@ -105,7 +110,7 @@ def test_frequencies_at_ordinary_poses_against_50_digits(name, joint, measured):
 @both_models
 @pytest.mark.parametrize("name", ["motion-base", "precision-positioner", "cubic-isolator"])
 def test_index_is_zero_at_a_singular_pose(name, joint):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     omega = fx.natural_modes(hexapod, turned(hexapod, 90), joint=joint).omega
     assert omega[0] < 100 * EPS * omega[-1]  # rounding of B
     assert omega[1] > 1e-3 * omega[-1]
@@ -149,7 +154,7 @@ def directions(shape):
 @both_models
 @pytest.mark.parametrize("name", ["mukherjee-i", "motion-base"])
 def test_sensitivities_are_derivatives(name, joint, measured):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     pose = away(hexapod)
     found = fx.frequency_sensitivity(hexapod, pose, joint=joint)
     omega, length = fx.natural_modes(hexapod, pose, joint=joint).omega, size(hexapod)
@@ -173,7 +178,7 @@ def test_sensitivities_are_derivatives(name, joint, measured):
 @both_models
 @pytest.mark.parametrize("name", ["mukherjee-i", "motion-base"])
 def test_sensitivities_to_inertia_and_pose(name, joint, measured):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     pose = away(hexapod)
     found = fx.frequency_sensitivity(hexapod, pose, joint=joint)
     omega = fx.natural_modes(hexapod, pose, joint=joint).omega
@@ -206,7 +211,7 @@ def test_sensitivities_obey_the_scaling_laws(hexapod, measured):
 
 
 def test_sensitivity_at_a_singular_pose_is_nan_only_for_the_lost_frequency():
-    hexapod = fx.load("cubic-isolator").replace({"legs.lower": None, "legs.upper": None})
+    hexapod = plain_machine("cubic-isolator").replace({"legs.lower": None, "legs.upper": None})
     found = fx.frequency_sensitivity(hexapod, turned(hexapod, 90))
     assert np.isfinite(found.platform_mass[1:]).all()
 
@@ -216,7 +221,7 @@ def test_sensitivity_at_a_singular_pose_is_nan_only_for_the_lost_frequency():
 
 def test_modes_of_a_cube_in_words():
     """Massless legs, mass centre at the cube's centre: pure rotations, and translations alike in all directions."""
-    hexapod = fx.load("cubic-isolator").replace(
+    hexapod = plain_machine("cubic-isolator").replace(
         {"legs.lower": None, "legs.upper": None, "platform.inertia": np.diag([0.25, 0.28, 0.4])}
     )
     found = fx.describe_modes(hexapod, center(hexapod))
@@ -235,7 +240,7 @@ def test_modes_of_a_cube_in_words():
 
 @pytest.mark.parametrize("name", ["precision-positioner", "cubic-isolator"])
 def test_yaw_of_a_symmetric_machine_turns_about_its_axis(name):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     found = {m.dominant: m for m in fx.describe_modes(hexapod, center(hexapod))}
     yaw, heave = found["yaw"], found["z"]
     np.testing.assert_allclose(np.abs(yaw.axis), [0, 0, 1], atol=1e-8)  # modes are exact to eps cond(B)

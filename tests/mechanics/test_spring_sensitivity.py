@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 
-PLAIN = fx.load("precision-positioner")
+PLAIN = plain_machine("precision-positioner")
 SPRUNG = PLAIN.replace(
     {
         "legs.series_stiffness": [[9e7, 3e7], [8e7, 3e7], [9e7, 4e7], [7e7, 3e7], [9e7, 3e7], [9e7, 2e7]],

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from scipy.optimize import root
 from tests.helpers.drawn import machines, seeds
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import EPS, JOINTS, MACHINES, away, center, displaced, size
 
 import flexapod as fx
@@ -27,7 +28,7 @@ def load_of(hexapod) -> dict:
 @pytest.mark.parametrize("name", MACHINES)
 def test_hold_then_settle_comes_back(name, base):
     """The unstretched lengths that hold a pose under a load bring the platform there from some way off."""
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     pose = away(hexapod) if base is None else on(base, away(hexapod))
     held = fx.hold(hexapod, pose, base=base, **load_of(hexapod))
     start = displaced(pose, 0.03 * np.array([*size(hexapod) * np.array([1, -1, 0.5]), 1, 0.5, -1]))
@@ -50,7 +51,7 @@ def _scaled(K, length):
 @pytest.mark.parametrize("name", MACHINES)
 def test_settling_without_a_start(name):
     """The start is then the pose with these unstretched lengths, on the base wherever it is."""
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     held = fx.hold(hexapod, on(TILTED, away(hexapod, 0.02)), base=TILTED)
     found = fx.static_equilibrium(hexapod, held.unstretched_length, base=TILTED)
     np.testing.assert_allclose(found.pose.position, held.pose.position, atol=1e-9 * size(hexapod))
@@ -86,7 +87,7 @@ def test_hold_is_inverse_dynamics_at_rest(joint, hexapod):
 
 def test_a_vertical_load_on_a_symmetric_machine_is_shared():
     """Six equal legs at equal slopes: F = m g / (6 sin slope), compression positive."""
-    hexapod = fx.load("motion-base").replace({"legs.lower": None, "legs.upper": None})
+    hexapod = plain_machine("motion-base").replace({"legs.lower": None, "legs.upper": None})
     held = fx.hold(hexapod, center(hexapod))
     slope = fx.force_transformation(hexapod, center(hexapod))[2]
     np.testing.assert_allclose(held.leg_force, 4000 * 9.81 / 6 / slope, rtol=1e-12)
@@ -94,7 +95,7 @@ def test_a_vertical_load_on_a_symmetric_machine_is_shared():
 
 
 def test_hold_of_many_poses_gives_nan_where_no_forces_do():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     turned = fx.Pose.from_rpy(0, 0, 2.39, 0, 0, np.radians([0, 90, 10]))
     held = fx.hold(hexapod, turned)
     assert np.isnan(held.leg_force[1]).all()
@@ -105,7 +106,7 @@ def test_hold_of_many_poses_gives_nan_where_no_forces_do():
 
 def test_newton_converges_where_scipy_does(measured):
     """A soft machine that moves a tenth of its size under load, against SciPy's root of the accelerations."""
-    hexapod = fx.load("cubic-isolator")
+    hexapod = plain_machine("cubic-isolator")
     lengths = np.full(6, 0.132)
     load = {"force": [15.0, 5.0, -20.0], "moment": [0.5, -0.3, 0.4]}
     found = fx.static_equilibrium(hexapod, lengths, start=center(hexapod), **load)
@@ -122,7 +123,7 @@ def test_newton_converges_where_scipy_does(measured):
 
 
 def test_a_load_that_no_leg_can_carry_is_refused_with_the_pose_and_a_remedy():
-    hexapod = fx.load("cubic-isolator")
+    hexapod = plain_machine("cubic-isolator")
     with pytest.raises((fx.KinematicsError, fx.SingularPoseError), match=r"Pose\(x=.*(reduce the load|stiffen)"):
         fx.static_equilibrium(hexapod, np.full(6, 0.13), start=center(hexapod), force=[0, 0, -5000.0])
 

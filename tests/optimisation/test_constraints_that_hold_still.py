@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.design.layout import PLACES
@@ -12,7 +13,7 @@ OPTIONS = {"trials": 0, "samples": 512, "verify": 2**13}
 
 @pytest.fixture(scope="module")
 def positioner():
-    return fx.load("precision-positioner")
+    return plain_machine("precision-positioner")
 
 
 def half_angles(low, high):

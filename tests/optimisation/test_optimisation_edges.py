@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.design.layout import PLACES
@@ -27,7 +28,7 @@ BOX = fx.Box(x=(-0.01, 0.01), y=0, z=0.25, roll=0, pitch=0, yaw=0)
 
 @pytest.fixture(scope="module")
 def positioner():
-    return fx.load("precision-positioner")
+    return plain_machine("precision-positioner")
 
 
 def problem(hexapod, *variables, aim=None, constraints=()):

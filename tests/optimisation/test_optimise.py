@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import apart
 
 import flexapod as fx
@@ -65,7 +66,7 @@ def many_variables():
 @pytest.fixture(scope="module")
 def somewhere():
     """A map of many variables, a point of it, and poses that move with home."""
-    design = DesignMap(fx.load("precision-positioner"), many_variables())
+    design = DesignMap(plain_machine("precision-positioner"), many_variables())
     rng = np.random.default_rng(5)
     x = design.from_unit(rng.uniform(0.2, 0.8, len(design.names)))[0]
     offsets = rng.uniform(-1, 1, (5, 6)) * np.repeat([0.01, 0.1], 3)
@@ -166,7 +167,7 @@ def test_constraint_slopes_against_differences_and_values_against_the_sweep(kind
 
 def test_slopes_where_frequencies_are_equal(measured):
     """At its centre a cubic hexapod with massless legs and a small inertia has its lowest frequency three times."""
-    hexapod = fx.load("cubic-isolator").replace(
+    hexapod = plain_machine("cubic-isolator").replace(
         {"legs.lower": None, "legs.upper": None, "platform.inertia": (0.1 * np.eye(3)).tolist()}
     )
     pose = fx.home_pose(hexapod)
@@ -205,7 +206,7 @@ def test_slopes_where_frequencies_are_equal(measured):
 
 def test_joint_circles_keep_their_symmetry():
     design = DesignMap(
-        fx.load("motion-base"),
+        plain_machine("motion-base"),
         [fx.optimisation.JointCircle("base", radius=(1, 2), half_angle=(0.05, 0.9), turn=(-2, 2), height=(-0.1, 0.1))],
     )
     np.testing.assert_allclose(design.own()[:2], [1.65, np.arcsin(0.3 / 1.65)], rtol=1e-5)  # as its file says
@@ -344,7 +345,7 @@ def test_the_finish_holds_up_the_pose_that_the_search_missed():
 
 
 def test_clearance_angles_and_deflection_are_kept():
-    start = fx.load("precision-positioner")
+    start = plain_machine("precision-positioner")
     over = fx.Workspace.about_home(0.002, RADIANS(0.5))
     found = fx.optimise(
         start,
@@ -432,7 +433,7 @@ BAD = {
 
 @pytest.mark.parametrize("words", BAD)
 def test_bad_input_is_told_by_name(words):
-    hexapod = fx.load("precision-positioner")
+    hexapod = plain_machine("precision-positioner")
     variables, options = BAD[words](hexapod)
     with pytest.raises((fx.ArgumentError, fx.errors.InfeasibleError)) as error:
         fx.optimise(hexapod, variables, **{"trials": 0, **options})

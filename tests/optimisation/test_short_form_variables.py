@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.design.design_file import template
@@ -9,7 +10,7 @@ from flexapod.errors import ArgumentError
 from flexapod.optimisation.design_map import DesignMap
 from flexapod.optimisation.ensemble import Ensemble
 
-BASE, CUBE = fx.load("motion-base"), fx.load("cubic-isolator")
+BASE, CUBE = plain_machine("motion-base"), plain_machine("cubic-isolator")
 OWN = fx.Hexapod.from_toml(template("own"))
 CASES = {
     "cube": (
@@ -128,7 +129,7 @@ def test_commands_take_the_keys_of_the_file(run, result, tmp_path):
     )  # fmt: skip
     assert code == 0
     (design,) = out.glob("*.toml")
-    better = fx.load(design)
+    better = plain_machine(design)
     assert {form.table for form in better.short_forms} == {form.table for form in OWN.short_forms}
     assert "[platform.circle]" in design.read_text()
     assert fx.stability_index(better) > fx.stability_index(OWN)

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import apart
 
 import flexapod as fx
@@ -36,7 +37,7 @@ def test_many_designs_at_once_are_as_one_by_one(joint, measured):
 
 
 def test_many_designs_at_repeated_frequencies_and_impossible_poses():
-    machine = fx.load("cubic-isolator").replace({"legs.lower": None, "legs.upper": None})
+    machine = plain_machine("cubic-isolator").replace({"legs.lower": None, "legs.upper": None})
     designs = np.tile(machine.packed, (20, 1))
     designs[7, PLACES["platform.mass"]] = np.nan
     home = fx.home_pose(machine)
@@ -49,7 +50,7 @@ def test_many_designs_at_repeated_frequencies_and_impossible_poses():
 
 def test_a_stiffness_common_to_all_legs_has_the_closed_form(measured):
     """omega is proportional to sqrt(K): quantiles, mean and worst case follow from those of K."""
-    machine = fx.load("motion-base")
+    machine = plain_machine("motion-base")
     found = fx.robustness(machine, fx.Uncertain("legs.stiffness", 0.2, each=False), samples=2**12)
     nominal = fx.stability_index(machine, fx.home_pose(machine))
     assert found.nominal == pytest.approx(nominal, rel=1e-12)
@@ -65,7 +66,7 @@ def test_a_stiffness_common_to_all_legs_has_the_closed_form(measured):
     ("distribution", "deviation"), [("normal", 0.05), ("triangular", 0.05 / np.sqrt(6)), ("lognormal", 0.05)]
 )
 def test_distributions_have_their_mean_and_deviation(distribution, deviation):
-    machine = fx.load("motion-base")
+    machine = plain_machine("motion-base")
     uncertain = [fx.Uncertain("platform.mass", 0.05, distribution), fx.Uncertain("legs.stiffness", 0.05, distribution)]
     found = fx.robustness(machine, uncertain, samples=2**13)
     mass = found.samples["platform.mass"].values / 4000
@@ -77,7 +78,7 @@ def test_distributions_have_their_mean_and_deviation(distribution, deviation):
 
 
 def test_a_payload_is_a_point_mass():
-    machine = fx.load("motion-base")
+    machine = plain_machine("motion-base")
     ensemble = Ensemble(
         machine,
         [
@@ -101,7 +102,7 @@ def test_a_payload_is_a_point_mass():
 
 
 def test_worst_case_is_below_every_sample_and_at_a_corner():
-    machine = fx.load("precision-positioner")
+    machine = plain_machine("precision-positioner")
     uncertain = [fx.Uncertain("legs.stiffness", 0.1), fx.Uncertain("platform.mass_center_mm[2]", 20, relative=False)]
     box = fx.Workspace.about_home(0.005, np.radians(1))
     found = fx.robustness(machine, uncertain, box, samples=512, pose_samples=32)
@@ -118,7 +119,7 @@ def test_worst_case_is_below_every_sample_and_at_a_corner():
 def test_sobol_indices_of_a_sum_of_known_parts(measured):
     """For small spreads ln(omega) is linear: with all stiffnesses K and all masses strayed alike, omega ~ sqrt(K/M), so
     the shares of the variance are those of K and M; friction has none."""
-    machine = fx.load("motion-base").replace(
+    machine = plain_machine("motion-base").replace(
         {"legs.lower": None, "legs.upper": None, "platform.mass_center": [0, 0, 0]}
     )
     uncertain = [
@@ -161,16 +162,17 @@ BAD = {
 @pytest.mark.parametrize("words", BAD)
 def test_bad_input_is_told_by_name(words):
     with pytest.raises(fx.ArgumentError) as error:
-        fx.robustness(fx.load("motion-base"), BAD[words], samples=16)
+        fx.robustness(plain_machine("motion-base"), BAD[words], samples=16)
     assert words in str(error.value)
     with pytest.raises(fx.ArgumentError, match="power of two"):
-        fx.robustness(fx.load("motion-base"), [fx.Uncertain("legs.stiffness", 0.1)], samples=16, sensitivity=100)
+        fx.robustness(plain_machine("motion-base"), [fx.Uncertain("legs.stiffness", 0.1)], samples=16, sensitivity=100)
 
 
 def test_the_same_seed_gives_the_same_shares_and_confidence():
     parts = [fx.Uncertain("legs.stiffness", 0.1), fx.Uncertain("platform.mass", 0.1)]
     first, again = (
-        fx.robustness(fx.load("motion-base"), parts, samples=16, sensitivity=16, seed=0).sensitivity for _ in range(2)
+        fx.robustness(plain_machine("motion-base"), parts, samples=16, sensitivity=16, seed=0).sensitivity
+        for _ in range(2)
     )
     assert first.identical(again)
 
@@ -178,7 +180,7 @@ def test_the_same_seed_gives_the_same_shares_and_confidence():
 @pytest.mark.parametrize(("amount", "worst"), [(0.0075, 20.787983), (0.01, 17.932368), (0.015, 11.304789)])
 def test_the_worst_case_of_many_joints_is_the_corner_that_hundreds_of_descents_find(amount, worst):
     """The corner by 600 greedy descents; eight neighbouring starts ended up to 12 % above it."""
-    machine = fx.load("cubic-isolator")
+    machine = plain_machine("cubic-isolator")
     joints = [fx.Uncertain(f"{plate}.joints", amount, relative=False) for plate in ("base", "platform")]
     found = fx.robustness(machine, joints, samples=1024)
     assert found.worst == pytest.approx(worst, rel=1e-6)
@@ -204,7 +206,7 @@ def test_the_worst_case_is_at_least_as_low_as_every_corner(seed):
 
 
 def test_few_parameters_have_all_their_corners():
-    machine = fx.load("precision-positioner")
+    machine = plain_machine("precision-positioner")
     straying = [fx.Uncertain("base.joints_mm[:][2]", 20, relative=False), fx.Uncertain("platform.mass", 0.1)]
     found = fx.robustness(machine, straying, samples=2)
     corners = np.array(np.meshgrid(*[[0.0, 1.0]] * 7)).reshape(7, -1).T
@@ -215,7 +217,7 @@ def test_few_parameters_have_all_their_corners():
 
 
 def test_values_are_in_the_units_of_their_keys_and_what_was_assumed_is_told():
-    machine = fx.load("motion-base")
+    machine = plain_machine("motion-base")
     payload = fx.optimisation.Payload((0, 500), (0.0, (-0.5, 0.5), 1.2))
     straying = [
         fx.Uncertain("platform.mass_t", 0.5, "normal", relative=False),
@@ -242,7 +244,7 @@ def test_values_are_in_the_units_of_their_keys_and_what_was_assumed_is_told():
 
 def test_poses_beyond_the_limits_do_not_count_unless_all_are_asked_for(result, run, tmp_path):
     """The least of a sweep over the same poses, whose legs are softer by a fifth at the worst."""
-    machine = fx.load("motion-base")
+    machine = plain_machine("motion-base")
     workspace = fx.Workspace.about_home(0.3, np.radians(15))
     soft = fx.Uncertain("legs.stiffness", 0.2, each=False)
     swept = fx.sweep(machine, workspace.rows(np.concatenate([machine.home.position, machine.home.rpy]), 300, 0))

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 
@@ -11,7 +12,7 @@ WAY = "t,x,y,z,roll,pitch,yaw\n0,0,0,2.39,0,0,0\n0.5,0.3,0,2.45,0,0,0\n1,0,0,2.3
 @pytest.fixture(scope="module")
 def loads():
     poses = fx.Pose.from_rpy([0, 0.3, 0], 0, [2.39, 2.45, 2.39], 0, 0, np.radians([0, 0, 10]))
-    return fx.paths.path_loads(fx.load("motion-base"), fx.Trajectory(poses, [0, 0.5, 1]))
+    return fx.paths.path_loads(plain_machine("motion-base"), fx.Trajectory(poses, [0, 0.5, 1]))
 
 
 @pytest.mark.parametrize(
@@ -40,16 +41,16 @@ def test_limits_along_a_path(result, run, tmp_path, loads, key, size, words):
     assert words in told
     legs = [str(k) for k in values.leg.values[(values.values > 0.8 * largest).any(axis=0)]]
     assert told.endswith(f"legs beyond it on the path: {', '.join(legs)}.")
-    limited = fx.load("motion-base").replace({f"limits.{key}": 0.8 * largest})
+    limited = plain_machine("motion-base").replace({f"limits.{key}": 0.8 * largest})
     poses = fx.Pose.from_rpy([0, 0.3, 0], 0, [2.39, 2.45, 2.39], 0, 0, np.radians([0, 0, 10]))
     again = fx.paths.path_loads(limited, fx.Trajectory(poses, [0, 0.5, 1]))
     expected = (values.values <= 0.8 * largest).all(axis=1)
     np.testing.assert_array_equal(again.loads_within_limits, expected)
-    assert limited.digest != fx.load("motion-base").digest
+    assert limited.digest != plain_machine("motion-base").digest
 
 
 def test_check_tells_forces_at_rest(result):
-    force = float(fx.hold(fx.load("motion-base")).leg_force.max())
+    force = float(fx.hold(plain_machine("motion-base")).leg_force.max())
     found = result("check", "motion-base", "--set", f"limits.leg_compression={0.9 * force!r}")
     assert not found["ok"]
     assert found["limits_exceeded"][0].startswith("at rest, leg 1: force 7911 N is above 7120 N")
@@ -68,11 +69,11 @@ def test_check_tells_forces_at_rest(result):
 )
 def test_limits_that_cannot_be(key, value, words):
     with pytest.raises(fx.DesignError, match=words):
-        fx.load("motion-base").replace({f"limits.{key}": value})
+        plain_machine("motion-base").replace({f"limits.{key}": value})
 
 
 def test_limits_of_loads_are_written_and_read():
-    machine = fx.load("motion-base").replace({"limits.leg_compression_kN": 20, "limits.leg_rate_mm_per_s": 300})
+    machine = plain_machine("motion-base").replace({"limits.leg_compression_kN": 20, "limits.leg_rate_mm_per_s": 300})
     again = fx.Hexapod.from_toml(machine.to_toml())
     assert again == machine
     assert (again.limits.leg_compression, again.limits.leg_rate) == (20e3, 0.3)

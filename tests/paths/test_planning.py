@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 
@@ -68,7 +69,7 @@ def test_a_free_straight_line_is_taken(machine):
 
 
 def test_limits_and_clearance_hold_along_the_plan():
-    h = fx.load("motion-base")
+    h = plain_machine("motion-base")
     start, goal = fx.Pose.from_rpy(-0.45, 0, 2.39, 0, 0, -0.3), fx.Pose.from_rpy(0.45, 0, 2.39, 0, 0, -0.3)
     ends = min(float(fx.mechanics.leg_distance(h, p)) for p in (start, goal))
     with pytest.raises(fx.errors.PathError, match="least distance between legs"):

@@ -1,6 +1,7 @@
 """Corners of films: one instant, lengths in words."""
 
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.plots import animation
@@ -8,7 +9,7 @@ from flexapod.plots import animation
 
 @pytest.fixture(scope="module")
 def isolator():
-    hexapod = fx.load("cubic-isolator")
+    hexapod = plain_machine("cubic-isolator")
     return hexapod, fx.home_pose(hexapod)
 
 

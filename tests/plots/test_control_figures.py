@@ -4,13 +4,14 @@ import matplotlib.colors as colours
 import numpy as np
 import pytest
 from matplotlib.contour import ContourSet
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.plots import control
 
 
 def isolator():
-    hexapod = fx.load("cubic-isolator")
+    hexapod = plain_machine("cubic-isolator")
     return hexapod, fx.home_pose(hexapod)
 
 
@@ -114,7 +115,7 @@ def test_gain_map_without_danger_is_silent():
 )
 def test_a_schedule_of_any_number_of_axes_is_drawn(axes, labels):
     found = fx.control.gain_schedule(
-        fx.load("motion-base"), fx.pose_grid(**{"z": 2.4, **axes}), "velocity", damping=0.3
+        plain_machine("motion-base"), fx.pose_grid(**{"z": 2.4, **axes}), "velocity", damping=0.3
     )
     figure = control.schedule(found)
     assert [ax.get_xlabel() for ax in figure.axes[:2]] == labels
@@ -131,7 +132,7 @@ def test_a_schedule_of_any_number_of_axes_is_drawn(axes, labels):
 
 def test_a_schedule_over_a_list_of_poses_counts_them():
     poses = np.array([[0, 0, 2.3, 0, 0, 0], [0, 0, 2.5, 0, 0, 0.1]])
-    found = fx.control.gain_schedule(fx.load("motion-base"), poses, "velocity", damping=0.3)
+    found = fx.control.gain_schedule(plain_machine("motion-base"), poses, "velocity", damping=0.3)
     left, _ = control.schedule(found).axes
     assert left.get_xlabel() == "pose"
     np.testing.assert_array_equal(left.lines[0].get_xdata(), [0, 1])

@@ -6,6 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod import plots
@@ -20,7 +21,7 @@ from flexapod.report.terminal import show
 
 
 def test_axes_are_made_where_none_are_given():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     pose = fx.home_pose(hexapod)
     modes = fx.natural_modes(hexapod, pose)
     for ax in (plots.machine(hexapod), plots.mode(hexapod, None, modes, 1), plots.frequencies(modes.omega)):
@@ -72,7 +73,7 @@ def report(hexapod, pose, **options):
 
 
 def test_a_report_without_cautions_has_no_box_for_them():
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     found = report(hexapod, fx.home_pose(hexapod))
     assert "To beware of" not in page(replace(found, cautions=[]))
     said = page(replace(found, cautions=[Caution("dog", "the <dog>")]))
@@ -92,7 +93,7 @@ def test_energies_below_zero_are_explained():
 
 def test_a_pose_that_no_leg_forces_hold_is_said_to_be(monkeypatch):
     """Between singular to rounding and not: the index is there, the tangent is not."""
-    hexapod = fx.load("motion-base")
+    hexapod = plain_machine("motion-base")
     pose = fx.home_pose(hexapod)
     omega = fx.natural_modes(hexapod, pose).omega
 
@@ -132,7 +133,7 @@ def test_a_path_that_leaves_the_limits_says_when():
 
 def test_frequencies_that_fall_over_are_words_and_marks_stay_inside():
     """The exact tangent of a heavy isolator: marks below all of Eq. 5, and two modes without a frequency."""
-    hexapod = fx.load("cubic-isolator").replace({"platform.mass": 200})
+    hexapod = plain_machine("cubic-isolator").replace({"platform.mass": 200})
     pose = fx.Pose.from_rpy(0.004, 0, 0.0346, 0, 2, 0, degrees=True)
     omega = fx.natural_modes(hexapod, pose).omega
     poles = fx.linearise(hexapod, pose).modes().pole
@@ -147,7 +148,7 @@ def test_frequencies_that_fall_over_are_words_and_marks_stay_inside():
 
 
 def test_the_report_puts_the_tangent_beside_the_mode_that_moves_alike():
-    hexapod = fx.load("cubic-isolator").replace({"platform.mass": 200})
+    hexapod = plain_machine("cubic-isolator").replace({"platform.mass": 200})
     found = report(hexapod, fx.Pose.from_rpy(0.004, 0, 0.0346, 0, 2, 0, degrees=True))
     section = next(one for one in machine.study(found).sections if one.title == "Natural frequencies")
     columns = {column.title: column.values for column in section.items[1].columns}

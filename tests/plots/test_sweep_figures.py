@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 from tests.helpers.stores import BOX, I, stored
 
 import flexapod as fx
@@ -110,7 +111,7 @@ def test_what_cannot_be_drawn_is_told(draw, words):
         draw()
 
 
-BASE = fx.load("motion-base")
+BASE = plain_machine("motion-base")
 WIDE = fx.pose_grid(x=np.linspace(-1.2, 1.2, 15), y=np.linspace(-1.2, 1.2, 13), z=np.linspace(2.0, 2.8, 11))
 VOLUME = fx.sweep(BASE, WIDE)
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from tests.helpers.drawn import machine, sprung, with_round_legs
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import JOINTS, displaced
 
 import flexapod as fx
@@ -22,7 +23,9 @@ OIL = {
 
 def joints_and_oil() -> fx.Hexapod:
     stiff = {f"legs.joint_stiffness.{name}": 2e4 for name in ("universal", "spherical", "torsion")}
-    return fx.load("motion-base").replace({**OIL, **stiff, "suspension.stiffness": np.diag([2e5] * 3 + [1e5] * 3)})
+    return plain_machine("motion-base").replace(
+        {**OIL, **stiff, "suspension.stiffness": np.diag([2e5] * 3 + [1e5] * 3)}
+    )
 
 
 @pytest.mark.parametrize("joint", JOINTS)

@@ -8,6 +8,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import root
 from scipy.spatial.transform import Rotation
+from tests.helpers.plain import plain_machine
 from tests.helpers.states import perturbed
 from tests.oracles.closed_chain import ClosedChain
 
@@ -27,7 +28,7 @@ SHAKEN = (
 
 
 def machine(name="mukherjee-ii", **changes):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     if changes:
         hexapod = hexapod.replace(changes)
     return hexapod, fx.home_pose(hexapod)
@@ -308,7 +309,7 @@ def test_a_base_elsewhere_changes_nothing():
 def test_trajectory_has_the_engines_accelerations(name, measured):
     """50 points along a violent one: base shaken in six directions, friction, wrench, leg commands."""
     rng = np.random.default_rng(35)
-    hexapod = perturbed(fx.load(name), rng)
+    hexapod = perturbed(plain_machine(name), rng)
     pose = fx.Pose((0, 0, 0.89)) if name == "mukherjee-i" else fx.home_pose(hexapod)
     shaken = SHAKEN.ramped(0.05)
     force, moment = fx.harmonic("x", 200.0, 90.0, 1.0), fx.harmonic("z", 3.0, 150.0)

@@ -4,6 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 from scipy.linalg import solve_continuous_lyapunov
+from tests.helpers.plain import plain_machine
 from tests.helpers.states import CENTER
 from tests.helpers.support import apart
 
@@ -28,7 +29,7 @@ def damped(paper):
 
 def vertical_mass(damping: float = 32.0) -> tuple[fx.Hexapod, fx.Pose, float, float, float]:
     """A symmetric machine with massless legs and no gravity, whose z motion is one mass on a spring: m, c, k."""
-    hexapod = fx.load("cubic-isolator").replace(
+    hexapod = plain_machine("cubic-isolator").replace(
         {**NO_GRAVITY, "legs.lower": None, "legs.upper": None, "legs.damping.prismatic": damping}
     )
     pose = fx.home_pose(hexapod)
@@ -252,7 +253,7 @@ def test_bad_arguments(damped):
         fx.transmissibility(damped, fx.Pose([[0, 0, 0.08], [0, 0, 0.09]]), omega=[1.0])
     with pytest.raises(fx.ArgumentError, match="point"):
         fx.transmissibility(damped, II, omega=[1.0], point=[[0, 0, 1], [0, 0, 2]])
-    regular = fx.load("cubic-isolator").replace({})
+    regular = plain_machine("cubic-isolator").replace({})
     flat = regular.replace(
         {"base.joints": regular.platform_joints * [2, 2, 0], "platform.joints": regular.platform_joints * [1, 1, 0]}
     )

@@ -5,6 +5,7 @@ import warnings
 import numpy as np
 import pytest
 from tests.helpers.drawn import machine
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.mechanics.springs import axial_stiffness
@@ -12,7 +13,7 @@ from flexapod.mechanics.viscous_losses import LEFT_OUT, has_losses
 from flexapod.vibration.harmonic import complex_poles
 
 JOINTS = {"universal": 15.0, "spherical": 15.0, "torsion": 15.0, "loss_factor": 0.1}
-ISOLATOR = fx.load("cubic-isolator").replace({"legs.damping": None})
+ISOLATOR = plain_machine("cubic-isolator").replace({"legs.damping": None})
 LOSSY = ISOLATOR.replace({"legs.loss_factor": 0.05, "legs.joint_stiffness": JOINTS})
 
 

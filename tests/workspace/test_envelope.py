@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from tests.helpers.cases import case
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.workspace.rays import trace
@@ -20,7 +21,7 @@ POINT = np.array([0.05, -0.1, 0.2])
 
 @pytest.fixture(scope="module")
 def machine():
-    return fx.load("motion-base")
+    return plain_machine("motion-base")
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +49,7 @@ def bisected(holds, far):
 @pytest.mark.parametrize("name", ["motion-base", "precision-positioner", "cubic-isolator"])
 @pytest.mark.parametrize("point", [(0, 0, 0), tuple(POINT / 10)])
 def test_ends_of_axes_are_those_of_bisection(name, point):
-    machine = fx.load(name)
+    machine = plain_machine(name)
     found = fx.envelope(machine, point=point, directions=4)
     for k, axis in enumerate(found.axes):
         for end, stops in ((axis.least, axis.stopped_at_least), (axis.most, axis.stopped_at_most)):

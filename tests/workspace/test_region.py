@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.workspace.region import as_region, home_of, poses_of
 
-BASE = fx.load("motion-base")
+BASE = plain_machine("motion-base")
 HOME = fx.home_pose(BASE)
 SIX = np.concatenate([HOME.position, HOME.rpy])
 BOX = fx.Box.about(HOME, 0.1, 0.2)

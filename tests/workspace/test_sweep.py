@@ -5,13 +5,14 @@ import time
 import numpy as np
 import pytest
 import xarray as xr
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.conventions import AXES
 from flexapod.workspace.quantities import QUANTITIES, evaluate
 
 I = fx.load("mukherjee-i")
-BASE = fx.load("motion-base")
+BASE = plain_machine("motion-base")
 BOX = fx.Box.about(fx.home_pose(I), 0.08, 0.15)
 
 
@@ -23,7 +24,7 @@ def status(found, word):
 @pytest.mark.parametrize("joint", ["universal", "spin_free"])
 @pytest.mark.parametrize("name", fx.packaged_designs())
 def test_every_quantity_is_that_of_the_single_pose_function(name, joint):
-    design = fx.load(name)
+    design = plain_machine(name)
     reach = np.ptp(design.base_joints, axis=0).max()
     box = fx.Box.about(fx.home_pose(design), 0.05 * reach, 0.1)
     found = fx.sweep(design, fx.random_poses(box, 37), quantities=QUANTITIES, joint=joint)

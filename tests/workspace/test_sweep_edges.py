@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 from tests.helpers.stores import BOX, I
 
 import flexapod as fx
@@ -170,7 +171,7 @@ def test_scatter_reads_block_by_block_and_skips_those_without_an_index():
 
 
 def test_a_map_of_angles_and_of_wide_lengths_is_in_degrees_and_metres():
-    base = fx.load("motion-base")
+    base = plain_machine("motion-base")
     found = fx.sweep(base, fx.pose_grid(z=np.linspace(2.2, 2.8, 3), roll=[-0.1, 0.0, 0.1]), quantities=["omega_1"])
     ax = sweep.index_map(found)
     assert (ax.get_xlabel(), ax.get_ylabel()) == ("z (m)", "roll (°)")

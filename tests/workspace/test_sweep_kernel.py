@@ -10,6 +10,7 @@ from operator import or_
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from tests.helpers.plain import plain_machine
 from tests.helpers.states import CENTER
 from tests.helpers.support import apart
 from tests.oracles.exact_modes import exact_modes
@@ -137,7 +138,7 @@ def exact_results(kernel):
     def results(name, joint):
         key = name, joint
         if key not in EXACT:
-            hexapod, rng = fx.load(name), np.random.default_rng(7)
+            hexapod, rng = plain_machine(name), np.random.default_rng(7)
             poses = poses_for_accuracy(hexapod, rng)
             EXACT[key] = hexapod, poses, [exact_modes(hexapod, p, joint == "universal") for p in poses]
         hexapod, poses, exact = EXACT[key]
@@ -152,7 +153,7 @@ EXACT: dict = {}  # shared by the instruction sets
 
 @pytest.mark.parametrize("name", ["mukherjee-i", "motion-base", "cubic-isolator"])
 def test_same_as_single_poses(name, kernel, measured):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     poses = box(hexapod, np.random.default_rng(3), 301)
     found = kernel(hexapod, poses)
     pose = fx.Pose.from_rpy(*poses.T)
@@ -204,7 +205,7 @@ def test_limits_hold_somewhere_and_not_elsewhere(kernel):
 
 @pytest.mark.parametrize("name", ["mukherjee-i", "cubic-isolator"])
 def test_gradient(name, kernel, measured):
-    hexapod = fx.load(name)
+    hexapod = plain_machine(name)
     poses = box(hexapod, np.random.default_rng(5), 60)
     two = fx.natural_modes(hexapod, fx.Pose.from_rpy(*poses.T)).omega[:, :2]
     poses = poses[two[:, 1] > 1.05 * two[:, 0]][:19]  # near a crossing differences say nothing
@@ -250,7 +251,7 @@ def test_pose_by_angles_or_matrix(kernel):
 
 def test_any_threads_any_chunks_any_neighbours(kernel):
     """Bit for bit: a pose's result depends on the pose alone."""
-    hexapod, rng = fx.load("precision-positioner"), np.random.default_rng(8)
+    hexapod, rng = plain_machine("precision-positioner"), np.random.default_rng(8)
     poses = np.concatenate([box(hexapod, rng, 5001), np.tile(poses_for_accuracy(hexapod, rng), (3, 1))])
     poses[::97, 2] = np.nan
     rng.shuffle(poses)
@@ -372,7 +373,7 @@ def test_renumbering_legs_changes_nothing(kernel):
 
 def test_symmetric_machine_has_a_symmetric_map(kernel):
     """Three-fold symmetry: a third of a turn of the whole pose about the axis changes nothing."""
-    hexapod, rng = fx.load("precision-positioner"), np.random.default_rng(13)
+    hexapod, rng = plain_machine("precision-positioner"), np.random.default_rng(13)
     pose = fx.Pose.from_rpy(*box(hexapod, rng, 60).T)
     third = Rotation.from_rotvec([0, 0, 2 * np.pi / 3])
     turned = fx.Pose(third.apply(np.array(pose.position)), third.as_matrix() @ pose.matrix @ third.as_matrix().T)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import PchipInterpolator
 from tests.helpers.drawn import machine, sprung
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import JOINTS, difference, size
 from tests.oracles.exact_modes import exact_modes
 
@@ -92,7 +93,7 @@ LAWS = {
 
 def with_law(kind: str, more=None) -> fx.Hexapod:
     law = {f"legs.stiffness_law.{key}": value for key, value in LAWS[kind].items()}
-    return fx.load("motion-base").replace(
+    return plain_machine("motion-base").replace(
         {"limits": None, "legs.stiffness": None, "legs.stiffness_law.kind": kind, **law, **(more or {})}
     )
 
@@ -118,7 +119,7 @@ def test_frequencies_by_a_law_are_those_of_constants_at_each_pose(kind, series):
     assert (found["status"] == 0).all()
     single = fx.natural_modes(hexapod, fx.Pose.from_rpy(*poses.T)).omega
     np.testing.assert_allclose(found["omega"], single, rtol=1e-12)
-    plain = fx.load("motion-base")
+    plain = plain_machine("motion-base")
     for pose, omega in zip(poses, single, strict=True):
         k = stiffness_of(kind, fx.inverse_kinematics(plain, fx.Pose.from_rpy(*pose)))
         k = k if series is None else 1 / (1 / k + 1 / series)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import differential_evolution
 from scipy.stats import spearmanr
+from tests.helpers.plain import plain_machine
 from tests.helpers.stores import BOX, I, stored
 from tests.helpers.support import MACHINES
 
@@ -84,7 +85,7 @@ def test_bad_poses_are_counted_and_left_out():
     assert summary.worst.omega_1 == np.delete(fx.sweep(I, POSES.rows(0, 100)).omega_1.values, 3).min()
 
 
-LIMITED = fx.load("motion-base")
+LIMITED = plain_machine("motion-base")
 REGION = fx.random_poses(fx.Box.about(fx.home_pose(LIMITED), 0.67, 0.4), 5000, seed=2)
 
 
@@ -158,7 +159,7 @@ def _index(design, six):
 
 @pytest.mark.parametrize("name", MACHINES)
 def test_worst_pose_is_a_local_minimum_below_the_sweep(name, measured):
-    design = fx.load(name)
+    design = plain_machine(name)
     reach = np.ptp(design.base_joints, axis=0).max()
     box = fx.Box.about(fx.home_pose(design), 0.05 * reach, 0.1)
     worst = fx.worst_pose(design, box, samples=4096, all_poses=True)
@@ -202,7 +203,7 @@ def test_a_singular_pose_in_the_box_is_found():
 
 def test_an_interior_minimum_is_found_to_rounding():
     """In this box of cubic-isolator the index is least at the bounds of five coordinates and inside that of yaw."""
-    design = fx.load("cubic-isolator")
+    design = plain_machine("cubic-isolator")
     worst = fx.worst_pose(design, fx.Box.about(fx.home_pose(design), 0.02, 0.15), samples=2**13, all_poses=True)
     assert worst.at_bounds == ("x", "y", "z", "roll", "pitch")
     yaw = worst.pose[5] + np.linspace(-1e-3, 1e-3, 41)
@@ -215,7 +216,7 @@ def test_an_interior_minimum_is_found_to_rounding():
 
 def test_descent_passes_repeated_lowest_modes():
     """At the centre of motion-base the two lowest modes are one to rounding, with a ridge between them."""
-    omega = fx.natural_modes(BASE := fx.load("motion-base"), fx.home_pose(BASE)).omega
+    omega = fx.natural_modes(BASE := plain_machine("motion-base"), fx.home_pose(BASE)).omega
     assert omega[1] - omega[0] < 0.2 * omega[1]
     box = fx.Box.about(fx.home_pose(BASE), 0.1, 0.1)
     square = descents.SquaredFrequency(BASE, "universal", mode=1)
@@ -243,7 +244,7 @@ def test_bad_arguments_are_told(arguments, words):
 
 def test_the_worst_of_poses_is_one_of_them():
     """A region that lists its poses, or that is one: none lies between them."""
-    home = fx.home_pose(BASE := fx.load("motion-base"))
+    home = fx.home_pose(BASE := plain_machine("motion-base"))
     index = fx.stability_index(BASE, home)
     six = np.concatenate([home.position, home.rpy])
     for region in (None, home, six, fx.Box(*six)):

@@ -4,12 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.workspace.limit_margins import LimitMargins
 
 CASES = Path(__file__).parents[1] / "data" / "cases"
-BASE, CUBIC, POSITIONER = (fx.load(name) for name in ("motion-base", "cubic-isolator", "precision-positioner"))
+BASE, CUBIC, POSITIONER = (plain_machine(name) for name in ("motion-base", "cubic-isolator", "precision-positioner"))
 
 
 def around(design, metres, degrees):
