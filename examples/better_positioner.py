@@ -44,7 +44,7 @@ def main(trials: int = 200, points: int = 2**12, verify: int = 2**17, samples: i
     optimisation.front(front).savefig(folder / "front.png")
 
     uncertain = [
-        fx.Uncertain("legs.stiffness", 0.1),
+        fx.Uncertain("legs.stiffness_law.fixed", 0.1),
         fx.optimisation.Payload((0, 5), ((-0.05, 0.05), (-0.05, 0.05), (0.1, 0.2))),
     ]
     strays = fx.robustness(better.hexapod, uncertain, samples=samples)

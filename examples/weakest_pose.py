@@ -8,7 +8,7 @@ import numpy as np
 
 import flexapod as fx
 
-WANTED = 29.0  # rad/s: the controller needs no less
+WANTED = 30.0  # rad/s: the controller needs no less
 
 
 def main() -> float:

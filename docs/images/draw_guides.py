@@ -97,7 +97,7 @@ def robustness() -> None:
     """docs/robustness.md: how the positioner's index strays."""
     machine = fx.load("precision-positioner")
     uncertain = [
-        fx.Uncertain("legs.stiffness", 0.1),
+        fx.Uncertain("legs.stiffness_law.fixed", 0.1),
         fx.optimisation.Payload((0, 5), ((-0.05, 0.05), (-0.05, 0.05), (0.1, 0.2))),
     ]
     found = fx.robustness(machine, uncertain, samples=2**14, sensitivity=1024)

@@ -24,7 +24,7 @@ AT = ["--pose", "0", "0", "0.035", "0", "0", "0"]
 #: A small command line of each command that is right, in a folder of the files below.
 RIGHT = {
     "animate": ["cubic-isolator", "--out", "a.gif"],
-    "certify": ["cubic-isolator", "--around", "0.0005", "0.5", "--at-least", "1Hz"],
+    "certify": ["mukherjee-ii", "--around", "0.0005", "0.5", "--at-least", "1Hz"],
     "check": ["cubic-isolator"],
     "cite": [],
     "control": ["cubic-isolator", "velocity", "--gain", "10"],

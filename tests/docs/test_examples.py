@@ -23,23 +23,23 @@ NUMBERS = {
     "active_damping": (0.290075, 1e-3),
     "bearing_loads": (15829.469, 1e-5),
     "controller_rate": (1.210694e-4, 1e-4),
-    "gravity_on_soft_legs": (1354.37070, 1e-6),
+    "gravity_on_soft_legs": (974.507316, 1e-6),
     "heavier_payload": (900.373117, 1e-6),
     "joint_models": (0.003554672, 1e-5),
-    "leg_tolerances": (118.983382, 1e-5),
+    "leg_tolerances": (83.435085, 1e-5),
     "motion_base_on_a_ship": (15937.19, 1e-4),
-    "natural_frequencies": (132.888161, 1e-6),
-    "off_centre_point": (10.22489, 1e-4),
+    "natural_frequencies": (92.4990433, 1e-6),
+    "off_centre_point": (7.161571, 1e-4),
     "own_design": (sqrt(6 * 5e6 * (0.4 / LEG) ** 2 / 25.0) / (2 * pi), 1e-12),  # six springs at one slope, one mass
     "path_round_weak_poses": (110.19, 2e-3),
-    "platform_on_a_floor": (0.002984091, 1e-5),
+    "platform_on_a_floor": (0.003066021, 1e-5),
     "pose_from_leg_lengths": (3.228303e-6, 1e-5),
     "proved_bound": (4.2272, 1e-4),
-    "shock_test": (1.098, 0.01),  # a mass on a spring, which its docstring names; the machine has some friction
-    "stiffness_for_a_frequency": (16867.1279, 1e-6),
+    "shock_test": (1.3987, 0.015),  # a mass on a spring, which its docstring names; the machine has some friction
+    "stiffness_for_a_frequency": (16488.2285, 1e-6),
     "to_python_control": (18008.228 + 6 * 4e4 / 3, 1e-6),  # six legs of a cube: their slopes squared are 1/3
-    "weakest_pose": (28.6891322, 1e-6),  # within the limits; 28.6855302 of all poses
-    "what_matters_most": (0.16189077, 1e-6),
+    "weakest_pose": (29.4435576, 1e-6),  # within the limits
+    "what_matters_most": (0.16278129, 1e-6),  # half of the 32.6 % of the strain energy that the leg holds
 }
 STUDIES = {"better_manipulators", "better_positioner"}
 

@@ -10,7 +10,7 @@ PLANNED = ["--from", "0", "0", "0.89", "0", "0", "0", "--to", "0", "0", "0.9", "
 #: Command lines whose last argument is what they write, by a name.
 WRITERS = {
     "animate": ["animate", "cubic-isolator", "--out", "mode.gif"],
-    "certify": ["certify", "cubic-isolator", "--around", "0.0005", "0.5", "--at-least", "1Hz", "--out", "here"],
+    "certify": ["certify", "mukherjee-ii", "--around", "0.0005", "0.5", "--at-least", "1Hz", "--out", "here"],
     "control": ["control", "cubic-isolator", "velocity", "--gain", "10", "--out", "here"],
     "envelope": ["envelope", "cubic-isolator", "--out", "here"],
     "export mjcf": ["export", "cubic-isolator", "--to", "mjcf", "--out", "m.xml"],

@@ -297,3 +297,71 @@ def test_flexures_of_upright_legs_are_guided_beams():
     assert np.min(np.abs(omega / np.sqrt(about / inertia[2]) - 1)) < 1e-12
     # Across, the platform also tilts by the bending at its joints; the legs' stretch holds that, and is far stiffer.
     assert omega[0] == pytest.approx(np.sqrt(across / mass), rel=0.03)
+
+
+# --- legs that do not spin, for which the engine has no chain ---------------------------------------------------------
+
+
+def least_turn(one, other) -> np.ndarray:
+    """Quaternion (w, v) of the least turn that brings one direction to another."""
+    q = np.array([1 + one @ other, *np.cross(one, other)])
+    return q / np.linalg.norm(q)
+
+
+def spin_free_angles(hexapod, pose) -> np.ndarray:
+    """Swing of each leg across k and about it, bending about y and z, and twist, (6, 5), by quaternions from rest."""
+    rest, found = hexapod.rest, np.empty((6, 5))
+    turn = Rotation.from_matrix(pose.matrix @ rest.matrix.T)
+    for i in range(6):
+        n, y, z = chain_springs.leg_axes(hexapod, i, rest, chain_springs._Origin).T
+        s = chain_springs.leg_axes(hexapod, i, pose, chain_springs._Origin)[:, 0]
+        w, *v = least_turn(n, s)
+        swing = Rotation.from_quat([w, *v], scalar_first=True)
+        beta = swing.as_rotvec()
+        w, *v = (swing.inv() * turn).as_quat(scalar_first=True)
+        twist = 2 * np.arctan2(np.dot(v, n), w)
+        bend = 2 * np.arctan2(np.linalg.norm(np.cross(n, v)), np.hypot(w, np.dot(v, n)))
+        across = np.array([np.dot(v, y), np.dot(v, z)])
+        found[i] = [beta @ z, beta @ y, *(across * bend / max(np.linalg.norm(across), 1e-300)), twist]
+    return found
+
+
+@pytest.mark.parametrize("block", range(5))
+def test_legs_that_do_not_spin_bend_and_twist_by_quaternions(block):
+    """The least turn of each leg, and swing and twist of the platform against it."""
+    for hexapod, state in twenty(block, suspension=False, moving_base=False):
+        pose, base = state.platform.pose, state.base.pose
+        inside = fx.Pose(base.matrix.T @ (pose.position - base.position), base.matrix.T @ pose.matrix)
+        swing_1, swing_2, bend_y, bend_z, twist = spin_free_angles(hexapod, inside).T
+        found = fx.joint_moments(hexapod, pose, base=base, joint="spin_free")
+        swings, bend = np.stack([swing_1, swing_2], axis=1), np.hypot(bend_y, bend_z)
+        for angle, expected in (
+            (found.universal_angle, swings),
+            (found.bending_angle, bend),
+            (found.torsion_angle, twist),
+        ):
+            assert relative(angle, expected) < 1e-10
+        springs = hexapod.legs.joint_stiffness
+        stored = 0.5 * (
+            (springs.universal * swings**2).sum() + springs.spherical @ bend**2 + springs.torsion @ twist**2
+        )
+        assert fx.energy(hexapod, pose, base=base, joint="spin_free").joints == pytest.approx(stored, rel=1e-10)
+
+
+@pytest.mark.parametrize("name", ["cubic-isolator", "precision-positioner"])
+def test_legs_that_do_not_spin_hold_by_the_slopes_of_these_angles(name):
+    """At rest K is that of the legs and the sum of k times the slopes of the angles, by differences, squared."""
+    joints = {"universal": [3.0, 40.0], "spherical": [5.0, 7.0, 9.0, 11.0, 13.0, 15.0], "torsion": 60.0}
+    hexapod = plain_machine(name).replace({"legs.joint_stiffness": joints})
+    step, slopes = 1e-5, np.empty((6, 6, 5))
+    for j, direction in enumerate(np.eye(6)):
+        up, down = (spin_free_angles(hexapod, displaced(hexapod.home, sign * step * direction)) for sign in (1, -1))
+        slopes[j] = (up - down) / (2 * step)
+    springs = hexapod.legs.joint_stiffness
+    k = np.column_stack([springs.universal, springs.spherical, springs.spherical, springs.torsion])
+    H = fx.force_transformation(hexapod)
+    K = (H * hexapod.legs.stiffness) @ H.T + np.einsum("ila,jla,la->ij", slopes, slopes, k)
+    root = np.linalg.inv(np.linalg.cholesky(fx.linearise(hexapod, joint="spin_free").M))
+    expected = np.sqrt(np.linalg.eigvalsh(root @ K @ root.T))
+    np.testing.assert_allclose(fx.natural_modes(hexapod, joint="spin_free").omega, expected, rtol=1e-8)
+    assert (np.abs(expected / fx.natural_modes(hexapod, joint="universal").omega - 1) > 1e-7).any()

@@ -148,7 +148,7 @@ def root_locus(
     --------
     >>> locus = fx.control.root_locus(fx.load("cubic-isolator"), leak=3.0, gains=np.geomspace(1, 100, 30))
     >>> round(locus.attrs["best_gain"], 1), round(locus.attrs["best_damping"], 2)
-    (19.0, 0.27)
+    (27.4, 0.34)
     """
     damping_law(feedback, 0.0, leak, legs)  # checks them
     plant = Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint))

@@ -93,7 +93,7 @@ def controlled_transmissibility(
     >>> found = fx.control.controlled_transmissibility(hexapod, controller=law, omega=[30.0])
     >>> passive, controlled = (abs(found[name].sel(output="z", base="z")) for name in ("passive", "controlled"))
     >>> round(float(passive[0]), 1), round(float(controlled[0]), 1)
-    (9.3, 1.4)
+    (9.8, 1.4)
     """
     w = asked(omega, frequency)
     where = single_pose(hexapod, pose)

@@ -194,7 +194,7 @@ class VelocityFeedback:
     >>> hexapod = fx.load("cubic-isolator")
     >>> loop = fx.control.closed_loop(hexapod, None, fx.control.VelocityFeedback(300.0))
     >>> round(float(loop.worst_damping), 2)
-    0.52
+    0.51
     """
 
     gain: float

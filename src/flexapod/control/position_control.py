@@ -111,7 +111,7 @@ def closed_loop(
     >>> hexapod = fx.load("cubic-isolator")
     >>> loop = fx.control.closed_loop(hexapod, None, fx.control.VelocityFeedback(400.0))
     >>> loop.stable, round(loop.worst_damping, 2)
-    (True, 0.67)
+    (True, 0.66)
     """
     not_negative(nearness, "nearness")
     one_of(unstable, "unstable", ("raise", "keep"))

@@ -74,7 +74,7 @@ def sampling_time(
     --------
     >>> hexapod = fx.load("cubic-isolator")
     >>> print(f"{fx.control.sampling_time(hexapod):.3g}")
-    0.00621
+    0.00615
     """
     if isinstance(hexapod, float | int | np.number):
         if region is not None:

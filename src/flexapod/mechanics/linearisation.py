@@ -252,7 +252,7 @@ def linearise(
     --------
     >>> tangent = fx.linearise(fx.load("cubic-isolator"))
     >>> tangent.modes().frequency.round(2).tolist()  # Hz
-    [4.5, 4.5, 4.71, 4.81, 4.81, 7.99]
+    [4.6, 4.6, 4.8, 4.94, 4.94, 8.06]
     """
     pose, base = single_pose(hexapod, pose), single_base(hexapod, base)
     rest = hold(hexapod, pose, base=base, force=force, moment=moment, joint=joint)

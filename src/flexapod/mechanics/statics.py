@@ -179,7 +179,7 @@ def static_equilibrium(
     >>> lengths = fx.inverse_kinematics(machine)  # of legs that give way under the weight
     >>> sag = fx.static_equilibrium(machine, lengths).pose.position - machine.home.position
     >>> round(1000 * float(sag[2]), 2)  # mm
-    -12.59
+    -11.78
     """
     as_hexapod(hexapod)
     L_0 = numbers(unstretched_length, "unstretched_length", (6,))

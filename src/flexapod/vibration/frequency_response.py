@@ -101,7 +101,7 @@ def transmissibility(
     --------
     >>> response = fx.transmissibility(fx.load("cubic-isolator"), frequency=[1.0, 100.0])
     >>> abs(response.absolute.sel(output="z", base="z")).values.round(3)
-    array([1.048, 0.015])
+    array([1.046, 0.016])
     """
     w = asked(omega, frequency)
     leg_losses(as_hexapod(hexapod), loss_factor)

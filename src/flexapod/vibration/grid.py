@@ -80,7 +80,7 @@ def frequency_grid(
     >>> hexapod = fx.load("cubic-isolator")
     >>> omega = fx.vibration.frequency_grid(hexapod, samples=100)
     >>> omega[[0, -1]].round(1)
-    array([ 5.7, 75.3])
+    array([ 5.8, 76. ])
     """
     linear = linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
     return grid_around(complex_poles(linear, losses(hexapod, linear, loss_factor)), omega_min, omega_max, samples)
