@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from tests.helpers.plain import file
 
 import flexapod as fx
 from flexapod.cli import COMMANDS
@@ -60,7 +61,7 @@ def test_modes_shows_a_table(run):
 
 def test_modes_at_a_singular_pose_has_index_zero(result):
     # A hexagon over a hexagon, turned by a right angle: the platform can screw up and down freely.
-    found = result("modes", "precision-positioner", "--pose", "0", "0", "0.244", "0", "0", "90")
+    found = result("modes", file("precision-positioner"), "--pose", "0", "0", "0.244", "0", "0", "90")
     assert found["stability_index_rad_s"] < 1e-9 * found["omega_rad_s"][-1]  # zero to rounding
     assert found["condition_number"] is None or found["condition_number"] > 1e12
 

@@ -6,7 +6,7 @@ isolator with legs that do not spin, from an estimate that was made before the m
 
 import numpy as np
 import pytest
-from tests.helpers.plain import plain_machine
+from tests.helpers.plain import file, plain_machine
 
 import flexapod as fx
 from flexapod.control.losses import assumptions
@@ -71,7 +71,7 @@ def test_what_is_left_out_is_told_of_the_machine_at_hand():
 
 def test_the_command_takes_losses_as_viscous_friction(result):
     lossy = ("--set", "legs.loss_factor=0.05", "--set", "gravity=[0,0,0]", "--gain", 20)
-    without = result("control", "cubic-isolator", "force", *lossy)
-    viscous = result("control", "cubic-isolator", "force", "--loss-frequency", 40, *lossy)
+    without = result("control", file("cubic-isolator"), "force", *lossy)
+    viscous = result("control", file("cubic-isolator"), "force", "--loss-frequency", 40, *lossy)
     assert any("loss factors of the design are left out" in words for words in without["warnings"])
     assert not any("loss factors of the design are left out" in words for words in viscous["warnings"])

@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 import scipy.linalg
-from tests.helpers.plain import plain_machine
+from tests.helpers.plain import file, plain_machine
 
 import flexapod as fx
 from flexapod.control.closed_loop_poles import assess, loop_sampling_time
@@ -57,7 +57,7 @@ def test_an_unstable_loop_is_told_apart_from_its_machine():
 
 def test_the_command_and_the_page_say_it(run, result):
     heavy = ("--set", "platform.mass=4000")
-    out = " ".join(run("response", "cubic-isolator", *heavy)[1].split())
+    out = " ".join(run("response", file("cubic-isolator"), *heavy)[1].split())
     assert "Not stable at rest: 6 modes of the machine grow" in out
     requests = pytest.importorskip("flexapod.web.response")
     told = requests.response(
@@ -81,7 +81,7 @@ def test_modes_that_grow_alike_are_counted_each_however_they_are_rounded():
 
 
 def test_control_says_what_its_model_leaves_out(run):
-    out = " ".join(run("control", "cubic-isolator", "velocity", "--gain", 300)[1].split())
+    out = " ".join(run("control", file("cubic-isolator"), "velocity", "--gain", 300)[1].split())
     assert assumptions(ISOLATOR) in out
     assert fx.control.root_locus(ISOLATOR, gains=[1.0, 2.0]).attrs["assumptions"] == assumptions(ISOLATOR)
 
@@ -110,7 +110,7 @@ def test_the_machine_decides_where_its_loop_is_slower():
     ("arguments", "words"),
     [
         (("motion-base", "velocity", "--pose", 0, 0, 1e-12, 0, 0, 0), "move away from a singular pose"),
-        (("precision-positioner", "lqg", "--measure", "leg_length", "--noise", 1e-6), "raise noise or effort"),
+        ((file("precision-positioner"), "lqg", "--measure", "leg_length", "--noise", 1e-6), "raise noise or effort"),
     ],
 )
 def test_what_cannot_be_designed_is_a_sentence(run, arguments, words):

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from tests.helpers.plain import plain_machine
+from tests.helpers.plain import file, plain_machine
 
 import flexapod as fx
 from flexapod import _core
@@ -379,13 +379,13 @@ def test_what_the_template_says_of_springs_can_be_used(law):
 def test_the_command_line_sets_and_varies_springs(result, run):
     joints = "legs.joint_stiffness={universal=15, spherical_N_mm_per_rad=15e3}"
     series = "legs.series_stiffness_N_per_um=[94, 94]"
-    found = result("check", "precision-positioner", "--set", joints, "--set", series)
+    found = result("check", file("precision-positioner"), "--set", joints, "--set", series)
     assert found["ok"]
     assert found["values"]["legs.joint_stiffness.spherical"] == [15.0] * 6
     assert found["values"]["legs.series_stiffness"] == [[94e6, 94e6]] * 6
-    found = result("robust", "precision-positioner", "--set", series, "--uncertain", "legs.series_stiffness=10%",
+    found = result("robust", file("precision-positioner"), "--set", series, "--uncertain", "legs.series_stiffness=10%",
                    "--samples", 16, "--sensitivity", 0)  # fmt: skip
     assert len(found["parameters"]) == 12
-    code, _, err = run("modes", "precision-positioner", "--set", "legs.joint_stiffness.torsion=-1")
+    code, _, err = run("modes", file("precision-positioner"), "--set", "legs.joint_stiffness.torsion=-1")
     assert code == 2
     assert "legs.joint_stiffness.torsion is -1 N m/rad; it must be >= 0" in " ".join(err.split())

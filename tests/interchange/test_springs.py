@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy.io import loadmat
 from tests.helpers.drawn import machine
-from tests.helpers.plain import plain_machine
+from tests.helpers.plain import file, plain_machine
 from tests.helpers.support import away
 from tests.interchange.test_interchange import FORMATS, opened
 from tests.oracles.reduced import tangent
@@ -101,13 +101,17 @@ def test_sdf_says_that_it_has_no_springs_in_ball_joints(tmp_path):
 def test_the_command_says_what_is_not_in_the_file(run, tmp_path):
     suspension = {"stiffness": np.diag([1e3] * 6).tolist(), "damping": np.zeros((6, 6)).tolist()}
     lossy = ("--set", "legs.loss_factor=0.02", "--set", f"suspension={{stiffness={suspension['stiffness']}}}")
-    out = " ".join(run("export", "cubic-isolator", "--to", "mjcf", "--out", tmp_path / "a.xml", *lossy)[1].split())
+    out = " ".join(
+        run("export", file("cubic-isolator"), "--to", "mjcf", "--out", tmp_path / "a.xml", *lossy)[1].split()
+    )
     assert "Not in the file: loss factors" in out
     assert "the suspension." in out
-    state = run("export", "cubic-isolator", "--to", "mat", "--out", tmp_path / "a.mat", *lossy, "--json")[1]
+    state = run("export", file("cubic-isolator"), "--to", "mat", "--out", tmp_path / "a.mat", *lossy, "--json")[1]
     assert [words.split(" (")[0] for words in json.loads(state)["left_out"]] == ["loss factors"]
     assert "loss factors" in str(loadmat(tmp_path / "a.mat")["left_out"])
-    assert "Not in the file" not in run("export", "cubic-isolator", "--to", "mjcf", "--out", tmp_path / "b.xml")[1]
+    assert (
+        "Not in the file" not in run("export", file("cubic-isolator"), "--to", "mjcf", "--out", tmp_path / "b.xml")[1]
+    )
 
 
 def test_files_of_machines_without_springs_hold_none(tmp_path):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.helpers.plain import plain_machine
+from tests.helpers.plain import file, plain_machine
 
 import flexapod as fx
 from flexapod.mechanics.cautions import NEAR_SINGULAR, singularity
@@ -43,9 +43,9 @@ def test_near_singular_is_a_condition_number_without_units():
 
 
 def test_check_leaves_what_is_only_near_to_the_report(result):
-    found = result("check", "precision-positioner", "--pose", 0, 0, 0.244, 0, 0, 89)
+    found = result("check", file("precision-positioner"), "--pose", 0, 0, 0.244, 0, 0, 89)
     assert found["singularity"] == []
-    assert json.dumps(result("check", "precision-positioner", "--pose", 0, 0, 0.244, 0, 0, 90)["singularity"])
+    assert json.dumps(result("check", file("precision-positioner"), "--pose", 0, 0, 0.244, 0, 0, 90)["singularity"])
 
 
 def test_near_repeated_modes_stand_together():

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod import plots
@@ -50,14 +51,16 @@ def _again(h):
 
 @pytest.mark.parametrize("name", fx.packaged_designs())
 def test_the_machine_can_be_made_again_from_the_tables(name):
-    h = fx.load(name).replace({"legs.stiffness[2]": 1.1 * fx.load(name).legs.stiffness[2], "legs.lower.mass[0]": 3.0})
+    h = plain_machine(name).replace(
+        {"legs.stiffness[2]": 1.1 * plain_machine(name).legs.stiffness[2], "legs.lower.mass[0]": 3.0}
+    )
     again, pose = _again(h), fx.home_pose(h)
     np.testing.assert_allclose(fx.natural_modes(again, pose).omega, fx.natural_modes(h, pose).omega, rtol=1e-6)
     np.testing.assert_allclose(fx.linearise(again, pose).M, fx.linearise(h, pose).M, rtol=1e-6, atol=1e-9)
 
 
 def test_every_number_of_a_leg_is_listed():
-    h = fx.load("motion-base")
+    h = plain_machine("motion-base")
     columns = {column.title for table in inputs.section(h).items for column in table.columns}
     own = {key for key, value in h.values().items() if key.startswith("legs.") and np.shape(value) == (6,)}
     assert {key.removeprefix("legs.").replace(".", ", ") for key in own if not key.endswith("mass")} <= columns
@@ -65,7 +68,9 @@ def test_every_number_of_a_leg_is_listed():
 
 def test_home_and_limits_are_listed_as_they_are():
     values = [
-        table.columns[1].values for table in inputs.section(fx.load("cubic-isolator")).items if table.style == "facts"
+        table.columns[1].values
+        for table in inputs.section(plain_machine("cubic-isolator")).items
+        if table.style == "facts"
     ]
     ((gravity, home, limits),) = values
     assert gravity == "(0, 0, -9.81) m/s\u00b2"
@@ -74,7 +79,7 @@ def test_home_and_limits_are_listed_as_they_are():
 
 
 def _rows(name, pose=None, **changes):
-    h = fx.load(name).replace(changes) if changes else fx.load(name)
+    h = plain_machine(name).replace(changes) if changes else plain_machine(name)
     found = gather(h, fx.home_pose(h) if pose is None else pose)
     return found, [row for row in study(found).rows if row.on in ("both", "page")]
 
@@ -115,7 +120,7 @@ def test_a_verdict_on_the_limits_stands_at_the_top(name, pose, changes, verdict)
 
 
 def test_mode_pictures_number_the_legs():
-    h = fx.load("cubic-isolator")
+    h = plain_machine("cubic-isolator")
     ax = plots.mode(h, None, fx.natural_modes(h), 1)
     assert [text.get_text() for text in ax.texts] == list("123456")
     made = page(study(gather(h)))

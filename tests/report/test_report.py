@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
+from tests.helpers.plain import file, plain_machine
 from tests.helpers.support import MACHINES
 
 import flexapod as fx
@@ -38,7 +39,7 @@ def reports():
 
     def get(name):
         if name not in made:
-            h = fx.load(name)
+            h = plain_machine(name)
             findings = gather(h, fx.home_pose(h))
             made[name] = (findings, page(findings))
         return made[name]
@@ -112,7 +113,7 @@ def test_the_neutral_colours_follow_light_and_dark(reports, name):
 
 
 def test_findings_are_the_librarys():
-    h = fx.load("motion-base")
+    h = plain_machine("motion-base")
     pose = fx.Pose.from_rpy(0.2, -0.1, 2.5, 0.05, 0.1, -0.2)
     f = gather(h, pose, joint="spin_free")
     omega = fx.natural_modes(h, pose, joint="spin_free").omega
@@ -155,7 +156,7 @@ def test_influences_are_what_small_changes_do():
 
 
 def test_the_effect_on_repeated_modes_is_that_on_their_mean():
-    h = fx.load("precision-positioner")  # threefold symmetry: modes 1 and 2 are one pair
+    h = plain_machine("precision-positioner")  # threefold symmetry: modes 1 and 2 are one pair
     pose = fx.home_pose(h)
     f = gather(h, pose)
     assert f.clusters[0] == [0, 1]
@@ -167,7 +168,7 @@ def test_the_effect_on_repeated_modes_is_that_on_their_mean():
 
 
 def test_a_singular_pose_is_reported():
-    h = fx.load("precision-positioner")
+    h = plain_machine("precision-positioner")
     f = gather(h, SINGULAR)
     assert f.omega[0] == 0
     assert f.rest is f.damped is f.influences is None
@@ -179,7 +180,7 @@ def test_a_singular_pose_is_reported():
 
 
 def test_near_a_singular_pose_it_warns():
-    f = gather(fx.load("precision-positioner"), fx.Pose.from_rpy(0, 0, 0.244, 0, 0, np.radians(89.5)))
+    f = gather(plain_machine("precision-positioner"), fx.Pose.from_rpy(0, 0, 0.244, 0, 0, np.radians(89.5)))
     assert f.cautions[0].text.startswith("Near a singular pose")
     assert f.rest is not None
     assert np.abs(f.rest.leg_force).max() > 0
@@ -187,7 +188,7 @@ def test_near_a_singular_pose_it_warns():
 
 def test_a_machine_that_falls_over_is_said_to():
     # The isolator on springs twenty times softer: its weight, above them, wins.
-    h = fx.load("cubic-isolator").replace({"legs.stiffness": 500.0})
+    h = plain_machine("cubic-isolator").replace({"legs.stiffness": 500.0})
     f = gather(h, fx.home_pose(h))
     assert (f.damped.pole.real > 0).any()
     assert any(one.text.startswith("Not stable at rest") for one in f.cautions)
@@ -200,7 +201,7 @@ def test_what_to_beware_of_is_said(reports):
     assert any("Modes 1 and 2 are nearly repeated" in one.text for one in f.cautions)
     assert all(text in [one.text for one in f.cautions] for text in f.hexapod.warnings)
     assert html.count("<li>") == len(f.cautions)
-    h = fx.load("motion-base")
+    h = plain_machine("motion-base")
     high = gather(h, fx.Pose([0, 0, 3.5]))
     assert sum("length 4." in one.text or "length 3." in one.text for one in high.cautions) == 6
     assert page(high).count('<td class="over">') == 6
@@ -212,7 +213,7 @@ def test_what_to_beware_of_is_said(reports):
 
 
 def test_names_cannot_break_the_page():
-    h = fx.load("motion-base").replace({"name": '<script>alert("x")</script> & co'})
+    h = plain_machine("motion-base").replace({"name": '<script>alert("x")</script> & co'})
     said = page(gather(h, fx.home_pose(h)))
     assert "<script" not in said
     assert "&lt;script&gt;" in said
@@ -239,7 +240,7 @@ def test_the_command_prints_json(tmp_path, capsys, monkeypatch):
     assert found["html"] is None
     assert not list(tmp_path.iterdir())
     pose = ["--pose", "0", "0", "0.244", "0", "0", "90"]
-    assert main(["report", "precision-positioner", *pose, "--json", "--out", "."]) == 0
+    assert main(["report", file("precision-positioner"), *pose, "--json", "--out", "."]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["stability_index_rad_s"] == 0
     assert found["static_leg_force_n"] is found["tangent"] is found["condition_number"] is None
@@ -288,7 +289,7 @@ def test_a_mode_is_drawn_as_a_rigid_motion(number):
 
 
 def test_legs_are_coloured_by_their_strain():
-    h = fx.load("motion-base")
+    h = plain_machine("motion-base")
     modes = fx.natural_modes(h, fx.home_pose(h))
     heave = [d.dominant for d in fx.describe_modes(h, fx.home_pose(h))].index("z")
     ax = plots.mode(h, None, modes, heave + 1, ax=Figure().add_subplot(projection="3d"))
@@ -299,7 +300,7 @@ def test_legs_are_coloured_by_their_strain():
 
 
 def test_plots_refuse_what_they_cannot_draw():
-    h = fx.load("motion-base")
+    h = plain_machine("motion-base")
     batch = fx.Pose(np.array([[0, 0, 2.3], [0, 0, 2.4]]))
     with pytest.raises(fx.PoseError, match="batch axes"):
         plots.machine(h, batch)

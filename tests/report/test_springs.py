@@ -2,13 +2,14 @@
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.report import springs
 from flexapod.report.studies.machine import study
 from flexapod.report.study import Table
 
-ISOLATOR = fx.load("cubic-isolator")
+ISOLATOR = plain_machine("cubic-isolator")
 SOFT = ISOLATOR.replace(
     {
         "legs.joint_stiffness": {"universal": [15.0, 12.0], "spherical": 14.0, "torsion": 10.0, "loss_factor": 0.02},
@@ -19,7 +20,7 @@ SOFT = ISOLATOR.replace(
     }
 )
 AWAY = SOFT.home.displaced([0.002, 0, 0, 0.01, 0, 0])
-SCREW = fx.load("precision-positioner").replace(
+SCREW = plain_machine("precision-positioner").replace(
     {"legs.stiffness_law": {"kind": "screw", "fixed": 5e7, "axial_rigidity": 2e7, "zero_length": 0.1}}
 )
 
@@ -121,7 +122,7 @@ def test_the_stiffness_told_is_that_of_the_pose():
 
 
 def test_moments_that_are_the_rounding_of_angles_are_not_shown():
-    flexible = fx.load("cubic-isolator").replace(
+    flexible = plain_machine("cubic-isolator").replace(
         {"legs.joint_stiffness.spherical": 15.0, "legs.joint_stiffness.universal": 15.0}
     )
     for pose, zero in ((flexible.home, True), (fx.Pose.from_rpy(1e-3, 0, flexible.home.position[2], 0, 0, 0), False)):

@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import pytest
 from tests.helpers.drawn import machine
-from tests.helpers.plain import plain_machine
+from tests.helpers.plain import file, plain_machine
 
 import flexapod as fx
 from flexapod.mechanics.springs import axial_stiffness
@@ -161,12 +161,12 @@ def test_a_loss_frequency_is_positive(omega):
 def test_the_commands_know_losses(run, result):
     lossy = ("--set", "legs.loss_factor=0.05")
     out = " ".join(
-        run("simulate", "cubic-isolator", "--shock", "z", "1", "10ms", "--duration", "0.1", *lossy)[1].split()
+        run("simulate", file("cubic-isolator"), "--shock", "z", "1", "10ms", "--duration", "0.1", *lossy)[1].split()
     )
     assert "loss factors of the design are left out" in out
     quiet = run(
         "simulate",
-        "cubic-isolator",
+        file("cubic-isolator"),
         "--shock",
         "z",
         "1",
@@ -179,7 +179,7 @@ def test_the_commands_know_losses(run, result):
     )[1]
     assert "left out" not in quiet
     ratio = [
-        result("response", "cubic-isolator", *options)["damping_ratio"][0]
+        result("response", file("cubic-isolator"), *options)["damping_ratio"][0]
         for options in (lossy, ("--loss-factor", "0.05"))
     ]
     assert ratio[0] == ratio[1]
