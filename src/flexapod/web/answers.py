@@ -41,13 +41,17 @@ class Refusal(TypedDict):
 
 
 class Field(TypedDict):
-    """One key of a design file, for the form. `shapes` are the array shapes that it takes."""
+    """One key of a design file, for the form.
+
+    `shapes` are the array shapes that it takes, -1 for any length; `laws` the stiffness laws that it is a number of.
+    """
 
     key: str
     meaning: str
     unit: str
     shapes: list[list[int]]
     optional: bool
+    laws: list[str]
 
 
 class NamedText(TypedDict):
@@ -86,12 +90,16 @@ class PoseBox(TypedDict):
 
 
 class Design(TypedDict):
-    """A design. `values` are by key; `home` is in m and degrees; `leg` is the mean leg length at home, m."""
+    """A design. `values` are by key; `home` is in m and degrees; `leg` is the mean leg length at home, m.
+
+    `laws` are changes to it that give its legs each kind of stiffness.
+    """
 
     name: str
     digest: str
     warnings: list[str]
     values: dict[str, Any]
+    laws: dict[str, dict[str, Any]]
     parameters: list[Parameter]
     home: list[float]
     box: PoseBox
@@ -192,7 +200,10 @@ class ResponseMode(TypedDict):
 
 
 class FrequencyResponse(TypedDict):
-    """Magnitude and phase (degrees) by output, input and frequency (rad/s); `caution` where no motion approaches it."""
+    """Magnitude and phase (degrees) by output, input and frequency (rad/s); `caution` where no motion approaches it.
+
+    `losses` says which loss factors act.
+    """
 
     omega: Vector
     magnitude: OptionalCube
@@ -202,6 +213,7 @@ class FrequencyResponse(TypedDict):
     output_units: list[str]
     input_units: list[str]
     modes: list[ResponseMode]
+    losses: str
     caution: str
 
 

@@ -14,29 +14,45 @@ from flexapod.web import pose_ranges
 from flexapod.web.answers import Design, Field
 from flexapod.web.designs import Source, built, original
 from flexapod.web.geometry import mean_leg_length
+from flexapod.web.laws import law_choices, law_of
 from flexapod.web.parameters import main_parameters
+
+Shapes = tuple[tuple[int, ...], ...]
+_OPTIONAL = (
+    "limits.",
+    "home.",
+    "legs.loss_factor",
+    "legs.series_stiffness",
+    "legs.joint_stiffness.",
+    "legs.joint_rest.",
+    "suspension.",
+)
 
 
 def fields() -> list[Field]:
     """Every key of a design file that holds numbers, with its meaning, unit and shapes, for the form.
 
-    Short forms, stiffness laws, springs in series, a suspension and points are changed in the file.
+    Short forms and points are changed in the file.
     """
-    shorthand = re.compile(
-        r"\.(circle|rod)\.|^cubic\.|^suspension\.|^legs\.(series_stiffness|joint_rest|stiffness_law)"
-    )
-    optional = ("limits.", "home.", "legs.loss_factor", "legs.joint_stiffness.")
+    shorthand = re.compile(r"\.(circle|rod)\.|^cubic\.|^legs\.stiffness_law\.area$")
     return [
         {
             "key": _field_key(key),
             "meaning": rule.meaning,
             "unit": "°" if rule.dimension == "angle" else printed(si_unit(rule.dimension)),
-            "shapes": [list(shape) for shape in rule.shapes],
-            "optional": key.startswith(optional),
+            "shapes": _shapes(key, rule.shapes),
+            "optional": key.startswith(_OPTIONAL),
+            "laws": law_of(key),
         }
         for key, rule in KEYS.items()
         if not shorthand.search(key)
     ]
+
+
+def _shapes(key: str, shapes: Shapes) -> list[list[int]]:
+    """The shapes of a field; a suspension begins with the six numbers of a diagonal."""
+    diagonal = [[6]] if shapes == ((6, 6),) and key.startswith("suspension.") else []
+    return [*diagonal, *(list(shape) for shape in shapes)]
 
 
 def described(source: Source) -> Design:
@@ -48,6 +64,7 @@ def described(source: Source) -> Design:
         "digest": hexapod.digest,
         "warnings": list(hexapod.warnings),
         "values": _values(hexapod),
+        "laws": law_choices(hexapod),
         "parameters": main_parameters(hexapod, original(source.text)),
         "home": home,
         "box": pose_ranges.box(hexapod),

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from flexapod.conventions import AXES, LEGS, Array
+from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.linearisation import linearise
 from flexapod.vibration.frequency_response import transmissibility
 from flexapod.vibration.grid import grid_around
@@ -25,7 +26,7 @@ DRAWN = 0.15  #: greatest displacement drawn, as a share of the platform's size
 def response(asked: dict[str, Any]) -> FrequencyResponse:
     """Magnitude and phase of one quantity by output, input and frequency."""
     question, quantity = requests.question(asked), requests.choice(asked, "quantity", QUANTITIES)
-    loss = requests.number(asked, "loss_factor", 0.0, 0.0, 2.0) or None  # 0: those of the design
+    loss = _loss_factor(asked)
     linear = linearise(question.hexapod, question.pose, joint=question.joint)
     modes = linear.modes()
     omega = grid_around(
@@ -49,8 +50,33 @@ def response(asked: dict[str, Any]) -> FrequencyResponse:
         "output_units": units[str(outputs)],
         "input_units": units[str(inputs)],
         "modes": [{"name": str(i + 1), "omega": p.imag} for i, p in enumerate(modes.pole) if p.imag > 0],
+        "losses": _losses(question.hexapod, loss),
         "caution": data.attrs["caution"],
     }
+
+
+def _loss_factor(asked: dict[str, Any]) -> float | None:
+    """The loss factor of the legs that the page asks for; 0 there stands for those of the design."""
+    return requests.number(asked, "loss_factor", 0.0, 0.0, 2.0) or None
+
+
+def _losses(hexapod: Hexapod, given: float | None) -> str:
+    """In words, which loss factors act in a response; given: of the legs in place of those of the design."""
+    legs = hexapod.legs.loss_factor if given is None else np.full(6, given)
+    joints = hexapod.legs.joint_stiffness.loss_factor * hexapod.legs.joint_stiffness.any
+    source = "of the design" if given is None else "of the box"
+    acting = [
+        f"{_between(factor)} in the {where}, {whose}"
+        for factor, where, whose in ((legs, "legs", source), (joints, "joints", "of the design"))
+        if factor.any()
+    ]
+    return f"Loss factors that act: {'; '.join(acting)}." if acting else "No loss factors act."
+
+
+def _between(values: Array) -> str:
+    """One number, or the least and the greatest of several."""
+    low, high = f"{values.min():.4g}", f"{values.max():.4g}"
+    return low if low == high else f"{low} to {high}"
 
 
 def _units(data: Any) -> dict[str, list[str]]:
@@ -68,8 +94,8 @@ def _short(values: Array) -> Array:
 def shake(asked: dict[str, Any]) -> ShakenBase:
     """The platform's complex displacement for a unit motion of the base along one axis."""
     question, axis = requests.question(asked), requests.choice(asked, "axis", AXES)
-    omega = requests.number(asked, "omega", 1.0, 1e-9, 1e9)
-    data = transmissibility(question.hexapod, question.pose, omega=[omega], joint=question.joint)
+    omega, loss = requests.number(asked, "omega", 1.0, 1e-9, 1e9), _loss_factor(asked)
+    data = transmissibility(question.hexapod, question.pose, omega=[omega], loss_factor=loss, joint=question.joint)
     moved = data["absolute"].to_numpy()[0, :, AXES.index(axis)]
     base = np.eye(6)[AXES.index(axis)]
     hexapod = question.hexapod

@@ -4,6 +4,7 @@ import type { Field } from '../state/answers'
 import { page, store } from '../state/store'
 import { freshId, h } from '../widgets/dom'
 import { FieldRow } from './field-row'
+import { lawKind, legLaw } from './leg-law'
 import type { Nested } from './nested'
 import { change } from './parameters'
 
@@ -12,6 +13,7 @@ const GROUPS: [string, string][] = [
   ['base.', 'Base'],
   ['platform.', 'Platform'],
   ['legs.', 'Legs'],
+  ['suspension.', 'Suspension'],
   ['limits.', 'Limits'],
   ['home.', 'Home pose'],
 ]
@@ -25,7 +27,8 @@ export class DesignForm {
     const name = h('input', { type: 'text', id: freshId('name'), 'data-key': 'name' })
     name.addEventListener('change', () => change('name', name.value))
     store.on(['design'], () => {
-      for (const [key, row] of this.rows) row.show(page.design?.values[key] as Nested | undefined)
+      const law = lawKind()
+      for (const [key, row] of this.rows) row.show(page.design?.values[key] as Nested | undefined, law)
       if (document.activeElement !== name) name.value = page.design?.name ?? ''
     })
     const naming = h('div', { class: 'bar' }, h('label', { for: name.id }, 'Name'), name)
@@ -40,6 +43,7 @@ export class DesignForm {
   private group(start: string, title: string): HTMLElement {
     const inside = [...this.rows].filter(([key]) => key === start || (start.endsWith('.') && key.startsWith(start)))
     const elements = inside.map(([, row]) => row.element)
+    if (start === 'legs.') elements.unshift(legLaw())
     return h('details', { class: 'fold', open: start === 'platform.' }, h('summary', {}, title), ...elements)
   }
 

@@ -6,9 +6,10 @@ import { include } from '../widgets/bound'
 import { button, freshId, h } from '../widgets/dom'
 import { field, parsed } from '../widgets/format'
 import { spring } from '../widgets/layout'
-import { flat, type Nested, put, shaped } from './nested'
+import { allEqual, flat, type Nested, put, shaped } from './nested'
 import { change } from './parameters'
 
+const ANY = -1 // in a shape: any length
 const EACH = { class: 'quiet each', 'aria-pressed': 'false', 'data-option': 'each' }
 
 type Write = (path: number[], text: string) => void
@@ -24,7 +25,7 @@ export class FieldRow {
       .replace(/^\w+\./, '')
       .replace(/_deg$/, '')
       .replace(/[._]/g, ' ')
-    const perLeg = rule.key.startsWith('legs.') || rule.shapes.length > 1
+    const perLeg = this.perLeg && !rule.shapes.every((shape) => shape.includes(ANY))
     const each = button('Each leg', () => include('each', rule.key, !this.each), EACH)
     store.on(['each'], () => {
       if (each.getAttribute('aria-pressed') === String(this.each)) return
@@ -34,6 +35,12 @@ export class FieldRow {
     const [unit, meaning] = [h('span', { class: 'unit' }, rule.unit), h('span', { class: 'meaning' }, rule.meaning)]
     const bar = h('div', { class: 'bar' }, h('strong', {}, name), unit, meaning, spring(), perLeg && each)
     this.element = h('div', { class: 'field-row', 'data-key': rule.key }, bar, this.cells, this.wrong)
+  }
+
+  /** Whether the legs may have different numbers. */
+  private get perLeg(): boolean {
+    const { key, shapes } = this.rule
+    return shapes.length > 1 && !key.startsWith('suspension.')
   }
 
   private get each(): boolean {
@@ -49,15 +56,22 @@ export class FieldRow {
     }
   }
 
-  show(value: Nested | undefined): void {
+  /** Show a value, where the legs have this law. */
+  show(value: Nested | undefined, law: string): void {
     this.fail('')
+    const { key, laws } = this.rule
+    this.element.hidden = laws.length ? !laws.includes(law) : key === 'legs.stiffness' && value === undefined
     if (JSON.stringify(value) === JSON.stringify(this.value) && this.cells.childElementCount) return
     this.value = value
     if (!this.cells.contains(document.activeElement)) this.draw()
   }
 
   private draw(): void {
-    const value = shaped(this.value, this.rule.shapes, this.each)
+    if (this.takesList) {
+      this.cells.replaceChildren(this.list(this.value as number[] | number[][] | undefined))
+      return
+    }
+    const value = shaped(this.value, this.perLeg ? this.rule.shapes : this.rule.shapes.slice(0, 1), this.each)
     let whole = structuredClone(value) // numbers in the cells; NaN where one is missing
     const write = (path: number[], text: string) => {
       whole = put(whole, path, parsed(text))
@@ -67,6 +81,34 @@ export class FieldRow {
       else change(this.rule.key, structuredClone(whole))
     }
     this.cells.replaceChildren(grid(value, (v, path) => input(this.rule, v, path, write)))
+  }
+
+  /** Whether the numbers are a row of any length, the same for all legs where it is theirs. */
+  private get takesList(): boolean {
+    const rows = Array.isArray(this.value) && Array.isArray(this.value[0]) ? this.value : []
+    return this.rule.shapes.some((shape) => shape.includes(ANY)) && allEqual(rows) && !this.each
+  }
+
+  private list(value: number[] | number[][] | undefined): HTMLInputElement {
+    const row = (Array.isArray(value?.[0]) ? value[0] : (value ?? [])) as number[]
+    const element = h('input', {
+      type: 'text',
+      class: 'number list',
+      value: row.map((v) => field(Number(v.toPrecision(9)))).join('; '),
+      'aria-label': `${this.rule.key} ${this.rule.unit}, separated by semicolons`,
+      placeholder: this.rule.optional ? 'none' : '',
+      title: 'Numbers, separated by semicolons',
+    })
+    element.addEventListener('change', () => this.write(element.value))
+    return element
+  }
+
+  private write(text: string): void {
+    const words = text.split(/[;\s]+/).filter(Boolean)
+    const wrong = words.find((word) => Number.isNaN(parsed(word)))
+    if (wrong !== undefined) this.fail(`“${wrong}” is not a number.`)
+    else if (words.length || this.rule.optional) change(this.rule.key, words.length ? words.map(parsed) : null)
+    else this.fail('Give at least one number.')
   }
 }
 

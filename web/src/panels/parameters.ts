@@ -111,6 +111,8 @@ export function parametersPanel(): ParametersPanel {
     list.append(row.element)
   }
   store.on(['design', 'changes'], () => {
+    const known = new Set(page.design?.parameters.map(({ key }) => key)) // legs with a law have no one stiffness
+    for (const [key, row] of rows) row.element.hidden = !known.has(key)
     for (const parameter of page.design?.parameters ?? []) {
       const row = rows.get(parameter.key)
       if (row) row.show(parameter)

@@ -33,7 +33,7 @@ const UNITS = [
   ['rad', 'rad/s'],
 ] as const
 const OUTPUTS = (['1', '2', '3', '4', '5', '6'] as const).map((n, i) => [n, COORDINATES[i]] as const)
-const LOSS_TITLE = 'Structural damping of the legs, K (1 + iη)'
+const LOSS_TITLE = 'Structural damping of the legs, K (1 + iη), in place of the design’s; 0: that of the design'
 const HINT =
   'Exact tangent at rest, with damping. Dotted lines: damped natural frequencies. Click a plot to shake the base ' +
   'there; drag across to zoom, double-click to see all; click a name above to hide its line. Point at a plot to read ' +
@@ -47,6 +47,7 @@ class ResponsePanel {
   readonly element: HTMLElement
   private answer: FrequencyResponse | null = null
   private readonly note = status({ class: 'wrong' })
+  private readonly losses = h('p', { class: 'hint', id: 'losses' })
   private readonly output = choose('output', 'Output', OUTPUTS)
   private readonly plots = COORDINATES.map(
     () =>
@@ -87,6 +88,7 @@ class ResponsePanel {
       { id: 'response' },
       titleBar('h2', 'Frequency response', csv, figures),
       this.tools(),
+      this.losses,
       this.note,
       this.shaker.element,
       this.result.framed(),
@@ -129,6 +131,7 @@ class ResponsePanel {
     const { answer, whole, hertz } = this
     if (!answer) return
     this.note.textContent = answer.caution
+    this.losses.textContent = answer.losses
     this.output.hidden = !whole
     this.grid.classList.toggle('one', whole)
     const phase = page.panels === 'phase'

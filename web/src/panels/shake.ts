@@ -17,7 +17,7 @@ const STILL = 'Drawn larger, at one instant: this computer asks for reduced moti
 const SPEED = 0.7 // swings drawn per second
 
 function shakeQuestion() {
-  return { ...store.question(), omega: TURN * page.shake, axis: page.shake_axis }
+  return { ...store.question(), omega: TURN * page.shake, axis: page.shake_axis, loss_factor: page.loss }
 }
 
 export class Shaker {
@@ -51,7 +51,7 @@ export class Shaker {
     const tools = [this.toggle, h('span', {}, 'along'), axis, h('span', {}, 'at'), frequency.input, h('span', {}, 'Hz')]
     this.element = h('div', {}, toolBar(...tools, frequency.wrong), this.result.framed())
     store.on(['snapshot'], () => this.suggest())
-    store.on(['snapshot', 'shake', 'shake_axis'], () => this.on && shown() && this.start())
+    store.on(['snapshot', 'shake', 'shake_axis', 'loss'], () => this.on && shown() && this.start())
     store.on(['tab', 'mode'], () => {
       if (this.on && (!shown() || page.mode >= 0)) this.stop()
     })

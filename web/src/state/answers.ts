@@ -22,13 +22,14 @@ export interface Refusal {
   fields: FieldError[]
 }
 
-/** One key of a design file, for the form. `shapes` are the array shapes that it takes. */
+/** One key of a design file, for the form. `shapes` are the array shapes that it takes, -1 for any length; `laws` the stiffness laws that it is a number of. */
 export interface Field {
   key: string
   meaning: string
   unit: string
   shapes: number[][]
   optional: boolean
+  laws: string[]
 }
 
 /** A design file: its name and its text. */
@@ -62,12 +63,13 @@ export interface PoseBox {
   high: number[]
 }
 
-/** A design. `values` are by key; `home` is in m and degrees; `leg` is the mean leg length at home, m. */
+/** A design. `values` are by key; `home` is in m and degrees; `leg` is the mean leg length at home, m. `laws` are changes to it that give its legs each kind of stiffness. */
 export interface Design {
   name: string
   digest: string
   warnings: string[]
   values: Record<string, unknown>
+  laws: Record<string, Record<string, unknown>>
   parameters: Parameter[]
   home: number[]
   box: PoseBox
@@ -162,7 +164,7 @@ export interface ResponseMode {
   omega: number
 }
 
-/** Magnitude and phase (degrees) by output, input and frequency (rad/s); `caution` where no motion approaches it. */
+/** Magnitude and phase (degrees) by output, input and frequency (rad/s); `caution` where no motion approaches it. `losses` says which loss factors act. */
 export interface FrequencyResponse {
   omega: number[]
   magnitude: OptionalNumber[][][]
@@ -172,6 +174,7 @@ export interface FrequencyResponse {
   output_units: string[]
   input_units: string[]
   modes: ResponseMode[]
+  losses: string
   caution: string
 }
 
