@@ -33,7 +33,8 @@ def test_force_feedback_softens_springs_with_their_losses():
     """f = -g F of each leg's force F: K (1 + i eta) becomes K (1 + i eta)/(1 + g), if nothing else is in the leg."""
     machine = LOSSY.replace({"gravity": [0, 0, 0], "legs.damping": None})
     found = fx.control.controlled_transmissibility(machine, controller=gain(-0.5, "leg_force"), omega=OMEGA)
-    softer = machine.replace({"legs.stiffness": machine.legs.stiffness / 1.5})
+    changes = {f"legs.{name}": getattr(machine.legs, name) / 1.5 for name in ("stiffness", "series_stiffness")}
+    softer = machine.replace(changes)
     exact = fx.transmissibility(softer, omega=OMEGA).absolute.values
     np.testing.assert_allclose(found.controlled.values, exact, atol=1e-10 * np.abs(exact).max())
 

@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 
@@ -64,7 +65,7 @@ NEEDS = [
     ("control", "control", lambda: fx.control.ForceFeedback(20.0, 5.0).on(fx.linearise(*isolator())).sampled(1e-3)),
     ("slycot", "control", lambda: fx.control.h_infinity(*isolator())),
     ("ompl", "plan", plan),
-    ("optuna", "optimise", lambda: fx.optimise(fx.load("precision-positioner"), [STIFFNESS], trials=2)),
+    ("optuna", "optimise", lambda: fx.optimise(plain_machine("precision-positioner"), [STIFFNESS], trials=2)),
     ("SALib", "optimise", lambda: fx.robustness(fx.load("motion-base"), [fx.Uncertain("legs.stiffness", 0.1)],
                                                 samples=16, sensitivity=16)),
     ("skimage", "sweep", surface),

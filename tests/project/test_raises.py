@@ -15,11 +15,12 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 from tests.helpers.docstrings import errors_in
+from tests.helpers.plain import plain_machine
 from tests.helpers.public import FUNCTIONS, PUBLIC
 
 import flexapod as fx
 
-MACHINE = fx.load("precision-positioner")
+MACHINE = plain_machine("precision-positioner")
 HOME = fx.home_pose(MACHINE)
 MEETING = fx.Pose(MACHINE.base_joints[0] - MACHINE.platform_joints[0])  # the joints of leg 1 meet
 SINGULAR = fx.Pose(HOME.position, fx.Pose.from_rpy(0, 0, 0, yaw=np.pi / 2).matrix)  # as every such hexapod's

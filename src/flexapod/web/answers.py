@@ -41,10 +41,7 @@ class Refusal(TypedDict):
 
 
 class Field(TypedDict):
-    """One key of a design file, for the form.
-
-    `shapes` are the array shapes that it takes, -1 for any length; `laws` the stiffness laws that it is a number of.
-    """
+    """One key of a design file. `shapes` are those that it takes (-1: any length), `laws` those that it belongs to."""
 
     key: str
     meaning: str
@@ -90,10 +87,7 @@ class PoseBox(TypedDict):
 
 
 class Design(TypedDict):
-    """A design. `values` are by key; `home` is in m and degrees; `leg` is the mean leg length at home, m.
-
-    `laws` are changes to it that give its legs each kind of stiffness.
-    """
+    """A design. `values` by key; `laws`: changes to each; `home` in m and degrees; `leg`: mean length at home, m."""
 
     name: str
     digest: str
@@ -200,10 +194,7 @@ class ResponseMode(TypedDict):
 
 
 class FrequencyResponse(TypedDict):
-    """Magnitude and phase (degrees) by output, input and frequency (rad/s); `caution` where no motion approaches it.
-
-    `losses` says which loss factors act.
-    """
+    """Magnitude and phase (degrees) by output, input, frequency (rad/s); `losses` and `caution` are in words."""
 
     omega: Vector
     magnitude: OptionalCube

@@ -22,7 +22,7 @@ export interface Refusal {
   fields: FieldError[]
 }
 
-/** One key of a design file, for the form. `shapes` are the array shapes that it takes, -1 for any length; `laws` the stiffness laws that it is a number of. */
+/** One key of a design file. `shapes` are those that it takes (-1: any length), `laws` those that it belongs to. */
 export interface Field {
   key: string
   meaning: string
@@ -63,7 +63,7 @@ export interface PoseBox {
   high: number[]
 }
 
-/** A design. `values` are by key; `home` is in m and degrees; `leg` is the mean leg length at home, m. `laws` are changes to it that give its legs each kind of stiffness. */
+/** A design. `values` by key; `laws`: changes to each; `home` in m and degrees; `leg`: mean length at home, m. */
 export interface Design {
   name: string
   digest: string
@@ -164,7 +164,7 @@ export interface ResponseMode {
   omega: number
 }
 
-/** Magnitude and phase (degrees) by output, input and frequency (rad/s); `caution` where no motion approaches it. `losses` says which loss factors act. */
+/** Magnitude and phase (degrees) by output, input, frequency (rad/s); `losses` and `caution` are in words. */
 export interface FrequencyResponse {
   omega: number[]
   magnitude: OptionalNumber[][][]
