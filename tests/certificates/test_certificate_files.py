@@ -14,7 +14,7 @@ from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod import _core
-from flexapod.certificates import checking, file, proving
+from flexapod.certificates import checking, file, largest_file, proving
 from flexapod.certificates.certificate import Certificate
 from flexapod.workspace import proof
 from flexapod.workspace.store.integrity import sealed
@@ -22,6 +22,7 @@ from flexapod.workspace.store.integrity import sealed
 BASE, II = plain_machine("motion-base"), fx.load("mukherjee-ii")
 SMALL = fx.Box.about(fx.home_pose(BASE), 0.05, np.radians(2))
 PATH = fx.Trajectory([[0, 0, 2.4, 0, 0, 0], [0.1, 0, 2.5, 0, 0.1, 0.2]], [0, 1])
+HOME_OF_II = fx.home_pose(II).position
 HARD = fx.Box.about(fx.home_pose(II), 0.02, np.radians(12))
 
 
@@ -230,3 +231,37 @@ def test_a_cluster_shares_the_boxes():
         found = fx.certify(BASE, box, cluster=workers)
     assert found.proved
     assert found.lower == pytest.approx(fx.certify(BASE, box).lower, rel=1e-9)
+
+
+def test_a_search_for_the_largest_box_is_gone_on_with(tmp_path):
+    shape, path, told = fx.Workspace.about_home(0.05, 0.05), tmp_path / "largest.json", []
+
+    def proved_once() -> bool:
+        return path.exists() and json.loads(path.read_text())["found"] is not None
+
+    stopped = fx.certified_box(BASE, shape, 26.0, tolerance=0.02, path=path, stop=proved_once)
+    assert [one.name for one in tmp_path.iterdir()] == ["largest.json"]
+    done = fx.certified_box(BASE, shape, 26.0, tolerance=0.02, path=path, resume=True, progress=told.append)
+    whole = fx.certified_box(BASE, shape, 26.0, tolerance=0.02)
+    assert stopped.scale <= done.scale
+    assert (done.scale, done.refuted) == (whole.scale, whole.refuted)
+    assert same(replace(done.certificate, seconds=0.0), replace(whole.certificate, seconds=0.0))
+    with pytest.raises(fx.errors.OutputError, match="its bound differ"):
+        fx.certified_box(BASE, shape, 25.0, tolerance=0.02, path=path, resume=True)
+    with pytest.raises(fx.ArgumentError, match="no path is given"):
+        fx.certified_box(BASE, shape, 26.0, resume=True)
+    with pytest.raises(fx.errors.OutputError, match="its format is not"):
+        fx.certificates.read_certificate(path)
+    path.write_text(path.read_text().replace('"low": ', '"low": 1'))
+    with pytest.raises(fx.errors.OutputError, match="was changed"):
+        fx.certified_box(BASE, shape, 26.0, tolerance=0.02, path=path, resume=True)
+
+
+def test_the_box_in_hand_is_gone_on_with(tmp_path):
+    """A search that is stopped inside of a proof: the next one begins with the parts that were left."""
+    shape, path = fx.Workspace.about_home(0.02, np.radians(12)), tmp_path / "largest.json"
+    with pytest.raises(fx.ArgumentError, match="no box of this shape was proved"):
+        fx.certified_box(II, shape, 250.0, path=path, stop=lambda: largest_file.in_hand(path).exists())
+    left = fx.certificates.read_certificate(largest_file.in_hand(path))
+    assert left.status == "undecided"
+    assert json.loads(path.read_text())["scale"] == pytest.approx((left.region[0].high[0] - HOME_OF_II[0]) / 0.02)

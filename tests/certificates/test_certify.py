@@ -299,22 +299,3 @@ def test_wrong_regions_are_told():
     with pytest.raises(fx.PoseError, match="names no home pose"):
         fx.certify(BASE.replace({"home": None}))
     assert isinstance(place_of(BASE, SMALL), Boxes)
-
-
-def test_springs_that_the_prover_does_not_have_are_refused():
-    for change in ({"legs.joint_stiffness.universal": 10.0}, {"legs.series_stiffness": [1e9]}):
-        sprung = BASE.replace(change)
-        with pytest.raises(fx.ArgumentError, match=r"springs in.* no bound on the index can be proved yet"):
-            fx.certify(sprung, SMALL)
-        with pytest.raises(fx.ArgumentError, match="can be proved yet"):
-            fx.worst_pose(sprung, SMALL, certified=True)
-        for claim in (fx.certify_regular, fx.certify_limits, fx.certify_condition_number):
-            assert claim(sprung, SMALL).proved  # of geometry alone
-
-
-def test_limits_that_the_prover_does_not_have_are_refused():
-    bent = BASE.replace({"legs.joint_stiffness.universal": 10.0, "limits.universal_moment": 5.0})
-    with pytest.raises(fx.ArgumentError, match="limits moments of joints"):
-        fx.certify_limits(bent, SMALL)
-    with pytest.raises(fx.ArgumentError, match="limits moments of joints"):
-        fx.certify_regular(bent, SMALL, within_limits=True)

@@ -8,8 +8,8 @@ import sys
 import numpy as np
 import pytest
 from scipy.interpolate import BSpline, PPoly
-from scipy.optimize import minimize
-from tests.helpers.drawn import machine
+from scipy.optimize import brentq, minimize
+from tests.helpers.drawn import machine, sprung, with_law
 from tests.helpers.plain import plain_machine
 from tests.helpers.support import JOINTS, size
 from tests.oracles.exact_modes import exact_modes
@@ -17,6 +17,7 @@ from tests.oracles.exact_modes import exact_modes
 import flexapod as fx
 from flexapod import _core
 from flexapod.mechanics.joint_limits import neutral_directions
+from flexapod.workspace.quantities import kernel_limits
 
 INDEX, REGULAR, CONDITION, LIMITS = _core.CertificateKind
 PROVED, REFUTED, UNDECIDED = _core.CertificateStatus
@@ -133,7 +134,15 @@ def test_what_is_proved_and_what_remains_make_up_the_box(rng):
     assert swept(hexapod, poses[~inside]).min() > 0.99 * true
 
 
-@pytest.mark.parametrize("seed", range(8))
+def drawn(seed: int, rng) -> fx.Hexapod:
+    """A machine, every other one with springs in its joints and beside its legs, or a law of their stiffness."""
+    hexapod = machine(seed)
+    if rng.random() < 0.5:
+        hexapod = sprung(hexapod, rng, suspension=rng.random() < 0.5)
+    return with_law(hexapod, rng) if rng.random() < 0.4 else hexapod
+
+
+@pytest.mark.parametrize("seed", range(16))
 def test_drawn_machines_and_boxes_give_no_contradiction(seed):
     contradiction_free(seed)
 
@@ -141,12 +150,15 @@ def test_drawn_machines_and_boxes_give_no_contradiction(seed):
 def contradiction_free(seed: int, count: int = 2000) -> str:
     """A drawn machine, box and gap: what is proved against samples, corners and descents. The status in words."""
     rng = np.random.default_rng(1000 + seed)
-    hexapod, model = machine(seed), _core.Joint[JOINTS[seed % 2]]
+    hexapod, model = drawn(seed, rng), _core.Joint[JOINTS[seed % 2]]
     middle = around(hexapod, 0, 0)[0, :, 0] + np.r_[0.05 * size(hexapod) * rng.normal(size=3), 0.1 * rng.normal(size=3)]
     half = 10.0 ** rng.uniform(-2.5, -0.8) * np.r_[size(hexapod) * rng.random(3), rng.random(3)]
     box = np.stack([middle - half, middle + half], axis=-1)[None]
     poses = samples(box, count, rng)
-    omega = np.nan_to_num(swept(hexapod, poses, joint=model))
+    omega = swept(hexapod, poses, joint=model)
+    if np.isnan(omega).any():  # beyond the law's range
+        assert certify(hexapod, box, INDEX, 1e-3, joint=model, max_boxes=2000).status != PROVED
+        return "beyond"
     found = certify(hexapod, box, INDEX, omega.min(), gap=float(rng.choice([0.01, 0.05, 0.2])), joint=model, seconds=10)
     if found.status == PROVED:
         assert omega.min() >= found.level
@@ -198,7 +210,118 @@ def test_the_condition_of_h(name, rng):
     assert swept(hexapod, refuted.at[None], "cond_H")[0] > 0.98 * greatest
 
 
-def limits_of(hexapod, poses, length=(0.0, 0.0), universal=None, spherical=None, distance=None):
+SPRUNG = {
+    "joints": lambda rng: sprung(plain_machine("cubic-isolator"), rng, suspension=False),
+    "suspension": lambda rng: sprung(plain_machine("motion-base"), rng),
+    "screw": lambda rng: with_law(plain_machine("motion-base"), rng, "screw"),
+    "hydraulic": lambda rng: with_law(sprung(plain_machine("motion-base"), rng), rng, "hydraulic"),
+    "table": lambda rng: with_law(plain_machine("mukherjee-ii"), rng, "table"),
+}
+
+
+@pytest.mark.parametrize("joint", JOINTS)
+@pytest.mark.parametrize("kind", SPRUNG)
+def test_springs_beside_the_legs_and_laws_are_in_the_proof(kind, joint, rng):
+    hexapod, model = SPRUNG[kind](rng), _core.Joint[joint]
+    box = around(hexapod, 0.03, 3)
+    true, where = least(hexapod, box, rng, model)
+    found = certify(hexapod, box, INDEX, true, gap=0.01, joint=model)
+    assert found.status == PROVED
+    assert found.level == pytest.approx(0.99 * true, rel=1e-9)
+    assert swept(hexapod, samples(box, 20000, rng), joint=model).min() > found.level
+    assert certify(hexapod, box, INDEX, true * (1 + 1e-6), joint=model, max_boxes=5000).status != PROVED
+    refuted = certify(hexapod, box, INDEX, true * 1.02, joint=model)
+    assert refuted.status == REFUTED
+    assert swept(hexapod, refuted.at[None], joint=model)[0] == pytest.approx(refuted.value, rel=1e-9)
+    if hexapod.legs.stiffness_law is None:
+        assert exact_modes(hexapod, where, joint == "universal").omega[0] > found.level
+
+
+def test_springs_hold_the_platform_at_a_singular_pose(rng):
+    hexapod = sprung(plain_machine("motion-base"), rng)
+    box = around(hexapod, 0.002, 0.2)
+    box[0, 5] = np.radians([89, 91])
+    assert certify(hexapod, box, REGULAR, max_boxes=3000).status == REFUTED
+    true = swept(hexapod, samples(box, 5000, rng)).min()
+    found = certify(hexapod, box, INDEX, true, gap=0.05)
+    assert found.status == PROVED
+    assert found.level > 1.0
+
+
+@pytest.mark.parametrize("kind", ["screw", "hydraulic", "table"])
+def test_a_pose_beyond_the_range_of_a_law_refutes_a_bound_or_does_not_count(kind, rng):
+    hexapod = with_law(plain_machine("motion-base").replace({"limits": None}), rng, kind)
+    box = around(hexapod, 0.0, 0.0)
+    lengths = fx.inverse_kinematics(hexapod, box[0, :, 0])
+    narrow = {
+        "screw": {"zero_length": 0.95 * lengths},
+        "hydraulic": {"shortest": 0.95 * lengths, "stroke": 0.3 * lengths},
+        "table": {"lengths": lengths.mean() * np.linspace(0.95, 1.2, 20)},
+    }[kind]
+    hexapod = hexapod.replace({f"legs.stiffness_law.{name}": value for name, value in narrow.items()})
+    law = hexapod.legs.stiffness_law
+    box[0, 2] += [-0.1 * lengths.mean(), 0.02]
+    box[0, 4] = [0.0, 0.05]
+    beyond = certify(hexapod, box, INDEX, 1e-3)
+    assert (beyond.status, beyond.broken) == (REFUTED, 6)
+    assert np.isnan(beyond.value)
+    assert np.isnan(swept(hexapod, beyond.at[None])[0])
+    at = fx.Pose(beyond.at[:3], beyond.at[3:].reshape(3, 3))
+    length = fx.inverse_kinematics(hexapod, at)[beyond.leg]
+    assert not law.range[beyond.leg, 0] <= length <= law.range[beyond.leg, 1]
+    with_gap = certify(hexapod, box, INDEX, 1e3, gap=0.1)
+    assert (with_gap.status, with_gap.broken) == (REFUTED, 6)
+    limits = kernel_limits(hexapod)
+    poses = samples(box, 20000, rng)
+    within = swept(hexapod, poses, "within_limits", limits=limits)
+    omega = swept(hexapod, poses)
+    assert 0.1 < within.mean() < 0.9
+    found = certify(hexapod, box, INDEX, omega[within].min(), gap=0.02, limits=limits)
+    assert found.status == PROVED
+    assert found.outside < 1 - within.mean() + 0.02
+    assert found.level <= omega[within].min()
+    # up to the very end of the range
+    low = law.range[:, 0].max()
+    line = around(hexapod, 0.0, 0.0)
+    height = brentq(
+        lambda z: fx.inverse_kinematics(hexapod, [*line[0, :2, 0], z, 0, 0, 0]).min() - low, 0.1, line[0, 2, 0]
+    )
+    line[0, 2] = [height, height + 0.1]
+    assert certify(hexapod, line, INDEX, 1e-3).status == PROVED
+    line[0, 2, 0] = height - 1e-6
+    assert certify(hexapod, line, INDEX, 1e-3, max_boxes=5000).status != PROVED
+
+
+def test_moments_of_springs_in_joints_are_limited(rng):
+    hexapod = sprung(plain_machine("motion-base"), rng)
+    box = around(hexapod, 0.03, 3)
+    poses = samples(box, 20000, rng)
+    free = limits_of(hexapod, poses, (0.1, 0.1))
+    at = _core.sweep(hexapod.packed, UNIVERSAL, poses, _core.SweepQuantity.joint_moment, free, 1)
+    most = [at[f"{name}_moment"].max() for name in ("universal", "spherical")]
+
+    def limits(universal, spherical):
+        return limits_of(hexapod, poses, (0.1, 0.1), moments=(universal * most[0], spherical * most[1]))
+
+    assert certify(hexapod, box, LIMITS, limits=limits(1.02, 1.02), max_boxes=200000).status == PROVED
+    for which, given in ((4, limits(0.97, 2.0)), (5, limits(2.0, 0.97))):
+        found = certify(hexapod, box, LIMITS, limits=given, max_boxes=200000)
+        assert (found.status, found.broken) == (REFUTED, which)
+        assert not swept(hexapod, found.at[None], "within_limits", limits=given)[0]
+    half = limits(0.7, 0.8)
+    within = swept(hexapod, poses, "within_limits", limits=half)
+    omega = swept(hexapod, poses)
+    assert 0.02 < within.mean() < 0.98
+    found = certify(hexapod, box, INDEX, 0.97 * omega[within].min(), limits=half, max_boxes=200000)
+    assert found.status == PROVED
+    assert found.outside < 1 - within.mean() + 0.02
+    plain = plain_machine("motion-base")  # without springs there are no moments
+    assert certify(plain, box, LIMITS, limits=limits(1e-9, 1e-9)).status == PROVED
+
+
+def limits_of(
+    hexapod, poses, length=(0.0, 0.0), universal=None, spherical=None, distance=None, moments=(np.inf, np.inf)
+):
     """Limits that hold by so much of what sampled poses have."""
     free = _core.SweepLimits(
         neutral=neutral_directions(hexapod),
@@ -218,8 +341,8 @@ def limits_of(hexapod, poses, length=(0.0, 0.0), universal=None, spherical=None,
         universal_angle=np.inf if universal is None else angles["universal_angle"].max() * (1 + universal),
         spherical_angle=np.inf if spherical is None else angles["spherical_angle"].max() * (1 + spherical),
         leg_distance=-np.inf if distance is None else at["leg_distance"].min() * (1 - distance),
-        universal_moment=np.inf,
-        spherical_moment=np.inf,
+        universal_moment=moments[0],
+        spherical_moment=moments[1],
     )
 
 
@@ -384,29 +507,6 @@ def test_wrong_input_is_refused(change, words):
         certify(hexapod, **given)
 
 
-def test_a_design_with_other_springs_is_refused():
-    hexapod = plain_machine("motion-base")
-    packed = hexapod.packed.copy()
-    packed[_core.plain_size] = 1e-9  # a spring in series
-    with pytest.raises(ValueError, match="springs in joints"):
-        _core.certify(packed, UNIVERSAL, around(hexapod, 0.01, 1), INDEX, 1.0, options(), None)
-
-
-def test_limits_of_moments_are_refused():
-    hexapod = plain_machine("motion-base")
-    limits = _core.SweepLimits(
-        neutral=neutral_directions(hexapod),
-        leg_length=np.tile([0.0, 9.0], (6, 1)),
-        universal_angle=np.inf,
-        spherical_angle=np.inf,
-        leg_distance=-np.inf,
-        universal_moment=1.0,
-        spherical_moment=np.inf,
-    )
-    with pytest.raises(ValueError, match="moments"):
-        certify(hexapod, around(hexapod, 0.01, 1), LIMITS, limits=limits)
-
-
 def test_every_instruction_set_proves_it():
     code = (
         "import numpy as np, flexapod as fx; from flexapod import _core; from tests.core.test_certify import *\n"
@@ -424,10 +524,11 @@ def test_every_instruction_set_proves_it():
         assert run.stdout.split() == ["proved", simd]
 
 
-def test_ball_arithmetic_proves_the_same(rng):
+@pytest.mark.parametrize("kind", ["constant", *SPRUNG])
+def test_ball_arithmetic_proves_the_same(kind, rng):
     """A second implementation, of other equations, on a small box."""
     exact_bounds = pytest.importorskip("tests.oracles.exact_bounds", reason="python-flint is not installed")
-    hexapod = plain_machine("motion-base")
+    hexapod = plain_machine("motion-base") if kind == "constant" else SPRUNG[kind](rng)
     box = around(hexapod, 0.005, 0.5)
     found = certify(hexapod, box, INDEX, least(hexapod, box, rng)[0], gap=0.05)
     assert found.status == PROVED

@@ -1,33 +1,16 @@
 // Taylor models against the same templates in long double, whose roundings are 2000 times smaller.
 #include <doctest/doctest.h>
 
-#include "certify/pose_models.hpp"
 #include "example.hpp"
 #include "model/springs.hpp"
+#include "wide.hpp"
 
 namespace flexapod {
 
-/// long double as a scalar of the core: with functions that are found by its name.
-struct Wide {
-  long double v = 0;
-  Wide() = default;
-  Wide(long double value) : v(value) {}  // NOLINT
-  friend Wide operator+(Wide a, Wide b) { return a.v + b.v; }
-  friend Wide operator-(Wide a, Wide b) { return a.v - b.v; }
-  friend Wide operator*(Wide a, Wide b) { return a.v * b.v; }
-  friend Wide operator-(Wide a) { return -a.v; }
-  Wide& operator+=(Wide b) { return v += b.v, *this; }
-  Wide& operator-=(Wide b) { return v -= b.v, *this; }
-};
-inline Wide rsqrt(Wide a) { return 1.0L / std::sqrt(a.v); }
-inline Wide sqrt(Wide a) { return std::sqrt(a.v); }
-template <> struct is_scalar<Wide> : std::true_type {};
-
 namespace {
 
-using Lanes = Pack<Vector, 1>;
-struct NoRemainder {
-  static constexpr bool product_remainder = false, drop_squares = true;
+struct NoRemainder : Sound {
+  static constexpr bool product_remainder = false;
 };
 
 template <class T>
@@ -35,19 +18,6 @@ concept Compares = requires(T a) { a < a; } || requires(T a) { a > a; } || requi
                    requires(T a) { a < 1.0; } || requires(T a) { a == a; };
 static_assert(!Compares<Taylor<Lanes, 6, 3>>, "a branch on the value of a model must not compile");
 static_assert(Compares<double>);
-
-/// How far a model's function may be from an exact value, of its radius, in lane 0.
-template <class T> double used(const T& model, const long double (&u)[T::variables], Wide exact) {
-  constexpr const auto& m = monomials<T::variables, T::highest>;
-  long double value = 0;
-  for (int k = 0; k < T::count; ++k) {
-    long double term = lane_of(model.c[k], 0);
-    for (int i = 0; i < T::variables; ++i)
-      for (int p = 0; p < m.power[k][i]; ++p) term *= u[i];
-    value += term;
-  }
-  return static_cast<double>(std::abs(value - exact.v) / lane_of(model.r, 0));
-}
 
 /// What of a machine a certificate takes: all numbers of H and J.
 template <class T> struct Numbers {
@@ -86,14 +56,7 @@ struct Trial {
     for (auto& each : boxes) each = &box;
     return {machine, box_pose<Taylor<Lanes, 6, 3, Rules>>(boxes)};
   }
-  Numbers<Wide> exact(const long double (&u)[6]) const {
-    long double x[6];
-    for (int i = 0; i < 6; ++i)
-      x[i] = box.low[i] + (1 + u[i]) / 2 * (static_cast<long double>(box.high[i]) - box.low[i]);
-    const Vec3<Wide> sine(std::sin(x[3]), std::sin(x[4]), std::sin(x[5]));
-    const Vec3<Wide> cosine(std::cos(x[3]), std::cos(x[4]), std::cos(x[5]));
-    return {machine, {{x[0], x[1], x[2]}, roll_pitch_yaw(sine, cosine)}};
-  }
+  Numbers<Wide> exact(const long double (&u)[6]) const { return {machine, wide_pose(box, u)}; }
   /// The largest part of a radius that is used, at vertices and random points.
   template <class Rules> double most_used(example::Draw& draw, int points) const {
     const auto models = this->models<Rules>();

@@ -8,8 +8,8 @@ namespace flexapod {
 namespace {
 
 using Lanes = Pack<Vector, 1>;
-struct CountedSquares {
-  static constexpr bool product_remainder = true, drop_squares = false;
+struct CountedSquares : Sound {
+  static constexpr bool drop_squares = false;
 };
 
 /// A matrix of models with the unit matrix at the centre; its coefficients in all lanes.

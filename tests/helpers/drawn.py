@@ -95,6 +95,32 @@ def sprung(hexapod: fx.Hexapod, rng: np.random.Generator, suspension: bool = Tru
     return hexapod.replace(changes)
 
 
+def with_law(hexapod: fx.Hexapod, rng: np.random.Generator, kind: str | None = None) -> fx.Hexapod:
+    """The same machine with legs whose stiffness goes by a law of their length, about as stiff as before at home."""
+    lengths = fx.inverse_kinematics(hexapod, hexapod.home)
+    size, stiffness = float(lengths.mean()), float(hexapod.legs.stiffness.mean())
+    kind = kind or str(rng.choice(["screw", "hydraulic", "table"]))
+    nodes = size * np.linspace(0.3, 2.5, 20) * rng.uniform(0.97, 1.03, 20)
+    law = {
+        "screw": {
+            "fixed": 2 * stiffness * rng.uniform(0.5, 2, 6),
+            "axial_rigidity": stiffness * size * rng.uniform(0.3, 3, 6),
+            "zero_length": 0.3 * lengths,
+        },
+        "hydraulic": {
+            "bulk_modulus": 1e9,
+            "area_1": 1e-9 * stiffness * size * rng.uniform(0.2, 0.6, 6),
+            "area_2": 1e-9 * stiffness * size * rng.uniform(0.0, 0.5, 6),
+            "dead_1": 0.1 * lengths * rng.uniform(0.3, 2, 6),
+            "dead_2": 0.1 * lengths * rng.uniform(0.3, 2, 6),
+            "stroke": 1.2 * lengths,
+            "shortest": 0.4 * lengths,
+        },
+        "table": {"lengths": nodes, "stiffnesses": stiffness * rng.uniform(0.5, 2, len(nodes))},
+    }[kind]
+    return hexapod.replace({"legs.stiffness": None, "legs.stiffness_law": {"kind": kind, **law}})
+
+
 def with_round_legs(hexapod: fx.Hexapod) -> fx.Hexapod:
     """The same machine with legs that look the same when they turn about themselves."""
     changes = {}

@@ -1,12 +1,16 @@
 """A second, slow proof of a lower bound of omega_1 over a box, in ball arithmetic (FLINT), written apart from the core.
 
-Inertia by partial velocities as in `exact_modes`. K - t J is enclosed over a box by evaluating it with balls that hold the box's
+Inertia by partial velocities as in `exact_modes`; springs in joints by the rates about the joints' axes, a suspension by the twist of
+its point, tables of stiffness by SciPy's. K - t J is enclosed over a box by evaluating it with balls that hold the box's
 coordinates, and by its mean value form: the value at the centre plus derivatives over the box times the box. Both are
 brought into the frame of the centre's modes, where Gershgorin's circles must lie right of zero.
 """
 
 import numpy as np
 from flint import arb, arb_mat, ctx
+from scipy.interpolate import PchipInterpolator
+
+from flexapod.design.stiffness_laws import HydraulicLaw, ScrewLaw
 
 ctx.prec = 80
 
@@ -88,6 +92,10 @@ class _Jet:
     def cos(self):
         return self._chain(self.value.cos(), -self.value.sin())
 
+    def reciprocal(self):
+        inverse = 1 / self.value
+        return self._chain(inverse, -inverse * inverse)
+
     def rsqrt(self):
         root = 1 / self.value.sqrt()
         return self._chain(root, -root * root * root / 2)
@@ -134,11 +142,13 @@ def _matrix(hexapod, coordinates, t):
         u = _dot(S, S).rsqrt()
         s = [u * a for a in S]
         h = [*s, *_cross(q, s)]
-        k = _jet(hexapod.legs.stiffness[i])
+        k = _axial_stiffness(hexapod, i, _dot(S, S) * u)
         for a in range(6):
             for b in range(6):
                 A[a][b] = A[a][b] + k * h[a] * h[b]
         _add_leg(A, -t, hexapod, i, q, s, u)
+    if hexapod.suspension is not None:
+        _add_suspension(A, hexapod.suspension, R)
     value = arb_mat(6, 6, [A[a][b].value for a in range(6) for b in range(6)])
     slopes = [arb_mat(6, 6, [A[a][b].slopes[d] for a in range(6) for b in range(6)]) for d in range(6)]
     return value, slopes
@@ -162,6 +172,7 @@ def _add_leg(A, factor, hexapod, i, q, s, u):
         spin = _dot(n, across) * inverse
         omega.append([a - spin * b for a, b in zip(across, s, strict=True)])
         velocity.append(v)
+    _add_joints(A, hexapod.legs.joint_stiffness, i, omega, k, y, s)
     for part, at_platform in ((hexapod.legs.lower, False), (hexapod.legs.upper, True)):
         r = _times(axes, _vector(part.mass_center[i]))
         speed = [
@@ -169,6 +180,61 @@ def _add_leg(A, factor, hexapod, i, q, s, u):
             for v, w in zip(velocity, omega, strict=True)
         ]
         _add_energy(A, factor, speed, omega, axes, part.mass[i], part.inertia[i])
+
+
+def _add_joints(A, springs, i, omega, k, y, s):
+    """The universal joint turns about its axis in the base and about y; above, the leg bends and twists."""
+    first, second = ([_dot(w, axis) for w in omega] for axis in (k, y))
+    turn = [[_jet(float(column - 3 == r)) - w[r] for r in range(3)] for column, w in enumerate(omega)]
+    twist = [_dot(w, s) for w in turn]
+    k_1, k_2, bend, torsion = map(_jet, (*springs.universal[i], springs.spherical[i], springs.torsion[i]))
+    for a in range(6):
+        for b in range(6):
+            along = twist[a] * twist[b]
+            A[a][b] += k_1 * first[a] * first[b] + k_2 * second[a] * second[b] + torsion * along
+            A[a][b] += bend * (_dot(turn[a], turn[b]) - along)
+
+
+def _add_suspension(A, suspension, R):
+    p, twists = _times(R, _vector(suspension.point)), []
+    for column in range(6):
+        unit = [_jet(float(column % 3 == r)) for r in range(3)]
+        none = [_jet(0.0)] * 3
+        twists.append([*unit, *none] if column < 3 else [*_cross(unit, p), *unit])
+    for a in range(6):
+        force = [_dot(_vector(row), twists[a]) for row in suspension.stiffness]
+        for b in range(6):
+            A[a][b] += _dot(force, twists[b])
+
+
+def _axial_stiffness(hexapod, i, L):
+    law, compliance = hexapod.legs.stiffness_law, _jet(hexapod.legs.series_compliance[i])
+    if law is None:
+        return (_jet(1 / arb(float(hexapod.legs.stiffness[i]))) + compliance).reciprocal()
+    if isinstance(law, ScrewLaw):
+        own = _jet(1 / arb(float(law.fixed[i]))) + (L - law.zero_length[i]) * (1 / arb(float(law.axial_rigidity[i])))
+        return (own + compliance).reciprocal()
+    if isinstance(law, HydraulicLaw):
+        x = L - law.shortest[i]
+        below = _jet(law.area_1[i]) * (x + law.dead_1[i]).reciprocal()
+        above = _jet(law.area_2[i]) * (_jet(law.stroke[i]) - x + law.dead_2[i]).reciprocal()
+        k = _jet(law.bulk_modulus[i]) * (below + above)
+    else:
+        k = _in_table(PchipInterpolator(law.lengths, law.stiffnesses), L)
+    return (k.reciprocal() + compliance).reciprocal()
+
+
+def _in_table(table, L) -> _Jet:
+    """All values and slopes of the pieces that a ball of lengths meets."""
+    found = None
+    for j, (start, stop) in enumerate(zip(table.x[:-1], table.x[1:], strict=True)):
+        part = L.value.intersection(_ball(start, stop)) if L.value.overlaps(_ball(start, stop)) else None
+        if part is None:
+            continue
+        s, (c, b, a, value) = part - arb(float(start)), (arb(float(number)) for number in table.c[:, j])
+        both = value + s * (a + s * (b + s * c)), a + s * (2 * b + 3 * c * s)
+        found = both if found is None else tuple(one.union(other) for one, other in zip(found, both, strict=True))
+    return L._chain(*found)
 
 
 def _add_body(A, factor, at, centre, axes, mass, inertia):

@@ -19,13 +19,9 @@ struct Options : CertifyOptions {
   std::optional<Limits> limits;
 };
 
-/// The task of a design, where certificates cover it.
 Task task_of(const Input& design, Joint joint, Kind kind) {
-  const auto* d = reinterpret_cast<const Design<double>*>(rows(design, 1, design_size, "design"));
-  if (used_size(*d) != plain_size)
-    throw std::invalid_argument("the design has springs in joints or in series, a law of stiffness or a suspension");
   Task task{};
-  task.design = design.data(), task.joint = joint, task.kind = kind;
+  task.design = rows(design, 1, design_size, "design"), task.joint = joint, task.kind = kind;
   return task;
 }
 
@@ -33,8 +29,6 @@ Certification run(Task task, double level, const Options& options, std::vector<c
                   const nb::object& progress) {
   task.limits = options.limits ? &*options.limits : nullptr;
   if (task.kind == Kind::limits && task.limits == nullptr) throw std::invalid_argument("limits are not given");
-  if (options.limits && !(options.limits->universal_moment == INFINITY && options.limits->spherical_moment == INFINITY))
-    throw std::invalid_argument("there are limits of moments, which certificates do not cover");
   CertifySearch search(kernels().certify, task, level, options, std::move(boxes));
   {
     Crew crew(options.threads, options.threads, [&](size_t) { search.run(crew.stop); });

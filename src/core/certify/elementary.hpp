@@ -71,6 +71,24 @@ Taylor<Lane, n, order, Rules> operator/(const Taylor<Lane, n, order, Rules>& a,
   return a * reciprocal(b);
 }
 
+template <class Lane, int n, int order, class Rules>
+Taylor<Lane, n, order, Rules> operator/(double a, const Taylor<Lane, n, order, Rules>& b) {
+  return a * reciprocal(b);
+}
+template <class Lane, int n, int order, class Rules>
+Taylor<Lane, n, order, Rules> operator/(Taylor<Lane, n, order, Rules> a, double b) {
+  const Lane divisor(b);
+  for (Lane& c : a.c) c = c / divisor;
+  return a.rounded(a.r / abs(divisor));
+}
+
+/// What a C function gives in each lane.
+template <class Lane, class Function, class... Lanes> Lane each_lane(Function&& function, const Lanes&... of) {
+  double result[Lane::lanes];
+  for (int l = 0; l < Lane::lanes; ++l) result[l] = function(lane_of(of, l)...);
+  return Lane::load(result);
+}
+
 /// Sine and cosine. The derivatives are at most 1, so that the rest of the series is reach^(order + 1) / (order + 1)! at
 /// most.
 template <class T> struct SinCosModel {
@@ -79,10 +97,9 @@ template <class T> struct SinCosModel {
   explicit SinCosModel(const T& a) {
     using Lane = typename T::Number;
     constexpr int order = T::highest;
-    double at[Lane::lanes], s[Lane::lanes], c[Lane::lanes];
-    a.c[0].store(at);
-    for (int l = 0; l < Lane::lanes; ++l) s[l] = std::sin(at[l]), c[l] = std::cos(at[l]);
-    const Lane value[4] = {Lane::load(s), Lane::load(c), -Lane::load(s), -Lane::load(c)};  // and derivatives
+    const Lane s = each_lane<Lane>([](double x) { return std::sin(x); }, a.c[0]);
+    const Lane c = each_lane<Lane>([](double x) { return std::cos(x); }, a.c[0]);
+    const Lane value[4] = {s, c, -s, -c};  // and derivatives
     Lane f[order + 1], g[order + 1], rest = a.variation();
     const Lane reach = rest;
     double factorial = 1.0;
@@ -93,5 +110,27 @@ template <class T> struct SinCosModel {
     sin = compose(a, f, rest), cos = compose(a, g, rest);
   }
 };
+
+/// The angle of a vector with the parts x and y, by the arc tangent of what is left when it is turned back by the angle at
+/// the centre. Where it may pass pi there is no bound.
+template <class Lane, int n, int order, class Rules>
+Taylor<Lane, n, order, Rules> signed_angle(const Taylor<Lane, n, order, Rules>& y,
+                                           const Taylor<Lane, n, order, Rules>& x) {
+  using T = Taylor<Lane, n, order, Rules>;
+  const Lane at = each_lane<Lane>([](double b, double a) { return std::atan2(b, a); }, y.c[0], x.c[0]);
+  const Lane sine = each_lane<Lane>([](double a) { return std::sin(a); }, at);
+  const Lane cosine = each_lane<Lane>([](double a) { return std::cos(a); }, at);
+  const Lane size = abs(x.c[0]) + x.variation() + abs(y.c[0]) + y.variation();
+  T across = cosine * y - sine * x, along = cosine * x + sine * y;
+  across.r += 2.0 * rounding::unit * size, along.r += 2.0 * rounding::unit * size;
+  const T q = across / along;
+  const Lane reach = (abs(q.c[0]) + q.variation()) * rounding::up, cube = reach * reach * reach;
+  T angle = at + q;
+  if constexpr (order > 2) angle = angle - (q * q * q) / 3.0;
+  const Lane rest = order > 2 ? cube * reach * reach / 5.0 : cube / 3.0;  // |rest| for every q, by the derivative's
+  angle.r = (angle.r + rest) * rounding::up + rounding::least;
+  angle.r = select(abs(at) + reach < 3.14159, angle.r, Lane(std::numeric_limits<double>::infinity()));
+  return angle;
+}
 
 }  // namespace flexapod

@@ -3,11 +3,22 @@
 
 #include "certify/elementary.hpp"
 #include "certify/task.hpp"
+#include "model/joint_springs.hpp"
 #include "model/leg_distance.hpp"
+#include "model/machine.hpp"
 
 namespace flexapod {
 
-enum BrokenLimit { length_limit, universal_limit, spherical_limit, distance_limit };
+/// What a centre may break. The last is no limit of the design.
+enum BrokenLimit {
+  length_limit,
+  universal_limit,
+  spherical_limit,
+  distance_limit,
+  universal_moment_limit,
+  spherical_moment_limit,
+  stiffness_law
+};
 
 /// All limits over the boxes of all lanes. Values are by the legs' length or without a unit.
 template <class T> class LimitModels {
@@ -15,8 +26,9 @@ template <class T> class LimitModels {
   static constexpr int n = T::variables;
 
  public:
-  LimitModels(const sweep_task::Limits& limits, const Design<double>& design, const Pose<T>& base) : design_(design) {
-    const Geometry<T, double> g(design, base);
+  LimitModels(const sweep_task::Limits& limits, const Machine<double>& machine, const Pose<T>& base)
+      : design_(machine.design) {
+    const Geometry<T, double> g(design_, base);
     for (int i = 0; i < 6; ++i) {
       const T L2 = dot(g.S[i], g.S[i]), L = sqrt(L2);
       const auto* const ends = limits.length[i];
@@ -27,6 +39,7 @@ template <class T> class LimitModels {
         add(universal_limit, i, dot(base.R * below, g.S[i]) - cosine(limits.universal_angle, below) * L, L.c[0]);
       if (limits.spherical_angle < pi)
         add(spherical_limit, i, dot(above, g.S[i]) - cosine(limits.spherical_angle, above) * L, L.c[0]);
+      if (machine.features.joints) moments(limits, machine, i, g, base.R, L);
     }
     if (limits.leg_distance > 0.0) distances(g, base.R, limits.leg_distance);
   }
@@ -59,7 +72,7 @@ template <class T> class LimitModels {
     Lane bend[n];              // by u_i
   };
   const Design<double>& design_;
-  Item items_[24 + 2 * leg_pairs];
+  Item items_[36 + 2 * leg_pairs];
   int count_ = 0;
 
   static Vec3<double> direction(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
@@ -103,6 +116,25 @@ template <class T> class LimitModels {
     }
     const Lane error = (a.r + rounding::unit * size) * rounding::up;
     least = low - error, most = high + error;
+  }
+
+  /// Of the springs in a leg's joints, in the exact joint model: about both axes of the universal joint together, and of
+  /// the bending at the platform, which is an angle.
+  void moments(const sweep_task::Limits& limits, const Machine<double>& machine, int i, const Geometry<T, double>& g,
+               const Mat3<T>& base, const T& L) {
+    const LegSprings<double>& k = design_.springs[i];
+    const JointRest<double>& rest = machine.rest[i];
+    if (limits.universal_moment < 1e150) {
+      const LegAxes<T> leg(g.S[i], g.k[i], Joint::universal);
+      const UniversalAngles<T> angle(rest, leg, g.k[i], base);
+      const T first = k.k_u[0] * angle.first, second = k.k_u[1] * angle.second;
+      const double square = limits.universal_moment * limits.universal_moment;
+      add(universal_moment_limit, i, square * (1.0 - tiny) - first * first - second * second, Lane(square));
+    }
+    const Vec3<double>& neutral = rest.in_platform.row[0];
+    if (limits.spherical_moment < pi * k.k_s)
+      add(spherical_moment_limit, i, dot(neutral, g.S[i]) - cosine(limits.spherical_moment / k.k_s, neutral) * L,
+          L.c[0]);
   }
 
   void distances(const Geometry<T, double>& g, const Mat3<T>& base, double limit) {

@@ -4,6 +4,7 @@
 #include "certify/halving.hpp"
 #include "certify/limit_models.hpp"
 #include "certify/matrix_models.hpp"
+#include "certify/stiffness_models.hpp"
 
 namespace flexapod {
 
@@ -40,7 +41,10 @@ template <class Lane, int n, class Rules = Sound> class Looking {
       : task_(task),
         machine_(*reinterpret_cast<const Design<double>*>(task.design), task.joint),
         platform_(platform_inertia(machine_.design, Mat3<double>::identity()).matrix()),
-        size_(mean_radius(machine_.design)) {}
+        size_(mean_radius(machine_.design)),
+        law_(task.kind == Kind::index && machine_.features.law != Law::constant),
+        others_(task.kind == Kind::index && machine_.features.others()),
+        within_law_(law_ && lengths_within_law()) {}
 
   void look(double level, const Box* boxes, int count, Finding* found) {
     for (int l = 0; l < Lane::lanes; ++l) boxes_[l] = &boxes[std::min(l, count - 1)];
@@ -60,10 +64,12 @@ template <class Lane, int n, class Rules = Sound> class Looking {
   const Machine<double> machine_;
   const Mat6<double> platform_;
   const double size_;
+  const bool law_, others_, within_law_;  // what of the springs counts; whether limits keep lengths in the law's range
   const Box* boxes_[Lane::lanes];
   Pose<T> pose_;
   SpringMatrix<T> directions_;
-  Mat6<T> M_;
+  Mat6<T> M_, K_;       // inertia; stiffness of springs that do not lie along the legs
+  Lane beyond_law_[6];  // 1 where a leg at the centre is
   MatrixModel<T> A_;
   HalvingTest<Lane, n, Rules> test_;
 
@@ -91,7 +97,7 @@ template <class Lane, int n, class Rules = Sound> class Looking {
   /// True where limits leave nothing to be looked at.
   bool judge_limits(const Pose<T>& base, int count, Finding* found) {
     const Pose<Low> low = cut(base);
-    LimitModels<Low> limits(*task_.limits, machine_.design, low);
+    LimitModels<Low> limits(*task_.limits, machine_, low);
     bool all = true;
     for (int l = 0; l < count; ++l) {
       limits.judge(l, task_.kind == Kind::limits, found[l]);
@@ -108,8 +114,8 @@ template <class Lane, int n, class Rules = Sound> class Looking {
   }
 
   void judge_matrix(const Pose<T>& base, double level, int count, Finding* found) {
-    set_matrices(Geometry<T, double>(machine_.design, base));
-    const CentreModes<Lane> modes(constant_of(M_), root_directions());
+    set_matrices(Geometry<T, double>(machine_.design, base), base.R);
+    const CentreModes<Lane> modes = centre_modes();
     note_centres(modes, count, found);
     bool proved[Lane::lanes];
     FrameRows<Lane> C;
@@ -132,18 +138,24 @@ template <class Lane, int n, class Rules = Sound> class Looking {
       modes.frame(t, false, C);
       prove(C, 1.0, -t, count, proved);
       for (int l = 0; l < count; ++l) settle(level, l, proved[l], found[l]);
+      if (law_ && !within_law_) note_law(count, found);
     }
   }
 
   /// The springs' directions, and what stiffness is compared with: inertia, or lengths and angles where directions alone
   /// are asked for.
-  void set_matrices(const Geometry<T, double>& g) {
-    SpatialInertia<T> legs{};
+  void set_matrices(const Geometry<T, double>& g, const Mat3<T>& base) {
+    SpatialInertia<T> legs{}, others{};
     for (int i = 0; i < 6; ++i) {
       const LegAxes<T> leg(g.S[i], g.k[i], machine_.joint);
       set_spring_directions(directions_, i, g.q_p[i], leg);
       if (task_.kind == Kind::index) add_leg_inertia(legs, leg, machine_.inertia[i], g.q_p[i]);
+      if (law_) scale_direction(i, leg.L);
+      if (others_ && machine_.features.joints)
+        add_joint_stiffness(others, leg, machine_.design.springs[i], g.q_p[i], machine_.joint);
     }
+    if (others_ && machine_.features.suspension) add_suspension(others, machine_.design, Mat3<T>::identity(), base);
+    if (others_) K_ = others.matrix();
     M_ = legs.matrix();
     const double turn = task_.kind == Kind::regular ? size_ * size_ : 1.0;
     for (int r = 0; r < 6; ++r)
@@ -151,7 +163,39 @@ template <class Lane, int n, class Rules = Sound> class Looking {
         M_[r][s] += task_.kind == Kind::index ? platform_[r][s] : r != s ? 0.0 : r < 3 ? 1.0 : turn;
   }
 
-  double stiffness(int j) const { return task_.kind == Kind::index ? machine_.axial.constant[j] : 1.0; }
+  /// By a law, the stiffness is in the direction.
+  void scale_direction(int i, const T& L) {
+    const T root = sqrt(leg_stiffness(machine_, i, L, within_law_, beyond_law_[i]));
+    for (int r = 0; r < 6; ++r) directions_[r][i] *= root;
+  }
+  double stiffness(int j) const { return task_.kind == Kind::index && !law_ ? machine_.axial.constant[j] : 1.0; }
+
+  bool lengths_within_law() const {
+    if (task_.limits == nullptr) return false;
+    for (int i = 0; i < 6; ++i)
+      for (const double end : task_.limits->length[i])
+        if (!(machine_.axial.room(machine_.design, machine_.features, i, end) > 0.0)) return false;
+    return true;
+  }
+  /// A pose at which a leg's stiffness is not known has no index.
+  void note_law(int count, Finding* found) const {
+    for (int i = 0; i < 6; ++i)
+      for (int l = 0; l < count; ++l)
+        if (lane_of(beyond_law_[i], l) > 0.0 && found[l].limit < 0) {
+          found[l].verdict = Verdict::broken, found[l].value = std::numeric_limits<double>::quiet_NaN();
+          found[l].limit = stiffness_law, found[l].leg = i;
+        }
+  }
+
+  CentreModes<Lane> centre_modes() const {
+    const SpringMatrix<Lane> along = root_directions();
+    if (!others_) return {constant_of(M_), along};
+    const Mat6<Lane> root = semidefinite_root(constant_of(K_));
+    Mat6<Lane, spring_count + 6> F;
+    for (int r = 0; r < 6; ++r)
+      for (int j = 0; j < 6; ++j) F[r][j] = along[r][j], F[r][spring_count + j] = root[r][j];
+    return {constant_of(M_), F};
+  }
 
   static Mat6<Lane> constant_of(const Mat6<T>& models) {
     Mat6<Lane> centre;
@@ -176,7 +220,8 @@ template <class Lane, int n, class Rules = Sound> class Looking {
       Mat6<double> H;
       for (int r = 0; r < 6; ++r)
         for (int j = 0; j < 6; ++j) H[r][j] = lane_of(F[r][j], l);
-      found[l].sign = least > 1e-20 * most ? sign_of_determinant(H) : 0;
+      found[l].sign =
+          least > 1e-20 * most && !others_ ? sign_of_determinant(H) : 0;  // other springs hold by themselves
     }
   }
 
@@ -196,6 +241,7 @@ template <class Lane, int n, class Rules = Sound> class Looking {
     for (T& a : A_.a) a = T(0.0);
     add_springs(A_, C, directions_, sign, [this](int j) { return stiffness(j); });
     add_matrix(A_, C, M_, factor);
+    if (others_) add_matrix(A_, C, K_, Lane(sign));
     test_(A_, count, proved);
   }
 

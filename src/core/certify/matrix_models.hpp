@@ -15,12 +15,12 @@ template <class Lane> struct CentreModes {
   Lane square[6], V[6][6];
 
   /// K = F F^T.
-  CentreModes(const Mat6<Lane>& M, Mat6<Lane, spring_count> F) {
+  template <int m> CentreModes(const Mat6<Lane>& M, Mat6<Lane, m> F) {
     const Cholesky<Lane> L(M);
     L.forward_all(F);
     Mat6<Lane> U;
     for (int i = 0; i < 6; ++i) U[i][i] = Lane(1.0);
-    orthogonalise_rows<6, spring_count, Lane>(F.a, U.a);
+    orthogonalise_rows<6, m, Lane>(F.a, U.a);
     for (int i = 0; i < 6; ++i) {
       square[i] = row_square(F.a[i]);
       Vec6<Lane> u;

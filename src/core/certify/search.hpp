@@ -195,7 +195,7 @@ class CertifySearch {
         if (found.probe) mine.push_back(probe(box, found));  // next
         break;
       case Verdict::broken:
-        if (options_.gap == 0.0) refute(box, found);
+        if (options_.gap == 0.0 || found.limit >= 0) refute(box, found);
         else if (!box.probe) mine.push_back(box);  // once more, for the level that its centre has given
     }
   }

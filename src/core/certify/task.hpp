@@ -46,11 +46,10 @@ enum class Verdict {
 
 struct Finding {
   Verdict verdict;
-  int axis;      // -1: the box is too small to be cut
-  double value;  // at the centre: omega_1, cond(H); NaN where there is none
-  int sign;      // of det H at the centre; 0 where it is nearly singular
-  int limit,
-      leg;  // that the centre breaks: length, universal angle, spherical angle, distance; of a leg or a pair. Or -1
+  int axis;         // -1: the box is too small to be cut
+  double value;     // at the centre: omega_1, cond(H); NaN where there is none
+  int sign;         // of det H at the centre; 0 where it is nearly singular
+  int limit, leg;   // a `BrokenLimit` that the centre breaks, of a leg or a pair; or -1
   double pose[12];  // the centre: position, matrix by rows
   bool probe;       // whether `corner` may break what is to be proved
   double corner[6];

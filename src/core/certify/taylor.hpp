@@ -18,6 +18,7 @@ namespace flexapod {
 struct Sound {
   static constexpr bool product_remainder = true;  // products of an order that is cut off go into the radius
   static constexpr bool drop_squares = true;       // convex squares are not counted at vertices, where they are largest
+  static constexpr bool other_pieces = true;       // pieces of a table that a box reaches into go into the radius
 };
 
 /// One lane of a pack.
@@ -40,6 +41,7 @@ template <class Lane, int n, int order, class Rules = Sound> struct Taylor {
   static constexpr int count = Monomials<n, order>::count;
   static constexpr int variables = n, highest = order;
   using Number = Lane;
+  using Rule = Rules;
 
   Lane c[count];  // coefficients, in the order of Monomials
   Lane r;         // radius

@@ -10,11 +10,18 @@ namespace flexapod {
 
 /// A table of stiffness by length as monotone cubics between its nodes: slopes after F. N. Fritsch and R. E. Carlson
 /// (SIAM J. Numer. Anal. 17, 1980) by the harmonic means of Fritsch and J. Butland (SIAM J. Sci. Stat. Comput. 5, 1984).
+template <class T> struct TablePiece {
+  T start, value, slope, square, cube;  // value + s (slope + s (square + s cube)), s from the start
+
+  template <class U> U at(const U& L) const {
+    const U s = L - start;
+    return value + s * (slope + s * (square + s * cube));
+  }
+};
+
 template <class T> struct StiffnessTable {
   int count = 0;
-  struct Piece {
-    T start, value, slope, square, cube;  // value + s (slope + s (square + s cube)), s from the start
-  } piece[table_capacity - 1];
+  TablePiece<T> piece[table_capacity - 1];
   T end;
 
   void set(const Design<T>& d) {
@@ -32,17 +39,17 @@ template <class T> struct StiffnessTable {
     end = x[count - 1];
   }
 
-  template <class U> U at(const U& L) const {
+  /// The piece that holds a length; the first and the last go on beyond the table.
+  template <class U> TablePiece<U> piece_at(const U& L) const {
     U start(piece[0].start), value(piece[0].value), slope(piece[0].slope), square(piece[0].square), cube(piece[0].cube);
     for (int j = 1; j < count - 1; ++j) {
-      const Piece& p = piece[j];
+      const TablePiece<T>& p = piece[j];
       const auto beyond = L > U(p.start);
       start = select(beyond, U(p.start), start), value = select(beyond, U(p.value), value);
       slope = select(beyond, U(p.slope), slope), square = select(beyond, U(p.square), square);
       cube = select(beyond, U(p.cube), cube);
     }
-    const U s = L - start;
-    return value + s * (slope + s * (square + s * cube));
+    return {start, value, slope, square, cube};
   }
 
  private:
@@ -73,22 +80,31 @@ template <class D> struct AxialStiffness {
 
   /// By the law of the design at a length; NaN outside the law's range but for rounding.
   template <class T> T at(const Design<D>& d, const Features& features, int i, const T& L) const {
+    const T k = features.law == Law::table ? table.piece_at(L).at(L) : formula(d, features, i, L);
+    return select(room(d, features, i, L) > T(0.0), in_series(d, features, i, k),
+                  T(std::numeric_limits<double>::quiet_NaN()));
+  }
+
+  /// Of a screw or of columns of oil alone, wherever that is a number.
+  template <class T> T formula(const Design<D>& d, const Features& features, int i, const T& L) const {
+    const LegSprings<D>& s = d.springs[i];
+    if (features.law == Law::screw) return 1.0 / (1.0 / T(s.fixed) + (L - s.zero_length) / s.axial_rigidity);
+    const T x = L - s.shortest, rest = T(s.stroke) - x;
+    return s.bulk_modulus * (s.area_1 / (x + s.dead_1) + s.area_2 / (rest + s.dead_2));
+  }
+  /// A stiffness with the springs in series.
+  template <class T> T in_series(const Design<D>& d, const Features& features, int i, const T& k) const {
+    if (!features.series) return k;
+    return k / (1.0 + k * d.springs[i].series_compliance);
+  }
+  /// How far a length is inside the law's range, m, and not negative where it leaves it by rounding only.
+  template <class T> T room(const Design<D>& d, const Features& features, int i, const T& L) const {
     const LegSprings<D>& s = d.springs[i];
     const T slack = 1e-12 * L;
-    const auto k_of = [&](const auto& inside, const T& k) {
-      return select(inside, features.series ? k / (1.0 + k * s.series_compliance) : k,
-                    T(std::numeric_limits<double>::quiet_NaN()));
-    };
-    if (features.law == Law::screw) {
-      const T longer = L - s.zero_length, compliance = 1.0 / T(s.fixed) + longer / s.axial_rigidity;
-      return k_of((longer + slack > T(0.0)) & (compliance > T(0.0)), 1.0 / compliance);
-    }
-    if (features.law == Law::hydraulic) {
-      const T x = L - s.shortest, rest = T(s.stroke) - x;
-      const T k = s.bulk_modulus * (s.area_1 / (x + s.dead_1) + s.area_2 / (rest + s.dead_2));
-      return k_of((x + slack > T(0.0)) & (rest + slack > T(0.0)), k);
-    }
-    return k_of((L + slack > T(table.piece[0].start)) & (L < T(table.end) + slack), table.at(L));
+    if (features.law == Law::table) return min<T>(L - table.piece[0].start, table.end - L) + slack;
+    if (features.law == Law::screw) return L - s.zero_length + slack;
+    const T x = L - s.shortest;
+    return min<T>(x, s.stroke - x) + slack;
   }
 };
 

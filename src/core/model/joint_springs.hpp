@@ -55,6 +55,18 @@ void add_joint_stiffness(SpatialInertia<T>& K, const LegAxes<T>& leg, const LegS
   K.add_coupled(q_p, G, {k_s + m.x * s.x, k_s + m.y * s.y, k_s + m.z * s.z, m.x * s.y, m.x * s.z, m.y * s.z});
 }
 
+/// The angles about the two axes of a universal joint from where its springs are unstressed.
+template <class T> struct UniversalAngles {
+  T first, second;
+
+  template <class D, class R>
+  UniversalAngles(const JointRest<D>& rest, const LegAxes<T>& leg, const Vec3<T>& axis, const Mat3<R>& R_b) {
+    const Vec3<T>&y = leg.axes.row[1], from(R_b * rest.in_base.row[1]);
+    first = signed_angle(dot(axis, cross(from, y)), dot(from, y));
+    second = signed_angle(leg.tau, T(1.0)) - rest.tilt;
+  }
+};
+
 /// The angles of a leg's joints from where they are unstressed, and the moments that hold them there, N m.
 template <class T> struct JointSprings {
   T first, second;  // universal joint; in the spin-free model the leg's swing from its rest, across k and about it
@@ -68,9 +80,8 @@ template <class T> struct JointSprings {
     const Vec3<T>& s = leg.s();
     const auto carried = [&](int r) { return Vec3<T>(R_b * rest.in_base.row[r]); };
     if (joint == Joint::universal) {
-      const Vec3<T>&y = leg.axes.row[1], from = carried(1);
-      first = signed_angle(dot(axis, cross(from, y)), dot(from, y));
-      second = signed_angle(leg.tau, T(1.0)) - rest.tilt;
+      const UniversalAngles<T> angles(rest, leg, axis, R_b);
+      first = angles.first, second = angles.second;
       universal = {T(0.0), -(k.k_u[1] * second), k.k_u[0] * first * leg.cosecant};
       spherical = on_platform(k, rest, R_p, leg.axes);
       return;

@@ -51,7 +51,8 @@ class Certificate:
     pose : ndarray, shape (6,), or None
         The most adverse pose known: x, y, z (m), roll, pitch, yaw (rad). Of a refuted claim, one that breaks it.
     broken : str
-        The limit that `pose` breaks, in words, where limits are refuted.
+        The limit that `pose` breaks, in words, where limits are refuted; the stiffness law whose range it leaves, where
+        it has no index.
     level : float
         What is proved everywhere but in the parts that are `left`, rad/s or cond(H).
     left : ndarray, shape (m, 6, 2) or (m, 3)
@@ -148,6 +149,8 @@ class Certificate:
             return ""
         if self.claim == "limits":
             return f", a pose breaks the limit of the {self.broken}"
+        if self.broken:
+            return f", a pose is outside the range of the {self.broken}"
         if self.claim == "condition":
             return f", a pose has {self.lower:.6g}"
         return ", a pose is singular" if np.isnan(self.upper) else f", a pose has {self.upper:.6g} rad/s"

@@ -11,6 +11,7 @@ import numpy as np
 from flexapod.certificates import proving
 from flexapod.certificates.certificate import Certificate
 from flexapod.certificates.file import read_certificate
+from flexapod.certificates.known import without_springs
 from flexapod.certificates.question import Question
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.joint_limits import check_limits
@@ -80,7 +81,7 @@ def check_certificate(
         return given
     level = _level(given)
     limits = given.within_limits or given.claim == "limits"
-    prover = Prover(given.hexapod, given.joint, given.claim, given.place, limits, CUT, setup.threads)
+    prover = Prover(given.hexapod, given.joint, given.claim, given.place, limits, cut=CUT, threads=setup.threads)
     found = run(prover, Standing("undecided", level, np.nan, given.place.parts), 0.0, setup.watch)
     return _made(given, level, found)
 
@@ -142,9 +143,12 @@ def _breaks(given: Certificate) -> bool:
     assert given.pose is not None
     if given.claim == "limits":
         return not check_limits(given.hexapod, given.pose).ok
+    if given.claim == "index" and given.broken:
+        return bool(np.isnan(evaluate(given.hexapod, given.pose[None], ("omega_1",), given.joint, 1)["omega_1"][0]))
     if given.claim == "index" and given.wanted is not None:
         return given.upper < given.wanted
     if given.claim == "condition":
         return given.wanted is not None and given.lower > given.wanted
-    found = evaluate(given.hexapod, given.pose[None], ("omega_1",), given.joint, 1)
-    return bool(found["omega_1"][0] <= 1e-6 * _omega_6(given))
+    design = without_springs(given.hexapod) if given.claim == "regular" else given.hexapod
+    omega = evaluate(design, given.pose[None], ("omega",), given.joint, 1)["omega"][0]
+    return bool(omega[0] <= 1e-6 * omega[-1])

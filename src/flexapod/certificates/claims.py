@@ -6,12 +6,11 @@ from collections.abc import Callable
 from os import PathLike
 
 from flexapod.certificates.certificate import Certificate
-from flexapod.certificates.known import greatest_condition, least_index
+from flexapod.certificates.known import greatest_condition, least_index, legs_alone
 from flexapod.certificates.proving import Setup, prove
-from flexapod.certificates.question import Asked, checked_gap, checked_level, question
+from flexapod.certificates.question import Asked, checked_gap, checked_level, limited, question
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
-from flexapod.workspace.proof import check_provable_limits
 from flexapod.workspace.store.dask_cluster import Cluster
 
 
@@ -83,7 +82,7 @@ def certify_regular(
         path=path,
         resume=resume,
     )
-    return prove(asked, "regular", None, 0.0, setup, lambda: least_index(asked, setup.threads))
+    return prove(asked, "regular", None, 0.0, setup, lambda: least_index(legs_alone(asked), setup.threads))
 
 
 def certify_limits(
@@ -131,7 +130,9 @@ def certify_limits(
 
     Notes
     -----
-    Lengths of legs, angles of joints and distances of legs are enclosed over boxes as the index is, see `certify`.
+    Lengths of legs, angles of joints, distances of legs and moments of springs in joints are enclosed over boxes as the
+    index is, see `certify`. The limits are those of `check_limits`: the range of a stiffness law is one of them, and
+    moments are those of the exact joint model.
 
     Examples
     --------
@@ -140,9 +141,8 @@ def certify_limits(
     'proved'
     """
     asked = question(hexapod, region, "universal")
-    if not hexapod.limits.given:
+    if not limited(hexapod):
         raise ArgumentError(f"{hexapod.name!r} has no limits, so that there is nothing to prove. Add [limits] to it.")
-    check_provable_limits(hexapod)
     setup = Setup.of(
         time_limit=time_limit,
         threads=threads,

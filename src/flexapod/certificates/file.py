@@ -34,10 +34,15 @@ def write_certificate(certificate: Certificate, path: str | PathLike[str]) -> Pa
 
 def text_of(certificate: Certificate) -> str:
     """A certificate as the text of a file."""
+    return json.dumps(sealed(data_of(certificate)), indent=1) + "\n"
+
+
+def data_of(certificate: Certificate) -> dict[str, Any]:
+    """A certificate as plain data."""
     from flexapod import __version__
 
     design = certificate.hexapod
-    data: dict[str, Any] = {
+    return {
         "format": FORMAT,
         "version": VERSION,
         "source": f"flexapod {__version__}",
@@ -49,7 +54,6 @@ def text_of(certificate: Certificate) -> str:
         "left": _packed(certificate.left),
         "design": {"name": design.name, "digest": design.digest, "toml": design.to_toml()},
     }
-    return json.dumps(sealed(data), indent=1) + "\n"
 
 
 def region_data(place: Place) -> dict[str, Any]:
@@ -95,6 +99,15 @@ def read_certificate(path: str | PathLike[str]) -> Certificate:
     25.0
     """
     place = output_path(path)
+    data = read_data(place, FORMAT)
+    try:
+        return certificate_of(data)
+    except (KeyError, TypeError, ValueError, DesignError) as error:
+        raise _none(place, f"it cannot be understood ({error})") from error
+
+
+def read_data(place: Path, kind: str) -> dict[str, Any]:
+    """What is in a sealed file of a format. Raises OutputError where it cannot be read, or was changed."""
     try:
         data = json.loads(place.read_text(encoding="utf-8"))
     except OSError as error:
@@ -103,8 +116,8 @@ def read_certificate(path: str | PathLike[str]) -> Certificate:
         ) from error
     except ValueError as error:
         raise _none(place, "it is no JSON") from error
-    if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise _none(place, f"its format is not {FORMAT!r}")
+    if not isinstance(data, dict) or data.get("format") != kind:
+        raise _none(place, f"its format is not {kind!r}")
     if data.get("version") != VERSION:
         raise OutputError(f"{place} is of version {data.get('version')!r}; this Flexapod reads version {VERSION}.")
     if sealed(data)["sum"] != data.get("sum"):
@@ -112,13 +125,11 @@ def read_certificate(path: str | PathLike[str]) -> Certificate:
             f"{place} was changed since it was written: its sum is not that of what is in it. Take another copy, or "
             "make the certificate anew."
         )
-    try:
-        return _certificate(data)
-    except (KeyError, TypeError, ValueError, DesignError) as error:
-        raise _none(place, f"it cannot be understood ({error})") from error
+    return data
 
 
-def _certificate(data: Mapping[str, Any]) -> Certificate:
+def certificate_of(data: Mapping[str, Any]) -> Certificate:
+    """A certificate of plain data. Raises KeyError, TypeError, ValueError or DesignError where it is none."""
     hexapod = Hexapod.from_toml(data["design"]["toml"])
     if hexapod.digest != data["design"]["digest"]:
         raise ValueError("its design has another digest than it says")

@@ -11,7 +11,6 @@ from flexapod.certificates.proving import Setup, prove
 from flexapod.certificates.question import Asked, Uncertainty, checked_gap, checked_level, question
 from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.workspace.proof import check_provable
 from flexapod.workspace.store.dask_cluster import Cluster
 
 
@@ -77,8 +76,7 @@ def certify(
     DesignError
         If `hexapod` is not a Hexapod.
     ArgumentError
-        If a number is invalid, uncertain numbers have no worst end, or the design has springs other than constant ones
-        along its legs, of which nothing can be proved yet.
+        If a number is invalid, or uncertain numbers have no worst end.
     PoseError
         If no pose of the region can be computed, or none within the limits is found.
     OutputError
@@ -92,10 +90,12 @@ def certify(
 
     Notes
     -----
-    omega_1^2 >= t at every pose of a box if H K H^T - t J is positive definite there. Its entries are enclosed by
+    omega_1^2 >= t at every pose of a box if K - t J is positive definite there, K being the stiffness of all springs at
+    the platform: along the legs, in their joints, and a suspension. Its entries are enclosed by
     Taylor models of third order in the coordinates (Makino and Berz, 2003) with bounded rounding, and matrices at the
     corners of the box are tested [1]_; a box for which this does not decide is cut. What counts as exact are the
-    numbers of the design and of the region.
+    numbers of the design and of the region. A pose that leaves the range of the design's stiffness law has no index and
+    refutes the claim, unless only poses within the limits count, of which that range is one.
 
     References
     ----------
@@ -113,7 +113,6 @@ def certify(
     'refuted'
     """
     asked = question(hexapod, region, joint, uncertain, within_limits)
-    check_provable(asked.hexapod)
     wanted, gap = checked_level(at_least, "at_least", "rad/s"), checked_gap(gap)
     setup = Setup.of(
         time_limit=time_limit,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from flexapod.certificates.question import Question, known_poses, none_known
 from flexapod.conventions import Array
+from flexapod.design.hexapod import Hexapod
 from flexapod.workspace.box import Box, Workspace
 from flexapod.workspace.descents import BoxSearch, SquaredFrequency
 from flexapod.workspace.limit_margins import margins_to_keep, none_within
@@ -35,6 +37,28 @@ def least_index(question: Question, threads: int) -> Known:
     if len(rest) or not free:
         found.append(_of_poses(question, rest, "omega_1", threads))
     return min(found, key=lambda one: one.value)
+
+
+def legs_alone(question: Question) -> Question:
+    """The question of a machine with nothing but springs along its legs: singular poses are those of its geometry.
+
+    Within the limits, it stays as it is: springs say which poses these are.
+    """
+    if question.within_limits:
+        return question
+    return replace(question, hexapod=without_springs(question.hexapod))
+
+
+def without_springs(hexapod: Hexapod) -> Hexapod:
+    """A design without springs beside its legs, and without a stiffness law."""
+    changes: dict[str, Any] = {}
+    if hexapod.legs.stiffness_law is not None:
+        changes |= {"legs.stiffness_law": None, "legs.stiffness": 1.0}
+    if hexapod.legs.joint_stiffness.any:
+        changes["legs.joint_stiffness"] = None
+    if hexapod.suspension is not None:
+        changes["suspension"] = None
+    return hexapod.replace(changes) if changes else hexapod
 
 
 def greatest_condition(question: Question, threads: int) -> Known:

@@ -4,19 +4,24 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from flexapod.certificates import largest_file
 from flexapod.certificates.certificate import Certificate
 from flexapod.certificates.index import certify
 from flexapod.certificates.known import least_index
+from flexapod.certificates.largest_file import Progress
 from flexapod.certificates.question import Uncertainty, question
 from flexapod.checks import positive, thread_count
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.mechanics.inputs import as_hexapod, as_joint
+from flexapod.output_files import check_file, output_path
 from flexapod.workspace.box import Box, Workspace
 from flexapod.workspace.region import as_region, home_of
 
@@ -59,6 +64,8 @@ def certified_box(
     uncertain: Uncertainty = (),
     time_limit: float | None = None,
     threads: int | None = None,
+    path: str | PathLike[str] | None = None,
+    resume: bool = False,
     progress: Callable[[float], object] | None = None,
     stop: Callable[[], bool] | None = None,
 ) -> CertifiedBox:
@@ -82,6 +89,10 @@ def certified_box(
         How long to try, s; then the largest box that is proved is given.
     threads : int, optional
         Number of threads, default one for each core.
+    path : str or path-like, optional
+        File that keeps how far the search is; beside it, the certificate in hand is written every minute.
+    resume : bool, optional
+        Whether to go on with what is in the file.
     progress : callable, optional
         Called with the share of the volume of the box in hand that is decided, from 0 to 1.
     stop : callable, optional
@@ -100,6 +111,8 @@ def certified_box(
         If the middle of the box has less than the bound, nothing was proved in the time, or an argument is invalid.
     PoseError
         If no pose can be computed.
+    OutputError
+        If the file cannot be written, or cannot be gone on with.
 
     See Also
     --------
@@ -109,7 +122,7 @@ def certified_box(
     -----
     Bisection: what is proved of a box holds for every smaller one in it. The scale at which poses are below the bound
     is found first, by descents; then boxes below that size are proved, the largest first. One of which nothing is
-    decided in half of the time that is left counts as too large.
+    decided in half of the time that is left counts as too large; a search that is gone on with tries such sizes again.
 
     Examples
     --------
@@ -124,26 +137,62 @@ def certified_box(
     until = np.inf if time_limit is None else time.monotonic() + positive(time_limit, "time_limit", "s")
     given = {"joint": joint, "uncertain": uncertain, "within_limits": within_limits}
     search = _Search(hexapod, box, positive(at_least, "at_least", "rad/s"), given, thread_count(threads))
+    keeper = _Keeper.of(search, tolerance, path, resume)
     watch = {"threads": threads, "progress": progress, "stop": stop}
-    refuted, pose = search.refuted(tolerance / 4)
-    low, high, found = 0.0, min(refuted, search.greatest), None
-    scale = high * (1 - 0.8 * tolerance)
-    while low < high * (1 - tolerance) and time.monotonic() < until and not (stop and stop()):
+    at = keeper.at
+    high = min(at.refuted, search.greatest)
+    while at.low < high * (1 - tolerance) and time.monotonic() < until and not (stop and stop()):
         left = None if time_limit is None else max(1e-3, (until - time.monotonic()) / 2)
-        certificate = search.prove(scale, {"time_limit": left, **watch})
+        certificate = search.prove(at.scale, {"time_limit": left, **watch, **keeper.watch})
+        if stop and stop() and certificate.status == "undecided":
+            break
         if certificate.proved:
-            low, found = scale, certificate
+            at.low, at.found = at.scale, certificate
         else:
-            high = scale
+            high = at.scale
         if certificate.status == "refuted":
-            refuted, pose = scale, certificate.pose
-        scale = (low + high) / 2
-    if found is None:
+            at.refuted, at.pose = at.scale, certificate.pose
+        at.scale = (at.low + high) / 2
+        keeper.keep()
+    if at.found is None:
         raise ArgumentError(
             f"no box of this shape was proved to keep {at_least:.6g} rad/s in the time. Give more of it "
             "(time_limit), or a lower bound."
         )
-    return CertifiedBox(search.box(low), low, found, refuted, pose)
+    return CertifiedBox(search.box(at.low), at.low, at.found, at.refuted, at.pose)
+
+
+class _Keeper:
+    """How far a search is, and the file of it, if there is one."""
+
+    def __init__(self, at: Progress, question: dict[str, Any], path: Path | None) -> None:
+        self.at, self._question, self._path = at, question, path
+
+    @classmethod
+    def of(cls, search: _Search, tolerance: float, path: str | PathLike[str] | None, resume: bool) -> _Keeper:
+        if path is None:
+            if resume:
+                raise ArgumentError("resume is True, but no path is given: what is to be gone on with? Give the file.")
+            return cls(search.begun(tolerance), {}, None)
+        place = check_file(output_path(path))
+        question = {**search.question, "tolerance": tolerance}
+        if resume and place.exists():
+            return cls(largest_file.read(place, question), question, place)
+        keeper = cls(search.begun(tolerance), question, place)
+        largest_file.in_hand(place).unlink(missing_ok=True)
+        keeper.keep()
+        return keeper
+
+    @property
+    def watch(self) -> dict[str, Any]:
+        """Where a certificate in hand is kept, and gone on with."""
+        return {} if self._path is None else {"path": largest_file.in_hand(self._path), "resume": True}
+
+    def keep(self) -> None:
+        """After a box: the certificate that was in hand is done with."""
+        if self._path is not None:
+            largest_file.in_hand(self._path).unlink(missing_ok=True)
+            largest_file.write(self._path, self._question, self.at)
 
 
 class _Search:
@@ -165,6 +214,24 @@ class _Search:
         self._at_least, self._given = at_least, given
         self._hexapod, self._threads = hexapod, threads
         self.greatest = min(_GREATEST, _TURN / max(2 * float(self._half[3:].max()), _TURN / _GREATEST))
+
+    @property
+    def question(self) -> dict[str, Any]:
+        """What is asked, as plain data."""
+        asked = question(self._hexapod, self._middle, **self._given)
+        return {
+            "design": asked.hexapod.digest,
+            "joint model": asked.joint,
+            "shape": [self._middle.tolist(), self._half.tolist()],
+            "bound": self._at_least,
+            "within_limits": asked.within_limits,
+        }
+
+    def begun(self, tolerance: float) -> Progress:
+        """Where a search begins: nothing is proved."""
+        refuted, pose = self.refuted(tolerance / 4)
+        scale = min(refuted, self.greatest) * (1 - 0.8 * tolerance)
+        return Progress(low=0.0, found=None, refuted=refuted, pose=pose, scale=scale)
 
     def box(self, scale: float) -> Box:
         half = scale * self._half

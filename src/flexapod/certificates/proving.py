@@ -22,6 +22,16 @@ from flexapod.workspace.proof import Standing, Watch, closest, run
 from flexapod.workspace.store.dask_cluster import Cluster
 
 KEEP = 60.0  # s between two times that a certificate is written
+#: What a pose may break, in the order of the core's `BrokenLimit`.
+_LIMITED = (
+    "length",
+    "universal joint",
+    "spherical joint",
+    "distance",
+    "moment in the universal joint",
+    "moment in the spherical joint",
+    "stiffness law",
+)
 _UNKNOWN = np.full(12, np.nan)
 _CLOSE = 1e-9  # relative, of numbers that went through a file or a root
 
@@ -178,7 +188,7 @@ class _Keeper:
         """The certificate at the end; its pose is what a descent finds from that of the proof."""
         asked, claim = self._of[:2]
         met = len(standing.at) == len(_UNKNOWN) and bool(np.isfinite(standing.at).all())  # by the prover
-        if claim == "index" and standing.status != "undecided" and met:
+        if claim == "index" and standing.status != "undecided" and met and standing.broken < 0:
             better = lowered(asked, standing.at)
             if better.value < standing.value:
                 standing = replace(standing, value=better.value, at=better.pose)
@@ -224,9 +234,7 @@ def _broken_limit(standing: Standing) -> str:
     """The limit that a pose breaks, in words."""
     if standing.broken < 0:
         return ""
-    if standing.broken == 3:
+    if _LIMITED[standing.broken] == "distance":
         i, j = LEG_PAIRS[standing.leg]
         return f"distance of legs {LEGS[i]} and {LEGS[j]}"
-    return ("length of leg {}", "universal joint of leg {}", "spherical joint of leg {}")[standing.broken].format(
-        LEGS[standing.leg]
-    )
+    return f"{_LIMITED[standing.broken]} of leg {LEGS[standing.leg]}"

@@ -15,7 +15,7 @@ from flexapod.errors import ArgumentError, DesignError, PoseError, shown
 from flexapod.mechanics.inputs import as_hexapod, as_joint
 from flexapod.pose import Pose
 from flexapod.workspace.box import Box, Workspace
-from flexapod.workspace.proof import Boxes, PathPieces, Place, Prover, check_provable_limits
+from flexapod.workspace.proof import Boxes, PathPieces, Place, Prover
 from flexapod.workspace.region import Curve, RegionLike, as_region, home_of
 
 MOST_BOXES = 10**6
@@ -81,13 +81,16 @@ def question(
     """The question of some arguments. Raises DesignError, ArgumentError or PoseError for wrong ones."""
     as_joint(joint)
     place = place_of(as_hexapod(hexapod), region)
-    if within_limits and not hexapod.limits.given:
+    if within_limits and not limited(hexapod):
         raise ArgumentError(
             f"within_limits is True, but {hexapod.name!r} has no limits, so that all poses are. Leave it out, or add "
             "[limits] to the design."
         )
-    if within_limits:
-        check_provable_limits(hexapod)
+    if within_limits and joint == "spin_free" and hexapod.limits.universal_moment is not None:
+        raise ArgumentError(
+            f"{hexapod.name!r} limits the moment of its universal joints (limits.universal_moment); which poses keep "
+            "that is proved in the exact joint model only. Take the joint model universal, or leave within_limits out."
+        )
     worst, assumed = hexapod, []
     for one in [uncertain] if isinstance(uncertain, Straying) else uncertain:
         if not isinstance(one, Straying):
@@ -95,6 +98,11 @@ def question(
         worst = _at_worst(one, worst)
         assumed.append(one.words)
     return Question(worst, joint, place, within_limits, hexapod.digest, tuple(assumed))
+
+
+def limited(hexapod: Hexapod) -> bool:
+    """Whether a design limits its poses; the range of a stiffness law does."""
+    return hexapod.limits.given or hexapod.legs.stiffness_law is not None
 
 
 def _at_worst(one: Straying, hexapod: Hexapod) -> Hexapod:

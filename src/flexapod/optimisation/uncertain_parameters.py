@@ -21,10 +21,35 @@ Distribution = Literal["uniform", "normal", "triangular", "lognormal"]
 #: How many spreads below its value a number may come; a normal distribution is cut off at four.
 _REACH = {"uniform": 1.0, "triangular": 1.0, "normal": 4.0, "lognormal": 0.0}
 #: Numbers that raise the index with themselves, those that lower it, and those that are not in it.
-_RAISING = ("legs.stiffness",)
-_LOWERING = ("platform.mass", "legs.lower.mass", "legs.upper.mass")
-_INERTIAS = ("platform.inertia", "legs.lower.inertia", "legs.upper.inertia")  # on their diagonals
-_WITHOUT_EFFECT = ("gravity", "legs.damping.prismatic", "legs.damping.universal", "legs.damping.spherical")
+_RAISING = (
+    "legs.stiffness",
+    "legs.series_stiffness",
+    "legs.joint_stiffness.universal",
+    "legs.joint_stiffness.spherical",
+    "legs.joint_stiffness.torsion",
+    "legs.stiffness_law.fixed",
+    "legs.stiffness_law.axial_rigidity",
+    "legs.stiffness_law.bulk_modulus",
+    "legs.stiffness_law.area_1",
+    "legs.stiffness_law.area_2",
+)
+_LOWERING = (
+    "platform.mass",
+    "legs.lower.mass",
+    "legs.upper.mass",
+    "legs.stiffness_law.dead_1",
+    "legs.stiffness_law.dead_2",
+)
+#: The same of symmetric matrices, by numbers on their diagonals.
+_RAISING_MATRICES = ("suspension.stiffness",)
+_LOWERING_MATRICES = ("platform.inertia", "legs.lower.inertia", "legs.upper.inertia")
+_WITHOUT_EFFECT = (
+    "gravity",
+    "legs.damping.prismatic",
+    "legs.damping.universal",
+    "legs.damping.spherical",
+    "suspension.damping",
+)
 
 
 @dataclass(frozen=True)
@@ -139,8 +164,11 @@ class Uncertain:
 
         Notes
         -----
-        omega_1^2 is the least of v^T K v / v^T J v (Rayleigh): it rises with the stiffness of a leg, and falls with a
-        mass or a moment of inertia that adds v^T dJ v >= 0 while mass centres stay.
+        omega_1^2 is the least of v^T K v / v^T J v (Rayleigh): it rises with every stiffness that adds v^T dK v >= 0,
+        of legs, joints and on the diagonal of a suspension's, and falls with a mass or a moment of inertia that adds
+        v^T dJ v >= 0 while mass centres stay. Of a screw's or an oil column's law it rises with what makes the leg
+        stiffer at every length. A table's curve does not rise everywhere with each of its stiffnesses, and numbers that
+        move the range in which a law holds have no worst end.
         """
         found = layout.with_short_forms(hexapod)
         changed = np.zeros(layout.FULL, dtype=bool)
@@ -150,8 +178,9 @@ class Uncertain:
                 name = layout.describe(int(parameter.index[int(np.argmin(np.abs(sides)))]))
                 raise ArgumentError(
                     f"{name} is uncertain, and the index neither rises nor falls with it at every pose, so that no end "
-                    f"of its range is the worst. Those of {', '.join((*_RAISING, *_LOWERING))} and moments of inertia "
-                    "have one; for others certify several designs."
+                    "of its range is the worst. Stiffnesses of legs and joints, masses, moments of inertia and the "
+                    "numbers of a stiffness law that do not move its range have one; for others certify several "
+                    "designs."
                 )
             ends = np.array([quantile(self.distribution, np.array(u), self.spread) for u in (0.0, 1.0)])
             away = np.where(sides > 0, ends[0], ends[1])
@@ -321,8 +350,9 @@ def _side(number: int) -> int:
     key = layout.owner(number)
     if key in _RAISING or key in _WITHOUT_EFFECT:
         return 1
-    if key in _INERTIAS:
-        return -1 if len(set(layout.indices(number)[-2:])) == 1 else 0
+    if key in _RAISING_MATRICES + _LOWERING_MATRICES:
+        on_diagonal = len(set(layout.indices(number)[-2:])) == 1
+        return 0 if not on_diagonal else 1 if key in _RAISING_MATRICES else -1
     return -1 if key in _LOWERING else 0
 
 

@@ -44,7 +44,7 @@ class LimitMargins:
         if hexapod.home is not None:
             self._home = Motion(Pose.from_rpy(*own[HOME])).packed[None]
         bounds = [*_law_bounds(hexapod), *([] if only_law else _bounds(hexapod))]
-        self.kernel = kernel_limits(hexapod, only_law)
+        self.kernel, self.only_law = kernel_limits(hexapod, only_law), only_law
         self.names = tuple(bound.name for bound in bounds)
         self._columns = np.array([bound.column for bound in bounds], dtype=int)
         self._bounds = np.array([bound.value for bound in bounds])

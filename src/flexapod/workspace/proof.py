@@ -15,7 +15,6 @@ import numpy as np
 from flexapod import _core
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.pose import Pose
 from flexapod.workspace.quantities import kernel_limits
@@ -90,39 +89,6 @@ class PathPieces:
 Place: TypeAlias = Boxes | PathPieces
 
 
-def check_provable(hexapod: Hexapod) -> None:
-    """Raises ArgumentError for a design with springs that the prover does not have."""
-    legs = hexapod.legs
-    there = {
-        "a law of leg stiffness (legs.stiffness_law)": legs.stiffness_law is not None,
-        "springs in series with the legs (legs.series_stiffness)": bool(legs.series_compliance.any()),
-        "springs in its joints (legs.joint_stiffness)": legs.joint_stiffness.any,
-        "a suspension": hexapod.suspension is not None,
-    }
-    if found := [words for words, given in there.items() if given]:
-        raise ArgumentError(
-            f"{hexapod.name!r} has {' and '.join(found)}, of which no bound on the index can be proved yet. Prove "
-            "it of the design without, where that is the softer one, or use worst_pose."
-        )
-
-
-def check_provable_limits(hexapod: Hexapod) -> None:
-    """Raises ArgumentError for limits that the prover does not have."""
-    limits = hexapod.limits
-    if limits.universal_moment is not None or limits.spherical_moment is not None:
-        raise ArgumentError(
-            f"{hexapod.name!r} limits moments of joints (limits.universal_moment, limits.spherical_moment), of which "
-            "nothing can be proved yet. Leave them out of the design that is proved."
-        )
-
-
-def _geometry(hexapod: Hexapod) -> Array:
-    """The core's numbers of a design without springs but those along the legs: of these, geometry needs none."""
-    packed = hexapod.packed.copy()
-    packed[_core.plain_size :] = 0.0
-    return packed
-
-
 class Turn(NamedTuple):
     """What a turn of the prover found. proved, outside: shares of the parts that it was given."""
 
@@ -144,7 +110,8 @@ class Turn(NamedTuple):
 class Prover:
     """What is to be proved of a design, and where. kind: a name of `_core.CertificateKind`.
 
-    limits: whether the design's limits are what is proved, or what poses must be within to count.
+    limits: whether the design's limits are what is proved, or what poses must be within to count. only_law: of these,
+    the range of a stiffness law alone.
     """
 
     hexapod: Hexapod
@@ -152,6 +119,7 @@ class Prover:
     kind: str
     place: Place
     limits: bool = False
+    only_law: bool = False
     cut: float = CUT
     threads: int = 1
 
@@ -161,14 +129,14 @@ class Prover:
         """One turn over some parts, for so many seconds."""
         options = _core.CertificateOptions(
             gap=gap,
-            limits=kernel_limits(self.hexapod) if self.limits else None,
+            limits=kernel_limits(self.hexapod, self.only_law) if self.limits else None,
             seconds=seconds,
             max_boxes=np.inf,
             threads=self.threads,
             cut=self.cut,
         )
         found = self.place.prove(
-            self.hexapod.packed if self.kind == "index" else _geometry(self.hexapod),
+            self.hexapod.packed,
             as_joint(self.joint),
             _core.CertificateKind[self.kind],
             parts=np.ascontiguousarray(parts),

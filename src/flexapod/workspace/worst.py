@@ -14,7 +14,7 @@ from flexapod.mechanics.inputs import as_hexapod
 from flexapod.workspace.box import Box
 from flexapod.workspace.descents import BoxSearch, SquaredFrequency, starts_of
 from flexapod.workspace.limit_margins import LimitMargins, margins_to_keep, none_within
-from flexapod.workspace.proof import Boxes, Prover, Standing, Watch, check_provable, run, six_of
+from flexapod.workspace.proof import Boxes, Prover, Standing, Watch, run, six_of
 from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.region import RegionLike, as_region, home_of
 
@@ -150,8 +150,6 @@ def worst_pose(
     limits = margins_to_keep(hexapod, all_poses)
     home = home_of(hexapod, where)
     box, threads = where.box(home), thread_count(threads)
-    if certified:
-        check_provable(hexapod)
     if box is None:
         if certified:
             raise ArgumentError(
@@ -193,7 +191,16 @@ def _proved(search: BoxSearch, found: list[tuple[float, Array]]) -> tuple[float,
     if least <= SINGULAR * index.scale:
         return 0.0, found
     place = Boxes(np.stack([search.box.low, search.box.high], axis=-1)[None])
-    prover = Prover(index.hexapod, index.joint_name, "index", place, search.limits is not None, threads=search.threads)
+    limits = search.limits
+    prover = Prover(
+        hexapod=index.hexapod,
+        joint=index.joint_name,
+        kind="index",
+        place=place,
+        limits=limits is not None,
+        only_law=limits is not None and limits.only_law,
+        threads=search.threads,
+    )
     standing = run(prover, Standing("undecided", np.nan, least, place.parts, at=pose), GAP, Watch())
     if standing.value < least:
         end = search.descend(six_of(standing.at, place.parts))

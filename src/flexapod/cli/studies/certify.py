@@ -76,8 +76,8 @@ def _check_claim(options: Options) -> None:
         raise click.UsageError("--uncertain and --payload are for the index: other claims depend on geometry alone.")
     if options.limits and options.within_limits:
         raise click.UsageError("--limits with --within-limits is true of every machine. Leave one of them out.")
-    if options.largest and (options.scheduler or options.resume or options.path_file or options.pose):
-        raise click.UsageError("--largest is for --around or --box, without --scheduler, --resume, --path and --pose.")
+    if options.largest and (options.scheduler or options.path_file or options.pose):
+        raise click.UsageError("--largest is for --around or --box, without --scheduler, --path and --pose.")
     if options.resume and options.as_json and options.out is None:
         raise click.UsageError("--resume goes on with a file, and --json writes none. Give --out DIR.")
 
@@ -129,6 +129,8 @@ def _largest(hexapod: Hexapod, options: Options, path: Path | None, watch: dict[
         joint=options.joint,
         within_limits=options.within_limits,
         uncertain=_uncertain(options),
+        path=None if path is None else path.with_name(f"{file_name(hexapod.name)}-largest.json"),
+        resume=options.resume,
         **watch,
     )
     if path is not None:

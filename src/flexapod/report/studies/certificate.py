@@ -66,6 +66,8 @@ def _parts(found: Certificate) -> str:
 
 def _bounds(found: Certificate) -> list[Row]:
     where = "" if found.pose is None else f"at {six_words(found.pose)}"
+    if found.claim == "index" and found.broken:
+        return [Row("Refuted", f"outside the range of the {found.broken}", note=where)]
     if found.claim == "index":
         proved = f"rad/s = {brief(found.lower / TWO_PI, 5)} Hz"
         known = f"rad/s, {where}" if where else "rad/s"
@@ -87,11 +89,7 @@ def _bounds(found: Certificate) -> list[Row]:
 
 
 def _sections(found: Certificate, name: str, checked: bool) -> list[Section]:
-    joint = {"universal": "exact universal joints", "spin_free": "legs that do not spin (the paper's)"}[found.joint]
-    model = (
-        f"Rigid plates, legs that are axial springs with mass, {joint}, a base at rest; the lowest natural frequency "
-        "is that of Eq. 5 of the paper."
-    )
+    model = _model(found)
     assumed = f"It holds for every design in the ranges of {'; '.join(found.assumed)}." if found.assumed else ""
     words = [found.words, model, *filter(None, [assumed])]
     left = (
@@ -109,6 +107,22 @@ def _sections(found: Certificate, name: str, checked: bool) -> list[Section]:
         Section("What it does not cover", [], [f"{text}" for text in _LEAVES_OUT]),
     ]
     return sections if checked else [*sections, Section("Check it again", [], [again])]
+
+
+def _model(found: Certificate) -> str:
+    joint = {"universal": "exact universal joints", "spin_free": "legs that do not spin (the paper's)"}[found.joint]
+    legs = found.hexapod.legs
+    law = "" if legs.stiffness_law is None else f", stiff by a law of their length ({legs.stiffness_law.kind.name})"
+    others = [
+        *(["springs in series with the legs"] if legs.series_compliance.any() else []),
+        *(["springs in the joints"] if legs.joint_stiffness.any else []),
+        *(["a suspension"] if found.hexapod.suspension is not None else []),
+    ]
+    beside = f", {', '.join(others)}" if others else ""
+    return (
+        f"Rigid plates, legs that are axial springs with mass{law}{beside}, {joint}, a base at rest; the lowest "
+        "natural frequency is that of Eq. 5 of the paper."
+    )
 
 
 def _facts(found: Certificate) -> Table:
@@ -160,7 +174,7 @@ def _cautions(found: Certificate) -> list[Caution]:
         more = " Nothing is proved of the whole region yet." if nothing else ""
         text = f"The proof ended with {percent(found.share_left, 2)} of the region left.{more} Go on with --resume."
         cautions.append(Caution("undecided", text, {"share": found.share_left}))
-    if found.claim != "index" or found.pose is None:
+    if found.claim != "index" or found.pose is None or found.broken:
         return cautions
     return [*cautions, *least_index.cautions(found.hexapod, found.pose, found.joint)]
 
