@@ -126,6 +126,8 @@ def lowered(question: Question, at: Array) -> Known:
     if not inside.any():
         return Known(index.root(six), six)
     box = Box(*place.parts[int(inside.argmax())])
+    if not box.free:
+        return Known(index.root(six), six)
     limits = margins_to_keep(question.hexapod, not question.within_limits)
     end = BoxSearch(index, box, limits, 1, 0, 1).descend(six)
     return min(Known(index.root(six), six), Known(index.root(end), end), key=lambda one: one.value)
