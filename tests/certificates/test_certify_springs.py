@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 from tests.helpers.drawn import sprung, with_law
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.certificates import checking, file
 from flexapod.report.studies.certificate import study
 
-BASE = fx.load("motion-base")
+BASE = plain_machine("motion-base")
 HOME = fx.home_pose(BASE)
 RNG = np.random.default_rng(14)
 SPRUNG = sprung(BASE, RNG)

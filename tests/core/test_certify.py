@@ -529,7 +529,8 @@ def test_ball_arithmetic_proves_the_same(kind, rng):
     """A second implementation, of other equations, on a small box."""
     exact_bounds = pytest.importorskip("tests.oracles.exact_bounds", reason="python-flint is not installed")
     hexapod = plain_machine("motion-base") if kind == "constant" else SPRUNG[kind](rng)
-    box = around(hexapod, 0.005, 0.5)
+    half = {"constant": 0.005, "table": 0.0002}.get(kind, 0.001)
+    box = around(hexapod, half, 100 * half)
     found = certify(hexapod, box, INDEX, least(hexapod, box, rng)[0], gap=0.05)
     assert found.status == PROVED
     assert exact_bounds.proved(hexapod, box[0], found.level, most=5) is not None

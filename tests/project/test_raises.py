@@ -127,6 +127,9 @@ PROVOKED = {
     ("certify_regular", "PoseError"): lambda: fx.certify_regular(MACHINE, np.zeros((0, 6))),
     ("certified_box", "ArgumentError"): lambda: fx.certified_box(MACHINE, HOME, 1.0),
     ("certified_box", "DesignError"): lambda: fx.certified_box(None, fx.Workspace.about_home(0.1, 0.1), 1.0),
+    ("certified_box", "OutputError"): lambda: fx.certified_box(
+        MACHINE, fx.Workspace.about_home(0.1, 0.1), 1.0, path="no-such-folder/largest.json"
+    ),
     ("certified_box", "PoseError"): lambda: fx.certified_box(
         fx.load("mukherjee-ii").replace({"home": None}), fx.Workspace.about_home(0.1, 0.1), 1.0
     ),
