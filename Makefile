@@ -18,8 +18,8 @@ report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 paper: build ## the paper reproduced on one page (OUT=...)
 	$(BIN)/flexapod paper --out $(OUT)
 
-# On every core, each file of tests on one: what its tests share is made once.
-AT_ONCE := -n logical --dist loadfile
+# On every core, each file of tests on one: what its tests share is made once. In the order of tests/conftest.py.
+AT_ONCE := -n logical --dist loadfile --no-loadscope-reorder
 
 test: build ## the whole test suite; with COVERAGE=1 also how much of the Python code it runs
 ifdef COVERAGE
@@ -81,7 +81,7 @@ PRELOADED   = $(shell $(CXX) -print-file-name=libasan.so) $(shell $(CXX) -print-
 
 sanitize: $(SANITIZED)/.built ## any finding ends the run
 	LD_PRELOAD="$(PRELOADED)" ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=$(SANITIZED)/site:$(PACKAGES) \
-	$(BARE) -m pytest -p no:cacheprovider $(CORE_TESTS) -k 'not ($(LONG))'
+	$(BARE) -m pytest $(AT_ONCE) -p no:cacheprovider $(CORE_TESTS) -k 'not ($(LONG))'
 
 $(SANITIZED)/.built: $(VENV)/.built $(CORE)
 	rm -rf $(SANITIZED)/site

@@ -85,7 +85,33 @@ def pytest_configure(config):
     config.stash[LEDGER] = Ledger(None if unwritten else committed())
 
 
+#: Files of tests that take longest, the longest first: begun last, one of them would keep a single core busy at the end.
+LONG = (
+    "core/test_new_number",
+    "docs/test_documents",
+    "web/test_page",
+    "workspace/test_sweep_springs",
+    "paper/test_paper",
+    "workspace/test_envelope",
+    "attack/test_command_lines",
+    "attack/test_full_disk",
+    "optimisation/test_constraints_that_hold_still",
+    "optimisation/test_optimise",
+    "web/test_work",
+    "design/test_design_fuzz",
+    "cli/test_optimise_commands",
+    "control/test_isolation",
+    "workspace/test_worst_pose",
+    "cli/test_path_and_control_commands",
+    "cli/test_sweep_command",
+    "attack/test_kills",
+    "attack/test_stores",
+)
+PLACES = {f"tests/{name}.py": place for place, name in enumerate(LONG)}
+
+
 def pytest_collection_modifyitems(config, items):
+    items.sort(key=lambda item: PLACES.get(item.nodeid.partition("::")[0], len(LONG)))
     if config.getoption("--record-validation") is not None:
         measuring = [item for item in items if "measured" in getattr(item, "fixturenames", ())]
         config.hook.pytest_deselected(items=[item for item in items if item not in measuring])

@@ -142,7 +142,7 @@ def test_every_function_has_right_arguments_here(files):
 
 @pytest.mark.parametrize("part", range(8))
 def test_bad_values_are_answered_by_flexapods_errors(part, files):
-    names = [name for name in FUNCTIONS[part::8] if name != "cluster"]  # it waits as long as it is told
+    names = [name for name in FUNCTIONS[part::8] if name != "cluster"]  # test_cluster.py
     for draw in rounds(0.7 / 8, f"part {part}", most=150):
         name = draw.choice(names)
         given = _arguments(name)

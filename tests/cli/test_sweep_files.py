@@ -2,7 +2,6 @@
 
 import io
 import json
-import os
 import subprocess
 import sys
 
@@ -131,39 +130,29 @@ def test_sizes_are_estimated_before_memory_is_asked_for(arguments, words, tmp_pa
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "cp1252", "ascii", "latin-1"])
-def test_any_encoding_of_the_output_will_do(encoding):
-    command = [
-        sys.executable,
-        "-m",
-        "flexapod",
-        "sweep",
-        "mukherjee-i",
-        *AROUND,
-        "--points",
-        "1000",
-        "--at-least",
-        "60",
-    ]
-    env = {**os.environ, "PYTHONIOENCODING": encoding, "PYTHONUTF8": "0"}
-    ended = subprocess.run(command, capture_output=True, check=True, env=env)
-    text = ended.stdout.decode(encoding)
+def test_any_encoding_of_the_output_will_do(encoding, monkeypatch):
+    there = io.TextIOWrapper(io.BytesIO(), encoding=encoding)
+    monkeypatch.setattr(sys, "stdout", there)
+    assert main(["sweep", "mukherjee-i", *AROUND, "--points", "1000", "--at-least", "60"]) == 0
+    there.flush()
+    text = there.buffer.getvalue().decode(encoding)
     assert ("ω1 ≥ 60 rad/s" if encoding == "utf-8" else "w1 >= 60 rad/s") in text
     assert "?" not in text
 
 
 @pytest.mark.parametrize("columns", [{}, {"COLUMNS": "30"}])
-def test_no_number_of_a_table_is_cut(columns):
+def test_no_number_of_a_table_is_cut(columns, capsys, monkeypatch):
     """The condition number at a pose on the edge of singular is long, and so are coordinates."""
-    command = ["sweep", "mukherjee-i", "--around", "0.1", "20", "--points", "200000"]
-    env = {name: value for name, value in os.environ.items() if name != "COLUMNS"} | columns
-    ended = subprocess.run(
-        [sys.executable, "-m", "flexapod", *command], capture_output=True, text=True, check=True, env=env
-    )
-    assert "…" not in ended.stdout
-    assert "..." not in ended.stdout
+    monkeypatch.delenv("COLUMNS", raising=False)
+    for name, width in columns.items():
+        monkeypatch.setenv(name, width)
+    code, said, _ = run(capsys, "sweep", "mukherjee-i", "--around", "0.1", "20", "--points", "200000")
+    assert code == 0
+    assert "…" not in said
+    assert "..." not in said
     found = fx.summarise(fx.sweep(I, fx.random_poses(fx.Box.about(fx.home_pose(I), 0.1, np.radians(20)), 200_000)))
-    assert f"{found.worst_conditioned.cond_H:.4g}" in ended.stdout
-    assert "worst" in ended.stdout
+    assert f"{found.worst_conditioned.cond_H:.4g}" in said
+    assert "worst" in said
 
 
 def test_the_head_of_a_table_is_short(tmp_path, capsys):

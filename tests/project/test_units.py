@@ -2,6 +2,7 @@
 
 import inspect
 import io
+from functools import cache
 
 import numpy as np
 import pint
@@ -23,6 +24,7 @@ POSITIONER = fx.load("precision-positioner")
 BAND = {"omega": [10.0, 20.0, 30.0]}
 
 
+@cache  # it takes seconds
 def _plan():
     mukherjee = fx.load("mukherjee-i")
     start = fx.Pose.from_rpy(0, 0, 0.89, *np.radians([0, -33, -10]))

@@ -168,9 +168,9 @@ def test_an_address_gets_few_cookies() -> None:
     assert known.cookie(Client("10.0.0.2"))
 
 
-def greet(served: Served, own: str = "127.0.0.1") -> bytes:
+def greet(served: Served, own: str = "127.0.0.1", what: bytes = b"GET /icon.svg") -> bytes:
     with socket.create_connection(("127.0.0.1", served.port), 20, (own, 0)) as page:
-        page.sendall(b"GET /icon.svg HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
+        page.sendall(what + b" HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n")
         return page.recv(12)
 
 
@@ -216,12 +216,24 @@ def test_requests_that_come_too_fast_wait_and_then_are_refused(monkeypatch: pyte
 
     monkeypatch.setattr(limits, "REQUESTS", 3)
     monkeypatch.setattr(limits, "REQUESTS_A_SECOND", 0.5)
+    monkeypatch.setattr(limits, "OPENINGS", 0)
     monkeypatch.setattr(web_clients, "monotonic", lambda: 1.0)
     with running() as served:
         monkeypatch.setattr("flexapod.web.security.anyio.sleep", sleep)
         found = [greet(served) for _ in range(6)]
     assert found == [b"HTTP/1.1 200"] * 4 + [b"HTTP/1.1 429"] * 2
     assert waits == [0, 0, 0, 2]
+
+
+def test_a_new_page_does_not_wait_behind_a_script_of_its_address(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(limits, "REQUESTS", 1)
+    monkeypatch.setattr(limits, "REQUESTS_A_SECOND", 1e-3)
+    monkeypatch.setattr(limits, "OPENINGS", 2)
+    monkeypatch.setattr(limits, "OPENINGS_A_SECOND", 1e-3)
+    with running() as served:
+        script = [greet(served, what=b"DELETE /api/jobs/none") for _ in range(3)]
+        assert script == [b"HTTP/1.1 404", b"HTTP/1.1 429", b"HTTP/1.1 429"]
+        assert [greet(served) for _ in range(3)] == [b"HTTP/1.1 200"] * 2 + [b"HTTP/1.1 429"]
 
 
 def test_long_bodies_come_at_a_pace(monkeypatch: pytest.MonkeyPatch) -> None:

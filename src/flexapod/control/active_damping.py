@@ -9,7 +9,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.linalg import eigh, null_space
-from scipy.optimize import linear_sum_assignment
 
 from flexapod.checks import instance, numbers, one_of
 from flexapod.control.closed_loop_poles import least_damping
@@ -183,6 +182,8 @@ def root_locus(
 
 def _followed(pole: Complex) -> Complex:
     """The rows of poles ordered such that every column moves little from row to row."""
+    from scipy.optimize import linear_sum_assignment
+
     out = pole.copy()
     step = np.zeros(pole.shape[1], dtype=complex)
     for i in range(1, len(pole)):

@@ -6,7 +6,6 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import minimize_scalar
 
 from flexapod.checks import numbers
 from flexapod.control.closed_loop_poles import least_damping
@@ -47,6 +46,8 @@ def best_gain(plant: Plant, law: Callable[[float], ControlLaw], gains: Array) ->
         return _first_still(damping, logs, int(still[0]))
     best = int(values.argmax())
     span = (logs[max(best - 1, 0)], logs[min(best + 1, len(logs) - 1)])
+    from scipy.optimize import minimize_scalar
+
     refined = minimize_scalar(lambda x: -damping(x), bounds=span, method="bounded", options={"xatol": 1e-7})
     most, at = max((float(-refined.fun), float(refined.x)), (float(values[best]), float(logs[best])))
     return float(np.exp(at)), most

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from flexapod.checks import positive
 from flexapod.control.closed_loop_poles import least_damping
@@ -179,6 +178,8 @@ def _choose(plant: Plant, law: Law, gains: Array, damping: float | None) -> tupl
     first = int(reached[0])
     if first == 0:
         return float(gains[0]), float(values[0])
+    from scipy.optimize import brentq
+
     gain = brentq(lambda g: _damping(plant, law, g) - damping, gains[first - 1], gains[first])
     return float(gain), damping
 

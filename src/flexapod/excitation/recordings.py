@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import PPoly, make_interp_spline
 
 from flexapod.checks import one_of
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, Array, unit_of
@@ -19,6 +18,9 @@ from flexapod.excitation.excitation import Excitation, Use
 from flexapod.excitation.piecewise import sampled_term
 from flexapod.excitation.samples import Samples, Trend, checked, drift, filtered, unwrapped, without_trend
 from flexapod.tables import Column, Units, naming, parse_table, read_text, unit_named
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PPoly
 
 Recorded = Literal["value", "velocity", "acceleration"]
 INTEGRATIONS = {"value": 0, "velocity": 1, "acceleration": 2}
@@ -119,6 +121,8 @@ def _excitation(
     detrend: Trend | None,
     highpass: float | None,
 ) -> Excitation:
+    from scipy.interpolate import PPoly, make_interp_spline
+
     for k, name in enumerate(names):
         if name in ROTATIONS and recorded == "value":
             samples = unwrapped(samples, k)
@@ -152,6 +156,8 @@ def _excitation(
 
 def _settled(spline: PPoly, times: Array, highpass: float | None) -> PPoly:
     """An integrated motion less what is slow in it, or less its straight line: its mean and its mean speed."""
+    from scipy.interpolate import PPoly, make_interp_spline
+
     x = spline(times)
     slow = np.polyval(np.polyfit(times, x, 1), times) if highpass is None else x - filtered(times, x, highpass)
     rest = PPoly.from_spline(make_interp_spline(times, slow, k=5))

@@ -262,6 +262,8 @@ def moment_excess(hexapod: Hexapod, pose: PoseLike | None, base: PoseLike | None
 def in_words(quantity: LimitedQuantity) -> list[str]:
     """What a quantity of one pose exceeds, leg by leg."""
     value = np.atleast_1d(quantity.value)
+    if ((value >= quantity.least) & (value <= quantity.most)).all():
+        return []
     name, unit = quantity.name, quantity.unit
     low, high = np.broadcast_to(quantity.least, value.shape), np.broadcast_to(quantity.most, value.shape)
     words = []

@@ -185,9 +185,17 @@ def describe_shapes(
     s = states(hexapod, pose, base)
     J = _core.equations_of_motion(hexapod.packed, as_joint(joint), s.platform, s.base)[0][0]
     shift = twist_of_center(hexapod, pose)
-    J_center = shift.T @ J @ shift
-    center = pose.position + pose.matrix @ hexapod.platform_mass_center
-    return [_describe(np.linalg.solve(shift, v), J_center, center) for v in shapes.T]
+    twists = shapes.copy()
+    twists[:3] -= shift[:3, 3:] @ shapes[3:]  # shift^-1 of them
+    share = (twists.conj() * (shift.T @ J @ shift @ twists)).real
+    if np.iscomplexobj(twists):  # of a real one they sum to 1 = twist^T J twist
+        share = share / share.sum(axis=0)
+    v, w = twists[:3].real.T, twists[3:].real.T
+    speed, spin = np.linalg.norm(v, axis=1), np.linalg.norm(w, axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):  # of a shape that does not turn
+        center = pose.position + pose.matrix @ hexapod.platform_mass_center + np.cross(w, v) / spin[:, None] ** 2
+        axis, pitch = w / spin[:, None], np.einsum("ij,ij->i", w, v) / spin**2
+    return [_describe(*one) for one in zip(share.T, speed, spin, center, axis, pitch, strict=True)]
 
 
 def twist_of_center(hexapod: Hexapod, pose: Pose) -> Array:
@@ -197,12 +205,7 @@ def twist_of_center(hexapod: Hexapod, pose: Pose) -> Array:
     return shift
 
 
-def _describe(twist: Array | Complex, J: Array, mass_center: Array) -> ModeDescription:
-    share = (twist.conj() * (J @ twist)).real
-    if np.iscomplexobj(twist):  # of a real one they sum to 1 = twist^T J twist
-        share = share / share.sum()
-    v, w = twist[:3].real, twist[3:].real
-    speed, spin = np.linalg.norm(v), np.linalg.norm(w)
+def _describe(share: Array, speed: float, spin: float, center: Array, axis: Array, pitch: float) -> ModeDescription:
     first = int(np.argmax(share))
     others = [i for i in np.argsort(-share) if i != first and share[i] > 0.1]
     words = f"mostly {AXES[first]} ({min(share[first], 1.0):.0%})"  # coupling may give a direction more than all
@@ -210,11 +213,9 @@ def _describe(twist: Array | Complex, J: Array, mass_center: Array) -> ModeDescr
         words += " with " + ", ".join(f"{AXES[i]} ({share[i]:.0%})" for i in others)
     if spin == 0 or (first < 3 and spin * 1e6 < speed):
         return ModeDescription(words, AXES[first], share, np.full(3, np.nan), np.full(3, np.nan), np.inf)
-    center = mass_center + np.cross(w, v) / spin**2
-    axis, pitch = w / spin, float(w @ v / spin**2)
     if share[3:].sum() > 0.01:  # a mode that hardly turns has an axis, but nobody would see it turn about it
         words += f", turning about ({_rounded(center)}) m"
-    return ModeDescription(words, AXES[first], share, center, axis, pitch)
+    return ModeDescription(words, AXES[first], share, center, axis, float(pitch))
 
 
 def _rounded(point: Array) -> str:

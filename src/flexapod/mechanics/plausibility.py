@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from types import MappingProxyType
 from typing import NamedTuple
 
@@ -48,6 +49,11 @@ def mean_radius(joints: Array) -> float:
 
 def implausible(hexapod: Hexapod) -> list[Caution]:
     """Numbers of a design that are hardly meant, whatever the pose."""
+    return list(_implausible(hexapod))
+
+
+@lru_cache(maxsize=64)  # a page asks for pose after pose of one design
+def _implausible(hexapod: Hexapod) -> list[Caution]:
     return [*_sizes(hexapod), *_bodies(hexapod), *_gravity(hexapod), *_springs(hexapod)]
 
 

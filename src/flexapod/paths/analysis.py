@@ -9,8 +9,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.integrate import cumulative_simpson
-from scipy.optimize import brentq
 
 from flexapod.checks import one_of, positive, whole
 from flexapod.conventions import TRANSLATIONS, Array, JointModel, in_unit
@@ -199,6 +197,10 @@ def singular_times(hexapod: Hexapod, path: Trajectory, times: Array) -> tuple[fl
 
     signs = np.sign(side(times))
     changed = np.flatnonzero(signs[:-1] * signs[1:] <= 0)
+    if not changed.size:
+        return ()
+    from scipy.optimize import brentq  # slow to load, and few paths need it
+
     roots = [brentq(lambda t: side(t)[0], times[i], times[i + 1], xtol=1e-12 * path.duration) for i in changed]
     return tuple(np.unique(roots).tolist())
 
@@ -223,13 +225,19 @@ def _below(
 ) -> tuple[tuple[float, float], ...]:
     low = values < bound
     edges = np.flatnonzero(low[:-1] != low[1:])
-    roots = [float(brentq(lambda t: index(t)[0] - bound, times[i], times[i + 1])) for i in edges]
+    roots: list[float] = []
+    if edges.size:
+        from scipy.optimize import brentq
+
+        roots = [float(brentq(lambda t: index(t)[0] - bound, times[i], times[i + 1])) for i in edges]
     starts = ([float(times[0])] if low[0] else []) + [r for r, i in zip(roots, edges, strict=True) if not low[i]]
     ends = [r for r, i in zip(roots, edges, strict=True) if low[i]] + ([float(times[-1])] if low[-1] else [])
     return tuple(zip(starts, ends, strict=True))
 
 
 def _samples(hexapod: Hexapod, path: Trajectory, times: Array, values: Array, joint: JointModel) -> xr.Dataset:
+    from scipy.integrate import cumulative_simpson
+
     pose = path(times).pose
     weight = np.interp(times, path.times, path.weights)
     cumulative = cumulative_simpson(weight * values, x=times, initial=0.0)

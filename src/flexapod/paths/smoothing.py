@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import minimize
 
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
@@ -51,6 +50,8 @@ class Smoother:
         self, start: Array, samples: int, margin: float, low: Array, high: Array, report: Callable[[], None]
     ) -> Array:
         """Waypoints (n, 6) from a first guess (n, 6), by SLSQP. The caller checks them: they may miss a bound."""
+        from scipy.optimize import minimize
+
         knots = Knots(len(start), samples)
         ends = np.min(self.margins.smooth(self.chart.poses(start[[0, -1]] * self.scale)), axis=0)
         # A bound that an end just meets cannot be kept with a margin near it.

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from flexapod.checks import instance, numbers, positive, whole
 from flexapod.conventions import TWO_PI, Array, JointModel
@@ -330,6 +329,8 @@ def _simulated(dataset: xr.Dataset, hexapod: Hexapod, base: Pose) -> tuple[_Film
     told = dataset.displacement.transpose("time", "output").values
     turned = dataset.base_rotation.transpose("time", "axis", "body_axis").values @ base.matrix.T
     moved = dataset.base_position.transpose("time", "axis").values - base.position
+    from scipy.spatial.transform import Rotation
+
     feet = np.concatenate([moved, Rotation.from_matrix(turned).as_rotvec()], axis=1)
     start = dataset.isel(time=0)  # its displacement from rest gives rest
     matrix = rotation_from_vector(told[0, 3:]).T @ start.rotation.transpose("axis", "body_axis").values

@@ -11,7 +11,6 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 from scipy.linalg import eigh, expm
-from scipy.spatial.transform import Rotation
 
 from flexapod.checks import one_of, positive
 from flexapod.conventions import AXES, TWO_PI, Array, Complex, JointModel, in_mixed_units, in_unit, unit_of
@@ -23,6 +22,7 @@ from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attribute
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.point_motion import displacement_at, shift
 from flexapod.pose import Motion, Pose, PoseLike, unpack
+from flexapod.rotations import rotation_from_vector
 from flexapod.simulation.integrator import IntegratorOptions, integrate
 from flexapod.simulation.run import SimulationRun
 from flexapod.vibration.grid import asked, grid_around
@@ -196,7 +196,7 @@ class _Shaker:
         return path.displacement[:, :-1], end, path.status == "complete"
 
     def _motion(self, state: Array) -> Motion:
-        turned = Rotation.from_rotvec(state[3:6]).as_matrix() @ self.pose.matrix
+        turned = rotation_from_vector(state[3:6]) @ self.pose.matrix
         return Motion(Pose(self.pose.position + state[:3], turned), state[6:9], state[9:])
 
 

@@ -20,7 +20,7 @@ from flexapod.web.process import Pool
 from flexapod.web.turns import Share, Turns
 
 KEPT = 2  #: idle processes kept: a page starts a cloud and a slice at the same time
-NICENESS = 10  #: questions, which follow sliders, go before jobs
+NICENESS = 15  #: questions, which follow sliders, go before jobs
 DIED = "the process of this {} died; it may have run out of memory"
 
 

@@ -99,9 +99,12 @@ class Process(NamedTuple):
 
     async def receive(self, seconds: float) -> tuple[Any, bytes] | None:
         """The next message, if it comes in time. Raises EOFError or OSError if the process has died."""
-        if not await run_sync(self.pipe.poll, seconds):
-            return None
-        return self.pipe.recv()
+        if sys.platform == "win32":
+            return self.pipe.recv() if await run_sync(self.pipe.poll, seconds) else None
+        with anyio.move_on_after(seconds):
+            await anyio.wait_readable(self.pipe.fileno())
+            return self.pipe.recv()
+        return None
 
 
 class Pool:

@@ -95,7 +95,7 @@ class Questions:
 
     def __init__(self, accepted: Iterable[str] = ()) -> None:
         self.quick = _Lane(Turns(limits.QUICK, alone=True), limits.QUICK, 0)
-        self.careful = _Lane(Turns(limits.CAREFUL), 1, 5)
+        self.careful = _Lane(Turns(limits.CAREFUL), 1, 10)
         self._accepted: OrderedDict[bytes, None] = OrderedDict((_digest(text), None) for text in accepted)
 
     async def ask(self, client: Client, kind: str, body: bytes) -> Answer:

@@ -110,15 +110,21 @@ class Guard:
 
 
 class Pace:
-    """Middleware in which the requests of a client wait that come faster than they may."""
+    """Middleware in which the requests of a client wait that come faster than they may.
+
+    A page that is opened has no cookie yet, and is one client with whatever else has none at its address. So that it
+    does not wait behind a script there, an address has some GET requests without a cookie beside.
+    """
 
     def __init__(self, app: ASGIApp, clients: Clients) -> None:
         self.app, self.clients = app, clients
         self._allowance = Allowance(limits.REQUESTS, limits.REQUESTS_A_SECOND)
+        self._openings = Allowance(limits.OPENINGS, limits.OPENINGS_A_SECOND)
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        if scope["type"] == "http":
-            client = self.clients.who(HTTPConnection(scope))
+        client = self.clients.who(HTTPConnection(scope)) if scope["type"] == "http" else None
+        opens = client is not None and not client.name and scope["method"] == "GET"
+        if client is not None and not (opens and self._openings.take(client.address)):
             wait = self._allowance.owed(client, 1)
             if wait > limits.LATE_SECONDS:
                 self._allowance.owed(client, -1)

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from flexapod import plots
 from flexapod.control.closed_loop_poles import ClosedLoop
@@ -93,8 +91,7 @@ def study(hexapod: Hexapod, f: ControlFindings) -> Study:
 def _drawing(name: str, title: str, plot: str, data: xr.Dataset | None, words: str, **given: Any) -> Drawing | None:
     if data is None:
         return None
-    draw: Callable[..., Figure] = getattr(plots.control, plot)
-    return Drawing(name, title, partial(draw, data, **given), words)
+    return Drawing(name, title, lambda: getattr(plots.control, plot)(data, **given), words)
 
 
 def cautions(f: ControlFindings) -> list[Caution]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -27,7 +26,7 @@ def study(hexapod: Hexapod, found: Envelope, bounded: bool) -> Study:
         "Straight motions from home end on the blue line, at the first pose that a limit or a singular pose stops."
     )
     drawing = Drawing(
-        "pairs", "Two axes at once", partial(plots.envelope.pairs, found, hexapod.name), captions, wide=True
+        "pairs", "Two axes at once", lambda: plots.envelope.pairs(found, hexapod.name), captions, wide=True
     )
     return Study(
         hexapod=hexapod,

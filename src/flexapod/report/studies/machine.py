@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from flexapod import plots
@@ -24,6 +23,9 @@ from flexapod.report.numbers import DASH, brief, file_name, percent, pose_words,
 from flexapod.report.studies import inputs
 from flexapod.report.studies.inputs import limits
 from flexapod.report.study import Bars, Column, Drawing, Row, Section, Study, Table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MODES = [str(number) for number in range(1, 7)]
 ON_PAGE = {"geometry": 7, "mass": 5, "stiffness": 4}  # so many sensitivities of each kind
@@ -160,6 +162,8 @@ def _frequencies(f: Findings) -> Section:
     note = f"{note} {_bending(f)}"
 
     def draw() -> Figure:
+        from matplotlib.figure import Figure
+
         figure = Figure(figsize=(7, 2.7))
         labels = [description.dominant for description in f.descriptions]
         beside = None if tangent is None else tangent.pairs.beside(tangent.modes.pole)
@@ -303,6 +307,8 @@ def _along(direction: tuple[float, float, float]) -> str:
 
 
 def _in_3d(draw: Callable[..., Any], size: tuple[float, float]) -> Figure:
+    from matplotlib.figure import Figure
+
     figure = Figure(figsize=size)
     draw(ax=figure.add_subplot(projection="3d"))
     return figure

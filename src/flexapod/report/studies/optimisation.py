@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
 from flexapod import plots
@@ -21,9 +19,9 @@ def optimal(found: OptimalDesign, objective: str, joint: JointModel = "universal
     """What was found, from what, and how it was verified. objective: in words."""
     worst = found.verification.pose
     where = "" if worst is None else f" It is least at {six_words(worst)}."
-    plan = Drawing("plan", "The two designs", partial(plots.optimisation.plan, found),
+    plan = Drawing("plan", "The two designs", lambda: plots.optimisation.plan(found),
                    f"Both at home. Raised: {objective}.{where}")  # fmt: skip
-    search = Drawing("search", "The search", partial(plots.optimisation.search, found),
+    search = Drawing("search", "The search", lambda: plots.optimisation.search(found),
                      "One mark a trial; constraints as above.")  # fmt: skip
     sections = [Section(plan.title, [plan]), Section("Variables", [_variables(found)])]
     if found.verification.checks:
@@ -185,7 +183,7 @@ def front(found: ParetoFront, objective: str) -> Study:
         Column(found.name, found.against, found.unit, 5),
         *(Column(name, values, found.ranges[name].unit, 5) for name, values in by_name.items()),
     ]
-    drawing = Drawing("front", f"Index against {found.name}", partial(plots.optimisation.front, found),
+    drawing = Drawing("front", f"Index against {found.name}", lambda: plots.optimisation.front(found),
                       "Of the designs on the line none is better in both.")  # fmt: skip
     name = file_name(found.hexapod.name)
     data = {

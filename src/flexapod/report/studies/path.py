@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -89,11 +88,11 @@ def _drawings(f: PathFindings) -> list[Drawing]:
     forces = (
         "Forces from the full dynamics; positive pushes the platform from the base. Thin lines: the forces at rest."
     )
-    index = partial(plots.path.index_along, f.along, f.beside)
-    drawings = [Drawing("index", "The stability index along the path", index, where + note)]
-    if f.plane is not None:
-        drawings.append(Drawing("plane", "Round the weak region", partial(plots.path.plan_map, f.plane), words))
-    return [*drawings, Drawing("loads", "Leg forces and travel", partial(plots.path.loads, f.loads), forces)]
+    title = "The stability index along the path"
+    drawings = [Drawing("index", title, lambda: plots.path.index_along(f.along, f.beside), where + note)]
+    if (plane := f.plane) is not None:
+        drawings.append(Drawing("plane", "Round the weak region", lambda: plots.path.plan_map(plane), words))
+    return [*drawings, Drawing("loads", "Leg forces and travel", lambda: plots.path.loads(f.loads), forces)]
 
 
 def _order(drawing: Drawing) -> int:

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib.figure import Figure
 
 from flexapod import plots
 from flexapod.conventions import AXES, LEGS, TWO_PI, Array, Complex, unit_of
@@ -20,6 +19,9 @@ from flexapod.mechanics.point_motion import in_columns, of_point
 from flexapod.pose import Pose
 from flexapod.report.numbers import pose_numbers, pose_words, without_rounding
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 RMS = ("displacement", "relative", "acceleration", "leg_force")
 

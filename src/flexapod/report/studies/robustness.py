@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 from flexapod import plots
@@ -23,13 +22,13 @@ def study(hexapod: Hexapod, found: Robustness, over: str, pose: PoseLike | None 
     beyond = told["poses_beyond_limits"]
     left = f" ({told['poses']} poses within the design's limits, {beyond} beyond them left out)" if beyond else ""
     poses = left or (f" ({told['poses']} poses)" if told["poses"] > 1 else "")
-    spread = Drawing("spread", "How the index strays", partial(plots.optimisation.spread, found),
+    spread = Drawing("spread", "How the index strays", lambda: plots.optimisation.spread(found),
                      f"{count} designs; at {over}{poses}.")  # fmt: skip
     drawn = f"{count} designs of a scrambled Sobol sequence, seed {told['seed']}; all parameters independent."
     sections = [Section("What is assumed", [_assumed(found)], [drawn]), Section(spread.title, [spread])]
     if found.sensitivity is not None:
         words = "Sobol indices: shares of the variance of the index, with 95 % confidence."
-        importance = Drawing("importance", "What matters most", partial(plots.optimisation.importance, found), words)
+        importance = Drawing("importance", "What matters most", lambda: plots.optimisation.importance(found), words)
         sections.append(Section(importance.title, [importance, _shares(found)]))
     name, where = f"{file_name(hexapod.name)}-robust", "at home" if pose is None else "at the pose given"
     return Study(

@@ -5,11 +5,10 @@ from __future__ import annotations
 import io
 from collections.abc import Sequence
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.figure import Figure
 
 from flexapod import plots
 from flexapod.conventions import AXES, Unit, printed_unit, unit_of
@@ -21,6 +20,9 @@ from flexapod.pose import Pose
 from flexapod.report.numbers import pose_numbers, pose_words, without_rounding
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 from flexapod.simulation.notes import BALANCE
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def study(
@@ -39,7 +41,7 @@ def study(
         Drawing("displacement", "Displacement from rest", partial(_displacement, dataset, "displacement")),
         Drawing("relative_displacement", "Displacement seen from the base",
                 partial(_displacement, dataset, "relative_displacement")),
-        Drawing("leg_forces", "Leg forces", partial(plots.simulation.leg_forces, dataset)),
+        Drawing("leg_forces", "Leg forces", lambda: plots.simulation.leg_forces(dataset)),
     ]  # fmt: skip
     return Study(
         hexapod=hexapod,

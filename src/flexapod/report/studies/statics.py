@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -35,7 +34,7 @@ def study(hexapod: Hexapod, f: StaticsFindings) -> Study:
     lengths = "without weight and load" if f.reference is None else f"in case {f.names[f.reference]}"
     point = point_words(f.cases.attrs["point_m"], f.cases.attrs["point"]) or "the platform's origin"
     drawing = Drawing(
-        "statics", "Forces and deflections", partial(plots.statics.load_cases, f.cases, f.elevation), "", wide=True
+        "statics", "Forces and deflections", lambda: plots.statics.load_cases(f.cases, f.elevation), "", wide=True
     )
     return Study(
         hexapod=hexapod,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +45,7 @@ def study(
         data["worst_pose"] = _worst_data(worst)
         rows += _worst_rows(worst, within)
     drawing = Drawing(
-        "sweep", f"The index over the poses{within}", partial(plots.sweep.auto, sweep, all_poses=all_poses)
+        "sweep", f"The index over the poses{within}", lambda: plots.sweep.auto(sweep, all_poses=all_poses)
     )
     return Study(
         hexapod=hexapod,
