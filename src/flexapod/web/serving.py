@@ -137,7 +137,7 @@ def server(app: ASGIApp) -> uvicorn.Server:
         app,
         http=partial(Connection, there=There()),  # type: ignore[arg-type]  # it makes what is asked for
         ws="none",
-        loop="asyncio",  # which asks the Door for each connection; others have ways of their own
+        loop="asyncio:SelectorEventLoop",  # which asks the Door for each connection; others, as Windows' own, do not
         log_level="critical",
         backlog=AT_A_TIME,
         timeout_keep_alive=limits.IDLE_SECONDS,
