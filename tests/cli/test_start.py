@@ -28,6 +28,7 @@ MAY = {
     "animate": TABLES | SPACE | {"matplotlib"},
     "certify": SOBOL | {"matplotlib"},
     "check": set(),
+    "cite": set(),
     "control": TABLES | SEARCH,
     "designs": set(),
     "envelope": SOBOL,

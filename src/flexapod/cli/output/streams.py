@@ -6,6 +6,7 @@ import codecs
 import os
 import sys
 from typing import Any
+from unicodedata import normalize
 
 _PLAIN = {
     "ω": "w",
@@ -37,7 +38,12 @@ def _plainly(error: UnicodeError) -> tuple[str, int]:
     """Signs that an encoding lacks in those that every encoding has."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
-    return "".join(_PLAIN.get(sign, "?") for sign in error.object[error.start : error.end]), error.end
+    return "".join(_PLAIN.get(sign) or _bare(sign) for sign in error.object[error.start : error.end]), error.end
+
+
+def _bare(sign: str) -> str:
+    """A letter without its accents, "?" for what is none."""
+    return normalize("NFKD", sign).encode("ascii", "ignore").decode() or "?"
 
 
 codecs.register_error("flexapod.plainly", _plainly)

@@ -7,6 +7,7 @@ from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Any, TypeAlias
 
+from flexapod.checks import instance, positive
 from flexapod.conventions import Array
 from flexapod.errors import ClusterError
 from flexapod.optional import needed
@@ -154,6 +155,8 @@ def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
     ------
     ClusterError
         If no scheduler answers within `timeout`, or it has no workers.
+    ArgumentError
+        If the address is no text, or the timeout no number above 0.
 
     See Also
     --------
@@ -170,6 +173,8 @@ def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
     >>> with fx.workspace.cluster("local") as workers:  # doctest: +SKIP
     ...     store.run(workers)
     """
+    instance(address, str, "address", "as tcp://host:8786 or local")
+    timeout = positive(timeout, "timeout", "s")
     dask = needed("distributed", "sweep", "a cluster needs dask.distributed")
     if address == LOCAL:
         local = dask.LocalCluster(threads_per_worker=1, dashboard_address="localhost:0")
@@ -179,7 +184,7 @@ def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
     try:
         _knock(address, timeout)
         client = dask.Client(address, timeout=timeout)
-    except (OSError, ValueError, OverflowError) as error:
+    except (OSError, ValueError, OverflowError, RuntimeError, TypeError) as error:  # the last for tls without its keys
         raise ClusterError(
             f"no Dask scheduler answers at {address} ({str(error) or 'timed out'}). Start one with "
             "`dask scheduler`, check the address (tcp://host:port), or use the address `local`."
