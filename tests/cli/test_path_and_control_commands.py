@@ -33,6 +33,15 @@ def test_plan_writes_a_path_that_reads_back(run, result, tmp_path):
     assert "BELOW it in places" in out
 
 
+@pytest.mark.parametrize("given", [("--duration", 2), ("--leg-rate", 0.1), ("--condition", 50), ("--clearance", 0.01)])
+def test_what_only_a_planned_path_has_is_refused_beside_a_file(run, tmp_path, given):
+    file = tmp_path / "w.csv"
+    file.write_text("t,x,y,z,roll,pitch,yaw\n0,0,0,0.89,0,0,0\n1,0,0,0.9,0,0,0\n")
+    code, _, err = run("path", "mukherjee-i", file, *given)
+    assert code == 2
+    assert f"{given[0]} is for a path that is planned" in err
+
+
 def test_path_of_a_file(result, tmp_path):
     rows = ["t,x,y,z,roll,pitch,yaw,weight", "0,0,0,0.89,0,0,0,1", "1,0.05,0.02,0.9,5,0,10,3", "2,0,0,0.95,0,0,0,1"]
     file = tmp_path / "w.csv"

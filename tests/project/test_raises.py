@@ -102,6 +102,7 @@ PROVOKED = {
     ("animate_simulation", "MissingExtraError"): without(
         "imageio_ffmpeg", lambda: fx.animate_simulation(fx.simulate(MACHINE, HOME, duration=1e-3), MACHINE, "a.mp4")
     ),
+    ("cluster", "ArgumentError"): lambda: fx.workspace.cluster("local", timeout=-1.0).__enter__(),
     ("h_infinity", "MissingExtraError"): without("slycot", lambda: fx.control.h_infinity(MACHINE, HOME)),
     ("lqg", "MissingExtraError"): without("control", lambda: fx.control.lqg(MACHINE, HOME)),
     ("robustness", "MissingExtraError"): without(

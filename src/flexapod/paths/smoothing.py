@@ -13,6 +13,7 @@ from flexapod.paths.chart import Chart, turning
 from flexapod.paths.leg_speed import LegSpeed, duration
 from flexapod.paths.requirements import Margins, smooth_minimum
 from flexapod.paths.trajectory import spline
+from flexapod.workspace.box_minimum import Remembered
 
 _STEP = 1e-6  # of central differences, in scaled coordinates: truncation and rounding both near 1e-10
 _ROUGHNESS = 2e-3  # weight of the mean squared acceleration against length: fixes how fast the line is run
@@ -83,7 +84,7 @@ class Smoother:
             slopes = np.hstack([slopes, np.zeros((len(slopes), 1))])
             return np.concatenate([values, speed]), np.vstack([slopes, speed_slope])
 
-        last = _Cached(bounds)
+        last = Remembered(bounds)
         result = minimize(
             cost,
             x,
@@ -156,19 +157,6 @@ class Smoother:
         assert self.speed is not None
         q, rate, acceleration = ((B @ P) * self.scale for B in knots.B)
         return duration(self.hexapod, self.chart.motions(q, rate, acceleration), self.speed)
-
-
-class _Cached:
-    """A function of x that keeps its last result: value and derivative are asked for one after the other."""
-
-    def __init__(self, function: Callable[[Array], tuple[Array, Array]]) -> None:
-        self.function = function
-        self.x: Array | None = None
-
-    def __call__(self, x: Array) -> tuple[Array, Array]:
-        if self.x is None or not np.array_equal(x, self.x):
-            self.x, self.result = x.copy(), self.function(x)
-        return self.result
 
 
 def _differences(function: Callable[..., Array], arguments: tuple[Array, ...]) -> list[Array]:

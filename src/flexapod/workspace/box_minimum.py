@@ -6,6 +6,7 @@ Coordinates whose range is one number are held.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -18,6 +19,20 @@ _CONSTRAINED_RESTARTS = 8
 _INSIDE = 1e-9  # by which a search keeps within its constraints, so that rounding does not break them
 
 Smooth = Callable[[Array], tuple[float, Array]]  # value and gradient
+T = TypeVar("T")
+
+
+class Remembered(Generic[T]):
+    """A function of a point that keeps its last result: a search asks for value and derivative one after the other."""
+
+    def __init__(self, function: Callable[[Array], T]) -> None:
+        self.function = function
+        self.point: Array | None = None
+
+    def __call__(self, point: Array) -> T:
+        if self.point is None or not np.array_equal(point, self.point):
+            self.point, self.result = point.copy(), self.function(point)
+        return self.result
 
 
 def apart(points: Array, count: int) -> list[int]:
@@ -96,7 +111,7 @@ def constrained_minimum(
     """
     from scipy.optimize import minimize
 
-    shares = _FreeShares(low, high)
+    shares, function, margins = _FreeShares(low, high), Remembered(function), Remembered(margins)
     best, least = start, function(start)[0]
 
     def scaled(u: Array) -> tuple[float, Array]:

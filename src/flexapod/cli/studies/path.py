@@ -41,6 +41,12 @@ def compute(options: Options, report: Report) -> Study:
 def _is_file(options: Options) -> bool:
     ends = (options.start is not None) + (options.goal is not None)
     if options.file is not None and ends == 0:
+        for name in ("duration", "leg_rate", "leg_acceleration", "condition", "clearance"):
+            if getattr(options, name) is not None:
+                raise click.UsageError(
+                    f"--{name.replace('_', '-')} is for a path that is planned, with --from and --to; that of FILE is "
+                    "as it stands there."
+                )
         return True
     if options.file is None and ends == 2:
         if options.home_time is not None:
