@@ -27,20 +27,20 @@ SOBOL = SPLINES | {"scipy.stats"}
 MAY = {
     "animate": TABLES | SPACE | {"matplotlib"},
     "certify": SOBOL | {"matplotlib"},
-    "check": set(),
+    "check": ALGEBRA,  # for legs that bend, as for modes and sweep
     "cite": set(),
     "control": TABLES | SEARCH,
     "designs": set(),
     "envelope": SOBOL,
     "export": set(),
     "kinematics": set(),
-    "modes": set(),
+    "modes": ALGEBRA,
     "new": set(),
     "path": TABLES | SPLINES,
     "response": TABLES | ALGEBRA,
     "simulate": TABLES,
     "statics": TABLES | SPACE,
-    "sweep": TABLES,
+    "sweep": TABLES | ALGEBRA,
 }
 #: Those that draw, or search for minutes: what they load does not matter beside that.
 LONG = {"optimise", "paper", "report", "robust", "serve"}
