@@ -13,6 +13,7 @@ CORE = SOURCE.parent / "core"
 ORDER = [
     "_suggestions",
     "_core",
+    "showing",
     "errors",
     "citation",
     "conventions",

@@ -9,6 +9,7 @@ import numpy as np
 
 from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
+from flexapod.showing import in_notebooks
 from flexapod.workspace.box import Box
 from flexapod.workspace.proof import Boxes, Place
 
@@ -18,6 +19,7 @@ CLAIMS: tuple[Claim, ...] = get_args(Claim)
 STATUSES: tuple[Status, ...] = get_args(Status)
 
 
+@in_notebooks
 @dataclass(frozen=True, eq=False, repr=False)
 class Certificate:
     """What is proved of a design at every pose of a region, as `certify` and its like give it.

@@ -22,6 +22,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.mechanics.inputs import as_hexapod, as_joint
 from flexapod.output_files import check_file, output_path
+from flexapod.showing import in_notebooks
 from flexapod.workspace.box import Box, Workspace
 from flexapod.workspace.region import as_region, home_of
 
@@ -29,6 +30,7 @@ _GREATEST = 2.0**12  # of a scale that is tried
 _TURN = 2 * np.pi  # widest range of an angle that is tried, rad
 
 
+@in_notebooks
 class CertifiedBox(NamedTuple):
     """The largest box of a shape for which a bound is proved, as `certified_box` gives it.
 

@@ -12,10 +12,12 @@ from flexapod.checks import floats, instance, numbers, one_of, whole
 from flexapod.control.linear_controller import MEASUREMENTS, signals
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, shown
+from flexapod.showing import in_notebooks
 
 _SIGNALS = 6 * len(MEASUREMENTS)
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class Hardware:
     """Limits of actuators and noise of sensors.

@@ -11,11 +11,13 @@ from flexapod.control.plant import Plant, damping_ratios, is_stable, poles
 from flexapod.conventions import Array, Complex
 from flexapod.mechanics.cautions import stands
 from flexapod.mechanics.modes import advised_sampling_time
+from flexapod.showing import in_notebooks
 
 _KEPT_DAMPING = 0.2  # of the continuous loop: a sampled one that keeps less is sampled too slowly
 _HALVINGS = 20
 
 
+@in_notebooks
 class ClosedLoop(NamedTuple):
     """Poles of a hexapod under control, as `closed_loop` gives them.
 

@@ -14,6 +14,7 @@ from flexapod.control.linear_controller import Controller, Measurement, static
 from flexapod.conventions import Array, Unit
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.linearisation import Linearisation
+from flexapod.showing import in_notebooks
 
 Space = Literal["joint", "task"]
 Actuator = Literal["force", "command"]
@@ -29,6 +30,7 @@ def pid_units(law: PID) -> tuple[Unit, Unit, Unit]:
     return ("N/m", "N s/m", "N/(m s)") if law.space == "joint" else ("1/s^2", "1/s", "1/s^3")
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class PID:
     """Proportional, integral and derivative position control.
@@ -113,6 +115,7 @@ class PID:
         return np.asarray(np.linalg.solve(linear.H, wrench), dtype=np.float64)
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class ForceFeedback:
     """Integral force feedback for active damping: f' = -gain F - leak f in each leg.
@@ -169,6 +172,7 @@ class ForceFeedback:
         )
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class VelocityFeedback:
     """Direct velocity feedback for active damping: f = -gain L' in each leg, a force against the rate of its length.

@@ -14,6 +14,7 @@ from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.linearisation import Linearisation
 from flexapod.optional import needed
+from flexapod.showing import in_notebooks
 
 Measurement = Literal["leg_length", "leg_rate", "leg_force", "position", "velocity", "acceleration"]
 _MOST_STATES = 700  # of a sampled controller: the loop has an eigenvalue for each
@@ -26,6 +27,7 @@ def signals(*measurements: str) -> NDArray[np.int64]:
     return np.add.outer(first, np.arange(6)).ravel()
 
 
+@in_notebooks
 @dataclass(frozen=True, eq=False)
 class Controller:
     """A linear controller from measurements to six leg forces.

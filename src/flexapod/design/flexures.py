@@ -12,11 +12,13 @@ from flexapod import checks
 from flexapod.conventions import Array
 from flexapod.design.beam_integrals import Integrals, notch, notch_torsion, straight, torsion_constant
 from flexapod.errors import ArgumentError
+from flexapod.showing import in_notebooks
 
 RECTANGLE, ROUND = 6 / 5, 10 / 9  # by how much shear strains a section more than if its stress were uniform
 SLENDER = 1e5  # radius over thickness, beyond which a notch is no part that is made
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class Material:
     """What a flexure is made of.
@@ -47,6 +49,7 @@ class Material:
         return self.youngs_modulus / (2 * (1 + self.poisson_ratio))
 
 
+@in_notebooks
 class Flexure(NamedTuple):
     """Stiffness and strength of a flexure between two bodies, at its middle.
 

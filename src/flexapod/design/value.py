@@ -14,11 +14,13 @@ from flexapod.conventions import Array
 from flexapod.design.home import Home
 from flexapod.design.schema import KEYS
 from flexapod.design.value_checks import check_value
+from flexapod.showing import in_notebooks
 
 #: Metadata of fields that came later: None there leaves the bytes of a design as they were.
 ADDED = MappingProxyType({"added": True})
 
 
+@in_notebooks
 class Value:
     """A frozen bundle of read-only arrays, equal and hashed by value; copies and pickles are built and checked anew."""
 

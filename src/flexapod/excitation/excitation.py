@@ -21,6 +21,7 @@ from flexapod.checks import instance, not_negative, number, numbers, one_of, pos
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, Array
 from flexapod.errors import ArgumentError, PoseError, shown
 from flexapod.pose import Motion, PoseLike, as_pose
+from flexapod.showing import in_notebooks
 
 #: One of the pieces of a term of `TermKind.pieces`, behind a number that says whether they meet with corners.
 PIECE = np.dtype(_core.PIECE)
@@ -76,6 +77,7 @@ class Term:
         return replace(self, numbers=scaled)
 
 
+@in_notebooks
 @dataclass(frozen=True, eq=False)
 class Excitation:
     """A function of time on one or more axes: a base motion, a load, or a leg command.

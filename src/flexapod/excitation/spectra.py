@@ -13,6 +13,7 @@ from flexapod.checks import floats, number, one_of, positive, whole
 from flexapod.conventions import ROTATIONS, TWO_PI, Array
 from flexapod.errors import ArgumentError, shown
 from flexapod.excitation.noise_models import HIGH_NOISE, LOW_NOISE
+from flexapod.showing import in_notebooks
 
 Quantity = Literal["displacement", "velocity", "acceleration", "force", "moment"]
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
@@ -23,6 +24,7 @@ LOADS: dict[Quantity, str] = {"force": "N", "moment": "N m"}
 VC_SPEED = {"VC-A": 50.0, "VC-B": 25.0, "VC-C": 12.5, "VC-D": 6.25, "VC-E": 3.12, "VC-F": 1.56, "VC-G": 0.78}  # um/s
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class Spectrum:
     """A one-sided power spectral density of a motion or a load on one axis, per rad/s.

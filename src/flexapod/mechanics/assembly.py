@@ -16,6 +16,7 @@ from flexapod.mechanics.inputs import as_hexapod
 from flexapod.mechanics.kinematics import home_pose, platform_size, sides
 from flexapod.pose import Pose, PoseLike, as_pose, unpack, vectors
 from flexapod.rotations import orthonormal
+from flexapod.showing import in_notebooks
 
 _TOLERANCE = 1e-11  # of the longest leg: what a length may be off
 _POSE = Pose((0.0, 0.0, 0.0)).packed.size  # numbers of a pose in the core
@@ -61,6 +62,7 @@ class FoundPose(Pose):
         return super().__repr__() if np.isfinite(self.position).all() else f"<FoundPose, {self.status}>"
 
 
+@in_notebooks
 class Assemblies(NamedTuple):
     """All poses at which the legs have given lengths.
 

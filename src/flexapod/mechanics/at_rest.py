@@ -17,11 +17,13 @@ from flexapod.mechanics.mode_pairs import pair_modes
 from flexapod.mechanics.mode_shapes import ModeDescription, describe_shapes
 from flexapod.mechanics.modes import NaturalModes, natural_modes
 from flexapod.pose import PoseLike
+from flexapod.showing import in_notebooks
 
 Stability = Literal["stable", "falls over", "singular"]
 _NOTHING = 1e-12  # of the highest frequency: what is below is rounding at a singular pose
 
 
+@in_notebooks
 class PoseState(NamedTuple):
     """The machine at rest at a pose, as `pose_state` gives it.
 

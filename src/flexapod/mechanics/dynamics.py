@@ -13,8 +13,10 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
 from flexapod.mechanics.inputs import NO_LEGS, ZERO, as_joint, per_leg, states, wrench
 from flexapod.pose import MotionLike
+from flexapod.showing import in_notebooks
 
 
+@in_notebooks
 class EquationsOfMotion(NamedTuple):
     """Terms of J_p [a; alpha] - J_b [a_b; alpha_b] + eta = H F + [R F_ext; R M_ext], in inertial axes.
 

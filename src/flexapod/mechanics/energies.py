@@ -11,8 +11,10 @@ from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import NO_LEGS, as_joint, per_leg, states
 from flexapod.pose import MotionLike
+from flexapod.showing import in_notebooks
 
 
+@in_notebooks
 class Energy(NamedTuple):
     """Energies of platform and legs, and the power lost to friction.
 

@@ -14,8 +14,10 @@ from flexapod.mechanics.inputs import States, pose_or_home, states
 from flexapod.mechanics.joint_springs import joint_moments
 from flexapod.mechanics.kinematics import force_transformation, home_pose, inverse_kinematics
 from flexapod.pose import PoseLike, as_pose
+from flexapod.showing import in_notebooks
 
 
+@in_notebooks
 class JointAngles(NamedTuple):
     """Angles of the joints from neutral, the leg's direction at the home pose (without one, the frame's z axis).
 
@@ -37,6 +39,7 @@ class JointAngles(NamedTuple):
     spherical: Array
 
 
+@in_notebooks
 class LimitsCheck(NamedTuple):
     """Whether poses keep the design's limits.
 

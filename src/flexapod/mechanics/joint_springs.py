@@ -10,8 +10,10 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import DesignError
 from flexapod.mechanics.inputs import as_joint, states
 from flexapod.pose import PoseLike
+from flexapod.showing import in_notebooks
 
 
+@in_notebooks
 class JointMoments(NamedTuple):
     """Angles of the joints from the rest pose, and the moments of their springs.
 

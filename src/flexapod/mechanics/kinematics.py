@@ -12,10 +12,12 @@ from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import as_hexapod, states
 from flexapod.pose import MotionLike, Pose, PoseLike
+from flexapod.showing import in_notebooks
 
 _NO_SIDE = 1e-7  # least singular value of H over its largest, moments over the platform's size: a singular pose
 
 
+@in_notebooks
 class LegRates(NamedTuple):
     """Lengths of the legs and their derivatives in time.
 

@@ -13,11 +13,13 @@ from flexapod.mechanics.inputs import single_pose
 from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.mechanics.plausibility import Caution
 from flexapod.pose import PoseLike
+from flexapod.showing import in_notebooks
 
 ELEMENTS = 24  # along a leg, which gives its first frequency to 1e-5
 NEAR = 2.0  # times the highest frequency: a leg that bends below this moves with the modes that the model gives
 
 
+@in_notebooks
 class LegBending(NamedTuple):
     """The first bending frequencies of the legs, as `leg_bending` gives them.
 

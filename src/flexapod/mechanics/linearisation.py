@@ -22,11 +22,13 @@ from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.optional import needed
 from flexapod.pose import PoseLike, unpack
 from flexapod.rotations import skew
+from flexapod.showing import in_notebooks
 
 if TYPE_CHECKING:
     import control
 
 
+@in_notebooks
 @suggests(MODE_WORDS | {"poles": "pole"})
 class DampedModes(NamedTuple):
     """The six modes of the linearised dynamics with the base fixed.
@@ -67,6 +69,7 @@ _WORDS = {
 }
 
 
+@in_notebooks
 @suggests(_WORDS)
 @dataclass(frozen=True, eq=False)
 class Linearisation:

@@ -12,11 +12,13 @@ from flexapod.checks import instance
 from flexapod.conventions import Array
 from flexapod.mechanics.linearisation import DampedModes
 from flexapod.mechanics.modes import NaturalModes, mode_clusters
+from flexapod.showing import in_notebooks
 
 _ORDERS = np.array(list(permutations(range(6))))
 LEAST_OVERLAP = 0.5  # of the kinetic energy: what a damped mode must share with an undamped one to stand beside it
 
 
+@in_notebooks
 class ModePairs(NamedTuple):
     """Which damped mode moves as each undamped mode does.
 

@@ -14,8 +14,10 @@ from flexapod.mechanics.modes import natural_modes
 from flexapod.mechanics.springs import SPRING_LEG, law_states, spring_matrix
 from flexapod.pose import Pose, PoseLike
 from flexapod.rotations import skew
+from flexapod.showing import in_notebooks
 
 
+@in_notebooks
 class EnergyShares(NamedTuple):
     """Parts of each mode's energy, that sum to 1 over springs or bodies.
 
@@ -38,6 +40,7 @@ class EnergyShares(NamedTuple):
     suspension: Array
 
 
+@in_notebooks
 class ModeDescription(NamedTuple):
     """A mode in words, with the numbers behind them.
 

@@ -15,6 +15,7 @@ from flexapod.mechanics.inputs import ZERO, PointLike, as_joint, as_point, pose_
 from flexapod.mechanics.point_motion import shift
 from flexapod.mechanics.springs import law_states
 from flexapod.pose import PoseLike
+from flexapod.showing import in_notebooks
 
 #: Words for what modes have.
 MODE_WORDS = {
@@ -24,6 +25,7 @@ MODE_WORDS = {
 }
 
 
+@in_notebooks
 @suggests(MODE_WORDS)
 class NaturalModes(NamedTuple):
     """The six undamped modes about a pose; unpacks as `omega, shape`.

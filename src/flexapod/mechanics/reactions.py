@@ -13,8 +13,10 @@ from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import NO_LEGS, as_joint, per_leg, states
 from flexapod.pose import MotionLike
+from flexapod.showing import in_notebooks
 
 
+@in_notebooks
 class Reactions(NamedTuple):
     """Forces (N) and moments (N m) in the joints, leg by leg, in inertial axes.
 

@@ -18,11 +18,13 @@ from flexapod.mechanics.inputs import as_joint, single_base, single_pose
 from flexapod.mechanics.modes import natural_modes
 from flexapod.mechanics.springs import law_states
 from flexapod.pose import PoseLike
+from flexapod.showing import in_notebooks
 
 #: Keys of stiffnesses whose derivatives are given where they are zero as well.
 ALWAYS = (*(f"legs.joint_stiffness.{name}" for name in ("universal", "spherical", "torsion")), "suspension.stiffness")
 
 
+@in_notebooks
 class Sensitivity(NamedTuple):
     """Derivatives of the six natural frequencies, rad/s per SI unit of each number; modes are the first axis.
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from flexapod.conventions import AXES, LEGS, Array
+from flexapod.showing import in_notebooks
 
 if TYPE_CHECKING:
     from flexapod.mechanics.linearisation import Linearisation
@@ -16,6 +17,7 @@ INPUTS = ("base_acceleration", "leg_force", "wrench", "leg_command")
 OUTPUTS = ("position", "leg_length", "leg_force", "acceleration")
 
 
+@in_notebooks
 class StateSpace(NamedTuple):
     """A state space x' = A x + B u, y = C x + D u in SI units, with names; see `Linearisation.state_space`.
 

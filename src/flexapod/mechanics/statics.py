@@ -19,8 +19,10 @@ from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.mechanics.springs import axial_stiffness, refuse_outside_law
 from flexapod.pose import Pose, PoseLike, unpack
 from flexapod.rotations import orthonormal
+from flexapod.showing import in_notebooks
 
 
+@in_notebooks
 class Equilibrium(NamedTuple):
     """A pose at rest and what its legs carry.
 

@@ -12,6 +12,7 @@ import numpy as np
 from flexapod.conventions import Array
 from flexapod.design.layout import PLACES
 from flexapod.optimisation.derivatives import DesignDerivatives, soft_least, soft_most
+from flexapod.showing import in_notebooks
 
 Found = Mapping[str, Any]
 Side = Literal["least", "most"]
@@ -19,6 +20,7 @@ _SHARPNESS = 1000.0  # of smooth extremes of singular values and of compliances:
 _HELD = 3  # poses held for each leg and side
 
 
+@in_notebooks
 class Values(NamedTuple):
     """Values of a quantity at some poses, with derivatives by the n variables of a search.
 

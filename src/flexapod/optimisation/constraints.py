@@ -13,11 +13,13 @@ from flexapod.errors import ArgumentError
 from flexapod.optimisation import constraint_quantities as quantities
 from flexapod.optimisation.constraint_quantities import ConstraintQuantity, Side
 from flexapod.optimisation.requirements import Constraint, Measure, OneBound, Requirement, own_region, requirement
+from flexapod.showing import in_notebooks
 from flexapod.workspace.region import Region, RegionLike
 
 Plate = Literal["base", "platform"]
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class Footprint(Constraint):
     """Keep the joints of a plate within a circle about the middle of the circle that encloses them now.
@@ -50,6 +52,7 @@ class Footprint(Constraint):
         return [requirement(f"footprint of the {self.plate}", quantity, "most", self.most, None, measure)]
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class TotalMass(OneBound):
     """Bound the mass of the platform with its payload and all legs.
@@ -67,6 +70,7 @@ class TotalMass(OneBound):
         return "total mass", quantities.Mass()
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class Stroke(OneBound):
     """Bound the difference of the longest and the shortest length of each leg.
@@ -87,6 +91,7 @@ class Stroke(OneBound):
         return "leg stroke", quantities.LegStroke()
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class LegLength(Constraint):
     """Bound the length of every leg.
@@ -123,6 +128,7 @@ class LegLength(Constraint):
         return found
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class JointAngle(OneBound):
     """Bound the angle by which every joint of one kind turns from where it is at home.
@@ -147,6 +153,7 @@ class JointAngle(OneBound):
         return f"{self.joint} joint angle", quantities.JointAngles(self.joint)
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class LegClearance(OneBound):
     """Bound the distance of the axes of any two legs.
@@ -168,6 +175,7 @@ class LegClearance(OneBound):
         return "leg clearance", quantities.LegDistance()
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class ConditionNumber(OneBound):
     """Bound the condition number of the force transformation, with lengths in m.
@@ -190,6 +198,7 @@ class ConditionNumber(OneBound):
         return "condition number", quantities.Conditioning()
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class Deflection(OneBound):
     """Bound the displacement of the platform under a static force in any direction.
@@ -219,6 +228,7 @@ class Deflection(OneBound):
         return "static deflection", quantities.StaticDeflection(self.force)
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class DesignLimits(Constraint):
     """Keep the limits of the design itself: leg lengths, joint angles and clearance of the legs.

@@ -9,11 +9,13 @@ from flexapod.certificates.certificate import Certificate
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import told_apart
+from flexapod.showing import in_notebooks
 
 if TYPE_CHECKING:
     import xarray as xr
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class Check:
     """One constraint of a design as verified.
@@ -47,6 +49,7 @@ class Check:
         return f"{self.name} is {value}, must be at {self.side} {bound}"
 
 
+@in_notebooks
 class VariableRange(NamedTuple):
     """Where a variable began and between what it was searched, in its own unit.
 
@@ -72,6 +75,7 @@ class VariableRange(NamedTuple):
         return not self.low - room <= self.before <= self.high + room
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class Verification:
     """A sweep of every region at poses that the search has not seen, and descents from the worst of them.
@@ -102,6 +106,7 @@ class Verification:
         return all(check.kept for check in self.checks)
 
 
+@in_notebooks
 @dataclass(frozen=True, eq=False)
 class OptimalDesign:
     """The design that `flexapod.optimise` found: the design to start from itself where none is better.

@@ -22,6 +22,7 @@ from flexapod.optimisation.problem import Assessment, Problem
 from flexapod.optimisation.requirements import Constraint, Requirement
 from flexapod.optimisation.variables import JointCircle, Variable
 from flexapod.optimisation.verification import Beginning, begin, told, verify
+from flexapod.showing import in_notebooks
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 _INFEASIBLE = 1e12  # of what is made small, where a design has none
 
 
+@in_notebooks
 @dataclass(frozen=True, eq=False)
 class ParetoFront:
     """Designs of which none is better in both the index and another quantity, as `flexapod.pareto_front` found them.

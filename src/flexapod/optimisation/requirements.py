@@ -13,12 +13,14 @@ from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.optimisation.constraint_quantities import ConstraintQuantity, DesignProperty, Side, Values
 from flexapod.optimisation.derivatives import DesignDerivatives
+from flexapod.showing import in_notebooks
 from flexapod.workspace.region import Region, as_region
 
 #: The extreme values of a quantity over a region that the design to start from has.
 Measure = Callable[[ConstraintQuantity, Side, Region | None], Array]
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class Requirement:
     """A bound of a quantity, as a search uses it.

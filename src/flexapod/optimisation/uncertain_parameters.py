@@ -16,6 +16,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import entries
 from flexapod.design.payload import with_payload
 from flexapod.errors import ArgumentError
+from flexapod.showing import in_notebooks
 
 Distribution = Literal["uniform", "normal", "triangular", "lognormal"]
 #: How many spreads below its value a number may come; a normal distribution is cut off at four.
@@ -52,6 +53,7 @@ _WITHOUT_EFFECT = (
 )
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class Uncertain:
     """A number of the design that is only known to lie about its value.
@@ -190,6 +192,7 @@ class Uncertain:
         return with_numbers(hexapod, found, changed)
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class Payload:
     """A load on the platform beyond that of the design: a point mass, uniformly distributed.
@@ -275,6 +278,7 @@ class Payload:
         return with_payload(hexapod, float(mass.width[1]), at, np.zeros((3, 3)))
 
 
+@in_notebooks
 class UncertainRange(NamedTuple):
     """What was assumed of an uncertain parameter, in the unit of its key.
 
@@ -300,6 +304,7 @@ class UncertainRange(NamedTuple):
     high: float
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class UncertainParameter:
     """A parameter that varies independently: numbers of the design with their widths, or a range of the payload.

@@ -21,6 +21,7 @@ from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, Uncer
 from flexapod.optimisation.worst_case import worst_case
 from flexapod.optional import needed
 from flexapod.pose import Pose
+from flexapod.showing import in_notebooks
 from flexapod.workspace.limit_margins import none_within
 from flexapod.workspace.region import RegionLike, as_region, home_of
 from flexapod.workspace.sobol import Sobol
@@ -33,6 +34,7 @@ _BLOCK = 2**20  # designs times poses computed at once
 _QUANTILES = (0.001, 0.01, 0.05, 0.5, 0.95, 0.99)
 
 
+@in_notebooks
 @dataclass(frozen=True, eq=False)
 class Robustness:
     """Distribution and worst case of the stability index, as `flexapod.robustness` found them.

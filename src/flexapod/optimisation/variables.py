@@ -17,12 +17,14 @@ from flexapod.design.units import UNITS, si_unit, to_si
 from flexapod.design.universal_axes import keeps_tangents
 from flexapod.errors import ArgumentError, shown, told_apart
 from flexapod.optimisation.parameters import AffineMap, CircleMap, Kind, Parameter, Part
+from flexapod.showing import in_notebooks
 
 Range = tuple[float, float]
 #: The parts of a joint circle and their dimensions.
 CIRCLE = {"radius": "length", "half_angle": "angle", "turn": "angle", "height": "length"}
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class Variable:
     """A bounded number that sets, adds to or scales numbers of the design.
@@ -137,6 +139,7 @@ class Variable:
             )
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class JointCircle:
     """The joints of a plate as three mirror-symmetric pairs, 120 degrees apart on a circle about its z axis.

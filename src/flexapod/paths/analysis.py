@@ -20,12 +20,14 @@ from flexapod.mechanics.kinematics import condition_number, force_transformation
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
+from flexapod.showing import in_notebooks
 
 _ZERO_INDEX = 1e-6  # of the largest index on the path: what a singular pose leaves of the lowest frequency
 _MOST_SAMPLES = 10**6  # instants of a path: a gigabyte
 _CUTS, _ROUNDS = 16, 11  # a minimum is bracketed by 2/16 of its bracket, 11 times: to 1e-10 of a sample's distance
 
 
+@in_notebooks
 @dataclass(frozen=True, eq=False)
 class PathIndex:
     """The dynamic stability index along a trajectory, as `path_index` gives it.

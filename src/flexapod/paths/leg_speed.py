@@ -11,8 +11,10 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.kinematics import leg_rates
 from flexapod.pose import Motion
+from flexapod.showing import in_notebooks
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class LegSpeed:
     """What the actuators can do: a path timed with it takes the least time that they allow.

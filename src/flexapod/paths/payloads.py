@@ -19,11 +19,13 @@ from flexapod.mechanics.inputs import ZERO
 from flexapod.paths.analysis import check_arguments, path_index
 from flexapod.paths.loads import path_loads
 from flexapod.paths.trajectory import Trajectory
+from flexapod.showing import in_notebooks
 
 _MOST_CASES = 1000
 _NO_INERTIA = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
 
 
+@in_notebooks
 @dataclass(frozen=True, eq=False)
 class PayloadCase:
     """A load that the platform carries along a path, beside what the design's platform weighs.

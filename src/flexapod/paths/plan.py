@@ -16,8 +16,10 @@ from flexapod.mechanics.inputs import as_hexapod
 from flexapod.paths.requirements import Margins, PathRequirements
 from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
+from flexapod.showing import in_notebooks
 
 
+@in_notebooks
 @dataclass(frozen=True, eq=False)
 class Plan:
     """A planned path, as `plan_path` gives it.

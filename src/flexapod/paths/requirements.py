@@ -13,11 +13,13 @@ from flexapod.errors import ArgumentError, PathError, told_apart
 from flexapod.mechanics.joint_limits import check_limits, limit_excess
 from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
 from flexapod.pose import Pose
+from flexapod.showing import in_notebooks
 from flexapod.workspace.quantities import evaluate, kernel_limits
 
 _SHARPNESS = 80.0  # of smooth minima: they lie below the true one by at most log(12)/80, 3 %
 
 
+@in_notebooks
 @dataclass(frozen=True)
 class PathRequirements:
     """What a planned path keeps to, all along.

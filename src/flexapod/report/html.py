@@ -109,11 +109,12 @@ def _figure(drawing: Drawing, heading: str) -> str:
 def _table(table: Table, caption: str) -> str:
     columns = shown_on(table.columns, "page")
     head = [escape(", ".join(filter(None, (column.title, column.unit)))) for column in columns]
-    cells = [[_cell(column, i, table.style) for i in range(len(column.values))] for column in columns]
+    cells = [[cell(column, i, table.style) for i in range(len(column.values))] for column in columns]
     return rows_table(head, zip(*cells, strict=True), table.note, table.style, caption)
 
 
-def _cell(column: Column, i: int, style: str) -> str:
+def cell(column: Column, i: int, style: str = "") -> str:
+    """A cell of a table as a fragment of HTML."""
     value = column.values[i]
     if isinstance(value, str):
         text = escape(value)

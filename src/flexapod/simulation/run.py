@@ -13,11 +13,13 @@ from flexapod.excitation.excitation import Excitation
 from flexapod.mechanics.inputs import as_hexapod, single_base, single_pose
 from flexapod.mechanics.viscous_losses import viscous_equivalent
 from flexapod.pose import Motion, Pose
+from flexapod.showing import in_notebooks
 
 Load = Excitation | ArrayLike | None
 Start = Literal["rest", "carried"] | Pose | Motion | ArrayLike
 
 
+@in_notebooks
 @dataclass(frozen=True, eq=False)
 class SimulationRun:
     """One simulation of `simulate_many`: a machine at rest on its base, and what drives it from t = 0.

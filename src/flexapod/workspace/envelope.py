@@ -15,6 +15,7 @@ from flexapod.errors import ArgumentError, PoseError, told_apart
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point, single_pose
 from flexapod.mechanics.joint_limits import check_limits
 from flexapod.pose import Pose, PoseLike
+from flexapod.showing import in_notebooks
 from flexapod.workspace.axis_speeds import Fastest, fastest
 from flexapod.workspace.box_minimum import pattern_minima
 from flexapod.workspace.largest_box import Boxes, largest_shares
@@ -27,6 +28,7 @@ _ALONG = 33  # poses along an axis
 _IN_BOX, _STARTS = 2048, 16  # poses of the box, and those from which its least index is sought
 
 
+@in_notebooks
 class AxisTravel(NamedTuple):
     """The motion along one axis, from home.
 
@@ -54,6 +56,7 @@ class AxisTravel(NamedTuple):
     acceleration: Fastest
 
 
+@in_notebooks
 class PairTravel(NamedTuple):
     """Motions along two axes at once.
 
@@ -75,6 +78,7 @@ class PairTravel(NamedTuple):
     share: float
 
 
+@in_notebooks
 class BoxTravel(NamedTuple):
     """The largest box of given proportions about home, within which all displacements hold in combination.
 
@@ -99,6 +103,7 @@ class BoxTravel(NamedTuple):
     least_index: float
 
 
+@in_notebooks
 class Envelope(NamedTuple):
     """How far a machine moves from home.
 

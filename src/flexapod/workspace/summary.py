@@ -14,6 +14,7 @@ import numpy as np
 from flexapod import _core, checks
 from flexapod.conventions import AXES, Array
 from flexapod.errors import ArgumentError, PoseError
+from flexapod.showing import in_notebooks
 from flexapod.workspace.distribution import QUANTILES, binned, exactly
 from flexapod.workspace.limit_margins import none_within
 from flexapod.workspace.pose_sets import described
@@ -50,6 +51,7 @@ class Above(NamedTuple):
     volume_unit: str
 
 
+@in_notebooks
 class SweepSummary(NamedTuple):
     """What a sweep says of a workspace: extremes, quantiles, and the part that is good enough.
 

@@ -11,6 +11,7 @@ from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.mechanics.inputs import as_hexapod
+from flexapod.showing import in_notebooks
 from flexapod.workspace.box import Box
 from flexapod.workspace.descents import BoxSearch, SquaredFrequency, starts_of
 from flexapod.workspace.limit_margins import LimitMargins, margins_to_keep, none_within
@@ -24,6 +25,7 @@ AGREE = 1e-6  # relative difference of indices that count as the same minimum
 _TOUCHES = 1e-6  # margin of a limit, and share of the box's width from its edge, at which the pose is
 
 
+@in_notebooks
 class WorstPose(NamedTuple):
     """Where the stability index is least in a region, and how sure that is.
 

@@ -25,6 +25,7 @@ from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import OutputError
 from flexapod.mechanics.inputs import as_joint
+from flexapod.showing import in_notebooks
 from flexapod.workspace.pose_sets import GivenPoses, GridPoses, PoseSet
 from flexapod.workspace.quantities import QUANTITIES, chosen
 from flexapod.workspace.region import RegionLike, poses_of
@@ -62,6 +63,7 @@ class Progress(NamedTuple):
     statuses: dict[int, int]
 
 
+@in_notebooks
 class SweepStore:
     """A sweep in a directory of the disk, whole or in part, in the Zarr format.
 
