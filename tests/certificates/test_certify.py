@@ -1,6 +1,7 @@
 """Bounds proved by `fx.certify`: against samples and descents, over every kind of region, with every option."""
 
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,6 +9,7 @@ from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.certificates.question import place_of, rotated
+from flexapod.report.studies.certificate import study
 from flexapod.workspace.proof import Boxes, six_of
 
 BASE, CUBIC, II, I = (plain_machine(name) for name in ("motion-base", "cubic-isolator", "mukherjee-ii", "mukherjee-i"))
@@ -76,6 +78,21 @@ def test_a_region_with_a_singular_pose_is_refuted_with_the_pose():
     assert float(fx.condition_number(I, regular.pose)) > 1e6
     assert ((box.low <= regular.pose) & (regular.pose <= box.high)).all()
     assert fx.certify_regular(I, around(I, 1, 1)).status == "proved"
+
+
+def test_the_page_says_where_a_bound_is_reached_to_rounding():
+    found = fx.certify(BASE, SMALL)
+    assert found.stuck is None
+    middle = (SMALL.low + SMALL.high) / 2
+    tiny = np.stack([middle, middle + 1e-9], axis=-1)[None]
+    open_ = replace(found, status="undecided", left=np.concatenate([found.place.parts, tiny]), share_left=0.1)
+    assert open_.stuck == pytest.approx(middle, abs=1e-8)
+    (caution,) = (one for one in study(open_).cautions if one.code == "undecided")
+    assert "more time decides nothing there" in caution.text
+    wide = replace(open_, left=found.place.parts)
+    assert wide.stuck is None
+    (caution,) = (one for one in study(wide).cautions if one.code == "undecided")
+    assert "Go on with --resume" in caution.text
 
 
 def test_several_boxes_are_proved_together():

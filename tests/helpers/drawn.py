@@ -100,7 +100,7 @@ def with_law(hexapod: fx.Hexapod, rng: np.random.Generator, kind: str | None = N
     lengths = fx.inverse_kinematics(hexapod, hexapod.home)
     size, stiffness = float(lengths.mean()), float(hexapod.legs.stiffness.mean())
     kind = kind or str(rng.choice(["screw", "hydraulic", "table"]))
-    nodes = size * np.linspace(0.3, 2.5, 20) * rng.uniform(0.97, 1.03, 20)
+    nodes = size * np.linspace(0.3, 2.5, 20) * rng.uniform(0.98, 1.02, 20)
     law = {
         "screw": {
             "fixed": 2 * stiffness * rng.uniform(0.5, 2, 6),

@@ -16,6 +16,7 @@ from flexapod.workspace.proof import Boxes, Place
 Claim = Literal["index", "regular", "condition", "limits"]
 Status = Literal["proved", "refuted", "undecided"]
 CLAIMS: tuple[Claim, ...] = get_args(Claim)
+_TINY = 1e-6  # share of a region's width below which a box is at the end of what can be told
 STATUSES: tuple[Status, ...] = get_args(Status)
 
 
@@ -114,6 +115,15 @@ class Certificate:
     def region(self) -> list[Box]:
         """The boxes of the region; none for a path."""
         return [Box(*part) for part in self.place.parts] if isinstance(self.place, Boxes) else []
+
+    @property
+    def stuck(self) -> Array | None:
+        """The middle (6,) of a box that was cut down to rounding and is not decided: at the bound, or singular."""
+        if self.on_path or not len(self.left):
+            return None
+        whole = np.ptp(self.place.parts, axis=(0, 2))
+        small = (np.ptp(self.left, axis=2) <= _TINY * whole).all(axis=1)
+        return np.asarray(self.left[int(small.argmax())].mean(axis=1)) if small.any() else None
 
     @property
     def words(self) -> str:

@@ -172,11 +172,20 @@ def _cautions(found: Certificate) -> list[Caution]:
     if found.status == "undecided":
         nothing = found.claim == "index" and found.lower == 0
         more = " Nothing is proved of the whole region yet." if nothing else ""
-        text = f"The proof ended with {percent(found.share_left, 2)} of the region left.{more} Go on with --resume."
+        text = f"The proof ended with {percent(found.share_left, 2)} of the region left.{more} {_going_on(found)}"
         cautions.append(Caution("undecided", text, {"share": found.share_left}))
     if found.claim != "index" or found.pose is None or found.broken:
         return cautions
     return [*cautions, *least_index.cautions(found.hexapod, found.pose, found.joint)]
+
+
+def _going_on(found: Certificate) -> str:
+    if found.stuck is None:
+        return "Go on with --resume."
+    return (
+        f"At {six_words(found.stuck)} the bound is reached, or a limit, or the pose is singular, as near as rounding "
+        "lets it be told: more time decides nothing there. Ask for less, or leave it out of the region."
+    )
 
 
 def _data(found: Certificate, checked: bool, largest: CertifiedBox | None) -> dict[str, Any]:
