@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 
 ABOUT = """# Commands
 
-Exit codes: 0; 1 or 3 where `certify` finds a claim refuted or undecided; 2 for a wrong command line or design, or what
-cannot be computed or written, with what is wrong on standard error; 130 after Ctrl-C, 143 after SIGTERM. With `--json`
-results and errors are JSON, in SI units. `DESIGN` is a packaged design (`flexapod designs` lists them) or the path of a
-`.toml` file.
+Exit codes: 0; 1 where `certify` finds a claim refuted; 3 where it leaves one undecided, and where the time limit of
+`sweep` is up; 2 for a wrong command line or design, or what cannot be computed or written, with what is wrong on
+standard error; 130 after Ctrl-C, 143 after SIGTERM. With `--json` results and errors are JSON, in SI units. `DESIGN` is
+a packaged design (`flexapod designs` lists them) or the path of a `.toml` file.
 
 A number is in the unit that its option names, m and degrees of a pose. Another unit of the same dimension may stand
 right behind it: `--pose 0 0 550mm 0 0.1rad 0`, `--around 50mm 10deg`, `--bound 20Hz`. One of another dimension is

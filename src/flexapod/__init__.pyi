@@ -82,7 +82,7 @@ from .workspace.box import Workspace as Workspace
 from .workspace.envelope import envelope as envelope
 from .workspace.sampling import pose_grid as pose_grid
 from .workspace.sampling import random_poses as random_poses
-from .workspace.store.store import open_sweep as open_sweep
+from .workspace.store.reading import open_sweep as open_sweep
 from .workspace.summary import summarise as summarise
 from .workspace.sweeping import sweep as sweep
 from .workspace.worst import worst_pose as worst_pose

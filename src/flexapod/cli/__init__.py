@@ -52,8 +52,8 @@ def group(ctx: click.Context) -> None:
 def main(arguments: list[str] | None = None) -> int:
     """Run the command line and return its exit code.
 
-    0; 1 or 3 for a claim that is refuted or undecided; 2 for a wrong command line or design, or what cannot be computed
-    or written; 130 after Ctrl-C, 143 after SIGTERM.
+    0; 1 for a claim that is refuted, 3 for one that is undecided and for what is not finished in its time; 2 for a
+    wrong command line or design, or what cannot be computed or written; 130 after Ctrl-C, 143 after SIGTERM.
     """
     given = sys.argv[1:] if arguments is None else arguments
     streams.speak_plainly()
@@ -74,6 +74,8 @@ def main(arguments: list[str] | None = None) -> int:
         return _cut_short("Terminated.", given, signal.SIGTERM)
     except interrupt.CutShort as error:
         return _cut_short(str(error), given, error.number)
+    except interrupt.OutOfTime as error:
+        return _fail(str(error), given, "OutOfTime", code=3)
     except Exception as error:
         words = failures.sentence(error)
         if words is None:

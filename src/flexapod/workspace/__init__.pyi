@@ -11,8 +11,8 @@ from .sampling import pose_grid as pose_grid
 from .sampling import pose_path as pose_path
 from .sampling import random_poses as random_poses
 from .store.dask_cluster import cluster as cluster
+from .store.reading import open_sweep as open_sweep
 from .store.store import SweepStore as SweepStore
-from .store.store import open_sweep as open_sweep
 from .summary import SweepSummary as SweepSummary
 from .summary import summarise as summarise
 from .sweeping import sweep as sweep

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from flexapod.cli.options import common
+from flexapod.cli.options.cluster import cluster_options
 from flexapod.cli.options.optimise import threads_option, where_options
 from flexapod.cli.options.quantities import FREQUENCY, TIME
 
@@ -83,11 +84,7 @@ region_options = common.stack(
 run_options = common.stack(
     click.option("--time-limit", type=TIME, metavar="S", help="How long to try; then what is proved so far is told."),
     threads_option,
-    click.option(
-        "--scheduler",
-        metavar="ADDRESS",
-        help="Share the boxes with the Dask cluster of this scheduler (tcp://host:8786); `local` starts one here.",
-    ),
+    *cluster_options,
     click.option("--resume", is_flag=True, help="Go on with the certificate that the same command began in --out."),
     click.option("--check", type=_FILE, metavar="FILE", help="Prove the certificate in FILE anew, by other boxes."),
     common.out_option(
@@ -121,6 +118,7 @@ class Options:
     time_limit: float | None
     threads: int | None
     scheduler: str | None
+    timeout: float
     resume: bool
     check: Path | None
     out: Path | None

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
-from flexapod.cli.options.quantities import DEGREES, LENGTH, Quantity
+from flexapod.cli.options.cluster import PartOf, cluster_options
+from flexapod.cli.options.quantities import DEGREES, LENGTH, TIME, Quantity
 from flexapod.output_files import check_figure, check_file
 
 if TYPE_CHECKING:
@@ -41,6 +42,9 @@ class Options:
     summary: bool
     threads: int | None
     scheduler: str | None
+    timeout: float
+    part: tuple[int, int] | None
+    time_limit: float | None
     at_least: float | None
     worst: bool
     all_poses: bool
@@ -134,11 +138,18 @@ output_options = common.stack(
 )
 machine_options = common.stack(
     click.option("--threads", type=common.THREADS, default=None, metavar="N", help="Threads.  [default: all cores]"),
+    *cluster_options,
     click.option(
-        "--scheduler",
-        default=None,
-        metavar="ADDRESS",
-        help="Compute on the Dask cluster of this scheduler (tcp://host:8786); `local` starts one here.",
+        "--part",
+        type=PartOf(),
+        metavar="K/N",
+        help="Compute the Kth of N parts of a .zarr store, beside runs of the others; whoever comes first makes it.",
+    ),
+    click.option(
+        "--time-limit",
+        type=TIME,
+        metavar="S",
+        help="How long to compute; what is in the .zarr store then is kept for --resume, and the exit code is 3.",
     ),
 )
 reading_options = common.stack(

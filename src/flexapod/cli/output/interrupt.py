@@ -27,6 +27,10 @@ class CutShort(Exception):
         self.number = number or signal.SIGINT
 
 
+class OutOfTime(Exception):
+    """The time that a command was given is up, before it had a result: what is kept, and how to go on."""
+
+
 @contextmanager
 def terminable() -> Iterator[None]:
     """While entered, SIGTERM raises Terminated, as Ctrl-C raises KeyboardInterrupt: what was begun is undone."""

@@ -104,7 +104,7 @@ def _uncertain(options: Options) -> list[Any]:
 
 def _certified(hexapod: Hexapod, options: Options, path: Path | None, watch: dict[str, Any]) -> Certificate:
     region = _region(hexapod, options)
-    with cluster(options.scheduler) if options.scheduler else nullcontext() as workers:
+    with cluster(options.scheduler, options.timeout) if options.scheduler else nullcontext() as workers:
         given = {**watch, "path": path, "resume": options.resume, "cluster": workers}
         if options.limits:
             return certify_limits(hexapod, region, **given)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import logging
+import math
+import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -14,7 +16,7 @@ import xarray as xr
 from flexapod.cli.options import common, figures
 from flexapod.cli.options.poses import box_of, grid_of, read_poses
 from flexapod.cli.options.sweep import DEFAULT_POINTS, Options
-from flexapod.cli.output.interrupt import CutShort, Stopping
+from flexapod.cli.output.interrupt import CutShort, OutOfTime, Stopping
 from flexapod.cli.output.progress import PoseProgress
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
@@ -28,7 +30,8 @@ from flexapod.workspace.quantities import QUANTITIES, chosen
 from flexapod.workspace.sampling import low_discrepancy, random_poses
 from flexapod.workspace.store.dask_cluster import cluster
 from flexapod.workspace.store.file_formats import check_size, save
-from flexapod.workspace.store.store import SweepStore, open_sweep
+from flexapod.workspace.store.reading import open_sweep
+from flexapod.workspace.store.store import SweepStore
 from flexapod.workspace.summary import summarise
 from flexapod.workspace.sweeping import sweep
 from flexapod.workspace.worst import worst_pose
@@ -43,12 +46,16 @@ def compute(options: Options) -> Study:
     quantities = _quantities(hexapod, options.quantities)
     if options.worst and box is None:
         raise click.UsageError("--worst looks for the worst pose of a box. Give --box or --around.")
-    if not options.streamed and (options.resume or options.scheduler):
-        raise click.UsageError("--resume and --scheduler need a store to write to. Give --out NAME.zarr.")
+    if not options.streamed and (options.resume or options.scheduler or options.part or options.time_limit):
+        raise click.UsageError(
+            "--resume, --scheduler, --part and --time-limit need a store to write to. Give --out NAME.zarr."
+        )
     if options.figure is not None:
         figures.check(options.figure)
         sweep_axes.check_swept(points.dims, quantities)
-    found = (_streamed if options.streamed else _in_memory)(hexapod, points, quantities, options)
+    found, complete = (_streamed if options.streamed else _in_memory)(hexapod, points, quantities, options)
+    if not complete:  # there are other parts
+        return study(hexapod, found, options.out, None, None)
     everywhere, notes = options.all_poses, list[str]()
 
     def judged(make: Callable[[], T]) -> T | None:
@@ -106,48 +113,62 @@ def _quantities(hexapod: Hexapod, text: str) -> tuple[str, ...]:
     return tuple(QUANTITIES) if names == ["all"] else chosen((*names, *limits), hexapod)
 
 
-def _in_memory(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options) -> xr.Dataset:
+def _in_memory(
+    hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options
+) -> tuple[xr.Dataset, bool]:
     check_size(options.out or Path("sweep.nc"), points.count, quantities)
     found = sweep(hexapod, points, quantities=quantities, joint=options.joint, threads=options.threads)
     if options.out is not None:
         save(found, options.out)
         click.echo(f"wrote {options.out}", err=True)
-    return found
+    return found, True
 
 
-def _streamed(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options) -> xr.Dataset:
+def _streamed(
+    hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options
+) -> tuple[xr.Dataset, bool]:
+    """The store that is written, and whether it is complete, as the last of its parts leaves it."""
     assert options.out is not None
     if options.scheduler is None:
         store = _store(hexapod, points, quantities, options)
-        _run(store, options.threads)
+        _run(store, options.threads, options)
     else:
-        with cluster(options.scheduler) as workers:
+        with cluster(options.scheduler, options.timeout) as workers:
             logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # what matters is raised, and told by us
             store = _store(hexapod, points, quantities, options)
-            _run(store, workers)
-    return open_sweep(options.out)
+            _run(store, workers, options)
+    return open_sweep(options.out), store.complete
 
 
 def _store(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options) -> SweepStore:
     assert options.out is not None
     given: dict[str, Any] = {"quantities": quantities, "joint": options.joint, "chunk": options.chunk}
-    if options.resume:
+    poses = {"keep_poses": options.keep_poses}
+    if options.part is not None:
+        number, of = options.part
+        store = SweepStore.join(options.out, hexapod, points, part=number, of=of, **given, **poses)
+    elif options.resume:
         store = SweepStore.resume(options.out, hexapod, points, **given)
-        if store.damaged:
-            more = f" and {len(store.damaged) - 1} more" if len(store.damaged) > 1 else ""
-            click.echo(f"damaged or missing in {options.out}, so computed anew: {store.damaged[0]}{more}", err=True)
-        return store
-    return SweepStore.create(options.out, hexapod, points, keep_poses=options.keep_poses, **given)
+    else:
+        store = SweepStore.create(options.out, hexapod, points, **given, **poses)
+    if store.damaged:
+        more = f" and {len(store.damaged) - 1} more" if len(store.damaged) > 1 else ""
+        click.echo(f"damaged or missing in {options.out}, so computed anew: {store.damaged[0]}{more}", err=True)
+    return store
 
 
-def _run(store: SweepStore, workers: Any) -> None:
-    """Compute what is missing, with progress on standard error; exits when a signal stopped it."""
+def _run(store: SweepStore, workers: Any, options: Options) -> None:
+    """Compute what is missing, with progress on standard error; exits when a signal or the time limit stopped it."""
+    end = math.inf if options.time_limit is None else time.monotonic() + options.time_limit
     with Stopping() as stop, PoseProgress() as bar:
-        state = store.run(workers, progress=lambda share: bar(store.state), stop=stop)
-    if not store.complete:
-        raise CutShort(
-            f"stopped with {state.done} of {state.total} poses in {store.job.path}. "
-            "Go on with the same command and --resume.",
-            stop.signal,
+        state = store.run(
+            workers, progress=lambda share: bar(store.state), stop=lambda: stop() or time.monotonic() > end
         )
-    click.echo(f"{state.total} poses in {store.job.path}", err=True)
+    part = "" if options.part is None else "part {}/{}: ".format(*options.part)
+    if state.done < state.total:
+        told = f"{part}{state.done} of {state.total} poses in {store.job.path}. Go on with the same command"
+        more = " and --resume" if options.part is None else ""
+        if stop():
+            raise CutShort(f"stopped with {told}{more}.", stop.signal)
+        raise OutOfTime(f"the time is up, with {told}{more}.")
+    click.echo(f"{part}{state.total} poses in {store.job.path}", err=True)

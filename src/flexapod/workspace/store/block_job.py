@@ -16,12 +16,15 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import OutputError
 from flexapod.optional import needed
 from flexapod.workspace.pose_sets import PoseSet, six_numbers
-from flexapod.workspace.quantities import evaluate
+from flexapod.workspace.quantities import QUANTITIES, evaluate
 from flexapod.workspace.store.blocks import Blocks
 from flexapod.workspace.store.integrity import Layout, array_names
 
 if TYPE_CHECKING:
     import zarr
+
+
+BLOCK_BYTES = 2**26
 
 
 class Job(NamedTuple):
@@ -125,3 +128,11 @@ def sync(path: Path) -> None:
         os.fsync(handle)
     finally:
         os.close(handle)
+
+
+def poses_per_block(quantities: tuple[str, ...], keep_poses: bool) -> int:
+    """As many poses as have `BLOCK_BYTES`, a power of two."""
+    bytes_each = 1 + 48 * keep_poses
+    for name in quantities:
+        bytes_each += np.dtype(QUANTITIES[name].dtype).itemsize * (6 if QUANTITIES[name].trailing else 1)
+    return 1 << (BLOCK_BYTES // bytes_each).bit_length() - 1

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
+import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, TypeAlias
 
 from flexapod.checks import instance, positive
@@ -135,6 +138,21 @@ def _knock(address: str, timeout: float) -> None:
         pool.submit(asyncio.run, asyncio.wait_for(try_to_connect(), timeout + 1)).result()
 
 
+def _address_in(file: Path, timeout: float) -> str:
+    """The address that a scheduler writes to a file when it is there."""
+    end = time.monotonic() + timeout
+    while True:
+        try:
+            return str(json.loads(file.read_bytes())["address"])
+        except (OSError, ValueError, KeyError, TypeError) as error:  # not there yet, or not whole
+            if time.monotonic() > end:
+                raise ClusterError(
+                    f"no Dask scheduler has written its address to {file} ({type(error).__name__}). Start one with "
+                    f"`dask scheduler --scheduler-file {file}`, or wait longer."
+                ) from error
+        time.sleep(_POLL)
+
+
 @contextmanager
 def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
     """Connect to a Dask cluster whose workers compute the blocks of a stored sweep; for a `with` statement.
@@ -142,9 +160,10 @@ def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
     Parameters
     ----------
     address : str
-        Address of the scheduler, such as ``tcp://host:8786``; "local" starts a cluster on this machine.
+        Address of the scheduler, such as ``tcp://host:8786``, or the path of the file that it writes its address to
+        (``dask scheduler --scheduler-file FILE.json``); "local" starts a cluster on this machine.
     timeout : float, optional
-        How long to wait for the scheduler and for a worker, s.
+        How long to wait for the scheduler, and then for a worker, s.
 
     Yields
     ------
@@ -181,6 +200,8 @@ def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
         with local, dask.Client(local) as client:
             yield Cluster(client)
         return
+    positive(timeout, "timeout", "s")
+    address = _address_in(Path(address), timeout) if address.endswith(".json") else address
     try:
         _knock(address, timeout)
         client = dask.Client(address, timeout=timeout)

@@ -1,24 +1,39 @@
-"""One run at a time writes a store, and takes away what a killed run has left half written."""
+"""Locks on a store, so that one run at a time writes it; and what a killed run has left half written."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+import time
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from flexapod.errors import OutputError
 
+_LOOK = 0.02  # s between looks at a lock
 
-def remove_partial(path: str) -> None:
-    """Take away what a killed run left half written."""
-    for file in Path(path).rglob("*.partial"):
+
+def remove_partial(path: str, files: Iterable[Path] | None = None) -> None:
+    """Take away what a killed run left half written, of some files or of all."""
+    found = Path(path).rglob("*.partial") if files is None else _partial_of(files)
+    for file in found:
         file.unlink(missing_ok=True)
 
 
+def _partial_of(files: Iterable[Path]) -> Iterator[Path]:
+    wanted: dict[Path, set[str]] = {}
+    for file in files:
+        wanted.setdefault(file.parent, set()).add(file.stem)
+    for folder, names in wanted.items():
+        yield from (file for file in folder.glob("*.partial") if file.name.split(".")[0] in names)
+
+
 @contextmanager
-def one_writer(path: str) -> Iterator[None]:
-    """One run at a time. A lock dies with the process that holds it."""
+def locked(path: str, *, shared: bool = False, patience: float = 0.0) -> Iterator[None]:
+    """A lock on a file or directory, which dies with the process that holds it.
+
+    shared: beside others that share it. patience: how long to wait for it, s, before it raises OutputError.
+    """
     try:
         import fcntl
     except ImportError:  # not on Windows
@@ -26,12 +41,17 @@ def one_writer(path: str) -> Iterator[None]:
         return
     handle = os.open(path, os.O_RDONLY)
     try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise OutputError(
-                f"another run is writing {path} just now. Wait for it, or write to another store."
-            ) from None
+        end = time.monotonic() + patience
+        while True:
+            try:
+                fcntl.flock(handle, (fcntl.LOCK_SH if shared else fcntl.LOCK_EX) | fcntl.LOCK_NB)
+                break
+            except BlockingIOError:
+                if time.monotonic() >= end:
+                    raise OutputError(
+                        f"another run is writing {path} just now. Wait for it, or write to another store."
+                    ) from None
+            time.sleep(_LOOK)
         yield
     finally:
         os.close(handle)

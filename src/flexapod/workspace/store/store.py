@@ -11,13 +11,11 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable
-from contextlib import suppress
+from contextlib import AbstractContextManager, nullcontext, suppress
 from math import prod
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 from uuid import uuid4
-
-import numpy as np
 
 from flexapod import _core
 from flexapod.checks import whole
@@ -27,11 +25,11 @@ from flexapod.errors import OutputError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.showing import in_notebooks
 from flexapod.workspace.pose_sets import GivenPoses, GridPoses, PoseSet
-from flexapod.workspace.quantities import QUANTITIES, chosen
+from flexapod.workspace.quantities import chosen
 from flexapod.workspace.region import RegionLike, poses_of
-from flexapod.workspace.store.block_job import Job, Workers, zarr_package
+from flexapod.workspace.store.block_job import Job, Workers, poses_per_block
 from flexapod.workspace.store.blocks import Blocks, blocks
-from flexapod.workspace.store.integrity import damage, damaged_description
+from flexapod.workspace.store.integrity import ROOT, damage, damaged_description
 from flexapod.workspace.store.metadata import (
     attributes_of,
     make_store,
@@ -42,15 +40,13 @@ from flexapod.workspace.store.metadata import (
     remove,
     replace_attributes,
 )
-from flexapod.workspace.store.one_writer import one_writer, remove_partial
+from flexapod.workspace.store.one_writer import locked, remove_partial
+from flexapod.workspace.store.parts import Part, forget_parts, marking
 from flexapod.workspace.store.threads import Threads
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-BLOCK_BYTES = 2**26
 MOST_BLOCKS = 2**22
 MARK_EVERY = 1.0  # s: at most so much work is done again after a power cut
+_MARK_PART_EVERY = 10.0  # the same of a part, as others mark the store too
 SAMPLES = 2**20  # poses of a box
 
 
@@ -94,8 +90,12 @@ class SweepStore:
     26.4
     """
 
-    def __init__(self, job: Job, done: set[int], files: dict[str, str], damaged: tuple[str, ...] = ()) -> None:
-        self.job, self.done, self._files, self.damaged = job, done, files, damaged
+    def __init__(
+        self, job: Job, done: set[int], files: dict[str, str], damaged: tuple[str, ...] = (), part: Part | None = None
+    ) -> None:
+        self.job, self.done, self._files, self.damaged, self._part = job, done, files, damaged, part
+        self._own = range(job.blocks.count) if part is None else part.blocks(job.blocks.count)
+        self._total = self._poses(self._own)
         self.state = self._progress(self._poses_done(), Counter())
 
     @classmethod
@@ -141,13 +141,12 @@ class SweepStore:
         """
         points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities, hexapod)
         as_joint(joint)
-        keep = _streams_poses(points) and (keep_poses or isinstance(points, GivenPoses))
-        most = _poses_per_block(wanted, keep) if chunk is None else whole(chunk, "chunk")
-        job = _job(path, hexapod, points, wanted, joint, cut=blocks(points.shape, most), keep=keep)
+        cut, keep = _cut(points, wanted, chunk, keep_poses)
+        job = _job(path, hexapod, points, wanted, joint)._replace(blocks=cut, keep_poses=keep)
         if job.blocks.count > MOST_BLOCKS:
             raise OutputError(
-                f"{points.count} poses in blocks of {most} are {job.blocks.count} blocks, each with a file for every "
-                f"quantity; a store may have {MOST_BLOCKS}. Leave chunk out, or make it larger."
+                f"{points.count} poses in blocks of {prod(cut.chunk)} are {job.blocks.count} blocks, each with a file "
+                f"for every quantity; a store may have {MOST_BLOCKS}. Leave chunk out, or make it larger."
             )
         make_store(job)
         return cls(job, set(), read_description(path).attrs["files"])
@@ -190,19 +189,84 @@ class SweepStore:
         """
         points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities, hexapod)
         as_joint(joint)
-        attrs, layout, done = read_description(path)
-        keep = bool(attrs["keeps_poses"])
-        job = _job(path, hexapod, points, wanted, joint, cut=Blocks(points.shape, layout.blocks.chunk), keep=keep)
-        refuse_other(path, attrs, attributes_of(job), chunk)
-        with one_writer(job.path):
+        return cls._taken_up(_job(path, hexapod, points, wanted, joint), chunk, None)
+
+    @classmethod
+    def join(
+        cls,
+        path: str | Path,
+        hexapod: Hexapod,
+        region: RegionLike = None,
+        *,
+        part: int,
+        of: int,
+        quantities: str | Iterable[str] | None = None,
+        samples: int = SAMPLES,
+        seed: int = 0,
+        joint: JointModel = "universal",
+        chunk: int | None = None,
+        keep_poses: bool = True,
+    ) -> SweepStore:
+        """Compute one part of a store, beside other runs that compute the others: make it, or take it up.
+
+        Parameters
+        ----------
+        path : str or Path
+            The store; the first of the runs makes it.
+        hexapod : Hexapod
+            The machine.
+        region, quantities, samples, seed, joint, chunk, keep_poses : optional
+            As for `create`, and the same in all runs.
+        part, of : int
+            Which part, from 1, of how many. A store has at least as many blocks as parts.
+
+        Returns
+        -------
+        SweepStore
+            The store; `run` computes what is missing of this part, and `state` tells of this part alone. Who finishes
+            the last part completes the store, whose bytes are then those of one run.
+
+        Raises
+        ------
+        OutputError
+            As `create` and `resume`, and if this part is being computed by another run.
+        ArgumentError, PoseError, DesignError
+            As `create`; also for numbers of no part.
+        """
+        mine = Part.checked(part, of)
+        points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities, hexapod)
+        as_joint(joint)
+        if not Path(path, ROOT).exists():
+            mine.blocks(_cut(points, wanted, chunk, keep_poses)[0].count)
+            given: dict[str, Any] = {"quantities": quantities, "samples": samples, "seed": seed, "joint": joint}
+            try:
+                cls.create(path, hexapod, region, **given, chunk=chunk, keep_poses=keep_poses)
+            except OutputError:
+                if not Path(path, ROOT).exists():  # another run did not make it meanwhile
+                    raise
+        return cls._taken_up(_job(path, hexapod, points, wanted, joint), chunk, mine)
+
+    @classmethod
+    def _taken_up(cls, job: Job, chunk: int | None, part: Part | None) -> SweepStore:
+        """A store that is there, with what is whole of a part of it, or of all. job: but for its blocks."""
+        attrs, layout, done = read_description(job.path)
+        cut = Blocks(job.blocks.shape, layout.blocks.chunk)
+        job = job._replace(blocks=cut, keep_poses=bool(attrs["keeps_poses"]))
+        refuse_other(job.path, attrs, attributes_of(job), chunk)
+        store = cls(job, set(done), attrs["files"], (), part)
+        with store._writing():
+            if part is not None and (files := damaged_description(layout.path, attrs["files"])):
+                raise damage(layout.path, files)
             files = mend_description(job, attrs["files"])
-            unsound = job.layout.damaged(range(job.blocks.count), thorough=True)
+            unsound = job.layout.damaged(store._own, thorough=True)
             for number in unsound:
                 for file in job.layout.files(number):
                     remove(file)
-        whole = set(range(job.blocks.count)) - unsound.keys()  # marked as done or not: a power cut comes between
-        wrong = (*files, *(name for number in sorted(done & unsound.keys()) for name in unsound[number]))
-        return cls(job, whole, attrs["files"], wrong)
+        store.damaged = (*files, *(name for number in sorted(done & unsound.keys()) for name in unsound[number]))
+        store.done |= set(store._own)  # whole, marked as done or not: a power cut comes between
+        store.done -= unsound.keys()
+        store.state = store._progress(store._poses_done(), Counter())
+        return store
 
     @property
     def complete(self) -> bool:
@@ -239,25 +303,24 @@ class SweepStore:
         ClusterError
             If a cluster gives up.
         """
-        todo = [number for number in range(self.job.blocks.count) if number not in self.done]
+        todo = [number for number in self._own if number not in self.done]
         before, seen = self._poses_done(), Counter[int]()
         self.state = self._progress(before, seen)
         crew = Threads(workers) if workers is None or isinstance(workers, int) else workers
-        with one_writer(self.job.path):
-            remove_partial(self.job.path)
+        with self._writing():
+            self._remove_partial()
             marked = time.monotonic()
+            every = MARK_EVERY if self._part is None else _MARK_PART_EVERY
             try:
                 for block in crew.compute(self.job, todo, stop or (lambda: False)):
                     self.done.add(block.number)
                     seen.update(block.statuses)
                     self.state = self._progress(before, seen)
-                    if time.monotonic() - marked > MARK_EVERY:
+                    if time.monotonic() - marked > every:
                         self._mark()
                         marked = time.monotonic()
                     if progress is not None:
                         progress(self.state.done / self.state.total)
-                if self.complete:
-                    remove_partial(self.job.path)  # what a killed worker left
                 self._mark()
             except OSError as error:
                 with suppress(OSError):
@@ -275,95 +338,56 @@ class SweepStore:
         return self.state
 
     def _poses_done(self) -> int:
+        return self._poses(n for n in self._own if n in self.done)
+
+    def _poses(self, numbers: Iterable[int]) -> int:
         cut = self.job.blocks
-        return sum(cut[n].stop - cut[n].start for n in self.done)
+        return sum(cut[n].stop - cut[n].start for n in numbers)
 
     def _progress(self, before: int, seen: Counter[int]) -> Progress:
-        return Progress(before + seen.total(), prod(self.job.blocks.shape), before, dict(seen))
+        return Progress(before + seen.total(), self._total, before, dict(seen))
+
+    def _writing(self) -> AbstractContextManager[None]:
+        """One run at a time: of the store, or of this part of it."""
+        return locked(self.job.path) if self._part is None else self._part.writing(self.job.path)
+
+    def _remove_partial(self) -> None:
+        """Take away what a killed run left half written, of this run's blocks."""
+        files = None if self._part is None else (file for n in self._own for file in self.job.layout.files(n))
+        remove_partial(self.job.path, files)
 
     def _make_room(self) -> None:
         """Take away what is not whole, so that even a full disk takes down which blocks are done."""
-        remove_partial(self.job.path)
-        for number in range(self.job.blocks.count):
+        self._remove_partial()
+        for number in self._own:
             if number not in self.done:
                 for file in self.job.layout.files(number):
                     file.unlink(missing_ok=True)
 
     def _mark(self) -> None:
         """Write down which blocks are done; when all are, that the store is complete."""
-        attrs = {**attributes_of(self.job), "files": self._files}
-        replace_attributes(Path(self.job.path), attrs if self.complete else {**attrs, "done": ranges(self.done)})
+        with nullcontext() if self._part is None else marking(self.job.path):
+            if self._part is not None:  # what other runs have done meanwhile
+                own = set(self._own)
+                self.done = (self.done & own) | (read_description(self.job.path).done - own)
+            if self.complete:
+                remove_partial(self.job.path)  # what a killed worker left
+                forget_parts(self.job.path)
+            attrs = {**attributes_of(self.job), "files": self._files}
+            replace_attributes(Path(self.job.path), attrs if self.complete else {**attrs, "done": ranges(self.done)})
 
 
-def _job(
-    path: str | Path,
-    hexapod: Hexapod,
-    points: PoseSet,
-    wanted: tuple[str, ...],
-    joint: JointModel,
-    *,
-    cut: Blocks,
-    keep: bool,
-) -> Job:
-    return Job(str(Path(path).absolute()), hexapod, points, wanted, joint, cut, keep, _core.simd(), uuid4().hex)
+def _job(path: str | Path, hexapod: Hexapod, points: PoseSet, wanted: tuple[str, ...], joint: JointModel) -> Job:
+    """All of a job but its blocks, and whether the store keeps poses."""
+    whole = Blocks(points.shape, points.shape)
+    return Job(str(Path(path).absolute()), hexapod, points, wanted, joint, whole, False, _core.simd(), uuid4().hex)
+
+
+def _cut(points: PoseSet, wanted: tuple[str, ...], chunk: int | None, keep_poses: bool) -> tuple[Blocks, bool]:
+    """The blocks of a new store, and whether it keeps poses."""
+    keep = _streams_poses(points) and (keep_poses or isinstance(points, GivenPoses))
+    return blocks(points.shape, poses_per_block(wanted, keep) if chunk is None else whole(chunk, "chunk")), keep
 
 
 def _streams_poses(points: PoseSet) -> bool:
     return not isinstance(points, GridPoses)  # a grid's coordinates are its axes
-
-
-def _poses_per_block(quantities: tuple[str, ...], keep_poses: bool) -> int:
-    bytes_each = 1 + 48 * keep_poses
-    for name in quantities:
-        bytes_each += np.dtype(QUANTITIES[name].dtype).itemsize * (6 if QUANTITIES[name].trailing else 1)
-    return 1 << (BLOCK_BYTES // bytes_each).bit_length() - 1
-
-
-def open_sweep(path: str | Path) -> xr.Dataset:
-    """Open a stored sweep, whole or in part.
-
-    Parameters
-    ----------
-    path : str or Path
-        The store.
-
-    Returns
-    -------
-    xarray.Dataset
-        As `fx.sweep` gives, in SI units; numbers are read when they are used. Poses that are not computed yet are NaN
-        and have the status ``pending``.
-
-    Raises
-    ------
-    OutputError
-        If there is no such store, or it is damaged. Sizes of files are looked at when it is opened, and every file is
-        compared with its sum when it is read.
-
-    See Also
-    --------
-    SweepStore : Makes a store.
-
-    Notes
-    -----
-    The store is a Zarr group (version 3), which other programs can read.
-
-    Examples
-    --------
-    >>> store = fx.workspace.SweepStore.create("map.zarr", fx.load("motion-base"), fx.pose_grid(z=[2.3, 2.4]))
-    >>> _ = store.run()
-    >>> fx.open_sweep("map.zarr").omega_1.round(2).values
-    array([28.65, 27.99])
-    """
-    import xarray as xr
-
-    zarr = zarr_package()
-    from flexapod.workspace.store.guarded import Guarded
-
-    attrs, layout, done = read_description(path)
-    files = damaged_description(layout.path, attrs["files"])
-    files += [file for names in layout.damaged(sorted(done), thorough=False).values() for file in names]
-    if files:
-        raise damage(layout.path, files)
-    guarded = Guarded(zarr.storage.LocalStore(layout.path, read_only=True), layout, done)
-    found = xr.open_zarr(guarded, consolidated=False, chunks=None)
-    return found[[*(name for name in QUANTITIES if name in layout.arrays), "status"]]
