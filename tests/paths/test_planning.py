@@ -196,3 +196,13 @@ def test_no_drawn_plan_breaks_its_bound(machine):
         assert plan.margin >= 0
         assert kept(machine, plan)
     assert planned > DRAWN // 4
+
+
+@pytest.mark.parametrize("clearance", [5e-324, 1e-300])
+def test_a_clearance_near_zero_is_none(clearance):
+    """Margins are relative to the bound, and beside such a one beyond all numbers."""
+    ends = fx.Pose.from_rpy(0, 0, 2.39), fx.Pose.from_rpy(0.05, 0, 2.39)
+    machine = fx.load("motion-base").replace({"limits.leg_distance": None})
+    with np.errstate(all="raise", under="ignore"):
+        found = [fx.plan_path(machine, *ends, fx.PathRequirements(5.0, clearance=one)) for one in (clearance, 1e-6)]
+    assert found[0].margin == found[1].margin > 0

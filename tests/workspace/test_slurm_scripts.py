@@ -1,7 +1,9 @@
 """The batch scripts of the manual, run as they stand there with stand-ins for Slurm's commands and variables."""
 
+import contextlib
 import os
 import re
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -58,15 +60,23 @@ def node(tmp_path):
             text = text.replace(shown, run)
         path = f"{tmp_path / 'bin'}:{os.environ['PATH']}"
         environment = {**os.environ, "PATH": path, "SLURM_JOB_ID": "42", **variables}
-        return subprocess.Popen(["bash", "-c", text], cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True)
+        with (tmp_path / "bin" / "said").open("w") as said:
+            return subprocess.Popen(
+                ["bash", "-c", text], cwd=tmp_path, env=environment, stderr=said, start_new_session=True
+            )
 
     start.folder = tmp_path
     return start
 
 
-def finished(process):
-    _, said = process.communicate(timeout=600)
-    return process.returncode, said
+def finished(process, folder):
+    """The exit code of a job and what was said; its end is the end of all its steps, as Slurm has it."""
+    try:
+        code = process.wait(timeout=600)
+    finally:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+    return code, (folder / "bin" / "said").read_text()
 
 
 @pytest.fixture(scope="module")
@@ -89,18 +99,20 @@ def test_the_manual_has_both_scripts():
 
 
 def test_scheduler_and_workers_as_job_steps(node, whole):
-    code, said = finished(node("map.sbatch", SLURM_NTASKS="2"))
+    code, said = finished(node("map.sbatch", SLURM_NTASKS="2"), node.folder)
     assert code == 0, said
     assert content(node.folder / "map.zarr") == whole
     assert sorted(path.name for path in node.folder.iterdir()) == ["bin", "map.zarr"]  # no address left
 
 
 def test_a_job_whose_time_is_up_queues_itself_and_goes_on(node, whole):
-    code, said = finished(node("map.sbatch", {"--time-limit 110min": "--time-limit 1us"}, SLURM_NTASKS="1"))
+    code, said = finished(
+        node("map.sbatch", {"--time-limit 110min": "--time-limit 1us"}, SLURM_NTASKS="1"), node.folder
+    )
     assert code == 3, said
     assert "the time is up, with 0 of 6000 poses" in said
     assert (node.folder / "requeued").read_text() == "requeue 42\n"
-    code, said = finished(node("map.sbatch", SLURM_NTASKS="1"))
+    code, said = finished(node("map.sbatch", SLURM_NTASKS="1"), node.folder)
     assert code == 0, said
     assert content(node.folder / "map.zarr") == whole
 
@@ -117,6 +129,6 @@ def job(node, number, count=3):
 def test_an_array_of_jobs_at_once_writes_the_store_of_one_run(node, whole):
     jobs = [job(node, number) for number in (2, 1, 3)]
     for process in jobs:
-        code, said = finished(process)
+        code, said = finished(process, node.folder)
         assert code == 0, said
     assert content(node.folder / "map.zarr") == whole

@@ -16,6 +16,7 @@ from flexapod.pose import Pose
 from flexapod.showing import in_notebooks
 from flexapod.workspace.quantities import evaluate, kernel_limits
 
+_MOST = 1e9  # of a relative margin
 _SHARPNESS = 80.0  # of smooth minima: they lie below the true one by at most log(12)/80, 3 %
 
 
@@ -129,9 +130,10 @@ class Margins:
             least, most = np.broadcast_to(quantity.least, value.shape), np.broadcast_to(quantity.most, value.shape)
             both = np.isfinite(least) & np.isfinite(most)
             scale = np.where(both, most - least, np.where(np.isfinite(most), most, least))
-            with np.errstate(invalid="ignore"):
+            with np.errstate(invalid="ignore", over="ignore"):
                 sides = np.concatenate([(value - least) / scale, (most - value) / scale], axis=1)
-            found.append(sides[:, np.isfinite(sides).any(axis=0)])
+            bounded = np.isfinite(np.concatenate([least, most], axis=1)).any(axis=0)
+            found.append(np.clip(sides[:, bounded], -_MOST, _MOST))  # beside a bound near zero all is infinitely far
         return found
 
     def check(self, pose: Pose, name: str) -> None:
