@@ -143,7 +143,7 @@ def _streamed(
 def _store(hexapod: Hexapod, points: PoseSet, quantities: tuple[str, ...], options: Options) -> SweepStore:
     assert options.out is not None
     given: dict[str, Any] = {"quantities": quantities, "joint": options.joint, "chunk": options.chunk}
-    poses = {"keep_poses": options.keep_poses}
+    poses: dict[str, Any] = {"keep_poses": options.keep_poses}
     if options.part is not None:
         number, of = options.part
         store = SweepStore.join(options.out, hexapod, points, part=number, of=of, **given, **poses)
