@@ -200,7 +200,6 @@ def cluster(address: str, timeout: float = 10.0) -> Iterator[Cluster]:
         with local, dask.Client(local) as client:
             yield Cluster(client)
         return
-    positive(timeout, "timeout", "s")
     address = _address_in(Path(address), timeout) if address.endswith(".json") else address
     try:
         _knock(address, timeout)
