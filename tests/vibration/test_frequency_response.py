@@ -403,7 +403,7 @@ def test_bad_ready_made_spectra(damped):
         ({"psd": [1.0, 1.0], "axis": "z"}, "omega is missing"),
         ({"psd": floor, "axis": "roll"}, "in m; it must be one of rad"),
         ({"psd": {"roll": ground}}, "in m; it must be one of rad"),
-        ({"psd": force, "axis": "z"}, "spectrum of force.*simulate"),
+        ({"psd": force, "axis": "z"}, "spectrum of force.*RandomLoad"),
         ({"psd": [1.0, 1.0], "omega": [10.0, 20.0], "axis": "z", "of": "force"}, "of is 'force'"),
     ]
     for arguments, message in cases:

@@ -13,7 +13,7 @@ from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.point_motion import shift
 from flexapod.pose import Pose, PoseLike
 from flexapod.vibration.grid import asked, grid_around
-from flexapod.vibration.harmonic import SteadyResponse, complex_poles, leg_losses, losses, steady_response
+from flexapod.vibration.harmonic import complex_poles, leg_losses, losses, steady_response
 
 MOTION_UNITS = [unit_of(axis) for axis in AXES]
 WRENCH_UNITS = [unit_of(axis, "N", "N m") for axis in AXES]
@@ -118,7 +118,7 @@ def transmissibility(
         "relative": relative,
         "compliance": to_point @ steady.wrench @ to_point.T,
         "command": to_point @ steady.command,
-        "leg_force": leg_forces(linear, steady, eta),
+        "leg_force": leg_forces(linear, steady.relative, eta),
     }
     variables = {name: (RESPONSES[name][0], array, RESPONSES[name][1]) for name, array in arrays.items()}
     coordinates = {"omega": ("omega", w, in_unit("rad/s", "frequency")), **COORDINATES}
@@ -147,10 +147,10 @@ RESPONSES: dict[str, tuple[tuple[str, ...], dict[str, str]]] = {
 }
 
 
-def leg_forces(linear: Linearisation, steady: SteadyResponse, eta: Array) -> Complex:
-    """(n, 6, 6) N: change of the legs' spring forces per base displacement."""
+def leg_forces(linear: Linearisation, relative: Complex, eta: Array) -> Complex:
+    """(n, 6, 6) N: change of the legs' spring forces per displacement of the platform relative to the base."""
     stiffness = linear.leg_stiffness * (1 + 1j * eta[:6])
-    return -stiffness[:, None] * (linear.H.T @ steady.relative)
+    return -stiffness[:, None] * (linear.H.T @ relative)
 
 
 def attributes(hexapod: Hexapod, pose: Pose, point: PointLike, eta: Array, linear: Linearisation) -> dict[str, object]:

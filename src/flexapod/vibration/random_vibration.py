@@ -1,28 +1,29 @@
-"""Vibration on a base that moves at random: spectra and RMS values, from the exact tangent at rest."""
+"""Vibration by random motion of the base and random loads: spectra and RMS values, from the exact tangent at rest."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from flexapod.checks import one_of
 from flexapod.conventions import AXES, LEGS, Array, Complex, JointModel, in_mixed_units, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
-from flexapod.excitation.spectra import Quantity, Spectrum
+from flexapod.excitation.spectra import MOTIONS, Quantity
 from flexapod.mechanics.cautions import grows
 from flexapod.mechanics.inputs import ZERO, PointLike, as_hexapod, as_point, single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.point_motion import shift
 from flexapod.pose import PoseLike
-from flexapod.vibration.base_spectrum import Density, ready_made, tabulated
-from flexapod.vibration.frequency_response import MOTION_UNITS, attributes, leg_forces
-from flexapod.vibration.grid import asked, grid_around
+from flexapod.vibration.frequency_response import MOTION_UNITS, attributes
+from flexapod.vibration.grid import asked
 from flexapod.vibration.harmonic import complex_poles, leg_losses, losses, steady_response
 from flexapod.vibration.quadrature import Panels, graded
+from flexapod.vibration.random_sources import Answers, RandomLoad, Source, load_sources, spectrum_of
+from flexapod.vibration.source_spectrum import Density
 
 QUANTITIES = {
     "displacement": ("output", "output_unit"),
@@ -37,7 +38,8 @@ def random_response(
     hexapod: Hexapod,
     pose: PoseLike | None = None,
     *,
-    psd: Density,
+    psd: Density | None = None,
+    loads: RandomLoad | Sequence[RandomLoad] = (),
     omega: ArrayLike | None = None,
     frequency: ArrayLike | None = None,
     of: Quantity = "acceleration",
@@ -49,7 +51,7 @@ def random_response(
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
 ) -> xr.Dataset:
-    """Compute spectra and RMS values of the platform and the legs on a base that moves at random.
+    """Compute spectra and RMS values of the platform and the legs, of random motion of the base and random loads.
 
     Parameters
     ----------
@@ -57,7 +59,7 @@ def random_response(
         The design.
     pose : Pose or array_like, optional
         Pose of the platform, a Pose or x, y, z (m), roll, pitch, yaw (rad); the home pose by default.
-    psd : Spectrum, dict of str to Spectrum, array_like or callable
+    psd : Spectrum, dict of str to Spectrum, array_like or callable, optional
         One-sided power spectral density of the base's motion. One of
 
         - a Spectrum of one `axis`, such as ``flexapod.vc_curve("VC-C")``, or several by axis, which move independently:
@@ -66,7 +68,10 @@ def random_response(
           Hermitian cross-spectral matrix S_jk of E[X_j conj(X_k)];
         - a function that gives such numbers at frequencies (n,).
 
-        Tables and functions are densities per rad/s over `omega`; per Hz where `frequency` is given.
+        Tables and functions are densities per rad/s over `omega`; per Hz where `frequency` is given. A base at rest by
+        default.
+    loads : RandomLoad or sequence of RandomLoad, optional
+        Random forces and moments at points of the platform, independent of each other and of the base.
     omega : array_like, optional
         Frequencies of a table, (n,) rad/s, ascending and > 0. The first and the last bound the band. By default the
         band of a Spectrum, or that of `vibration.frequency_grid` for a function.
@@ -97,13 +102,15 @@ def random_response(
         - psd_... (omega, output or leg): one-sided spectral density per rad/s
         - cumulative_... (omega, output or leg): RMS of what lies below omega
         - rms_... (output or leg): RMS of the whole band
+        - source_rms_... (source, output or leg): RMS by the base alone and by each load alone
 
         `omega` holds the frequencies given and those at which the integrals were computed, rad/s.
 
     Raises
     ------
     ArgumentError
-        If `psd` cannot be a spectral density, or a mode in the band has no damping or grows.
+        If there is neither `psd` nor a load, `psd` cannot be a spectral density, or a mode in the band has no damping
+        or grows.
     PoseError
         If `pose` is not one pose that the legs can take.
     SingularPoseError
@@ -116,7 +123,8 @@ def random_response(
 
     Notes
     -----
-    The exact linearisation of Eq. 34 of [1]_ at rest filters the spectrum of the base. Between its frequencies a table
+    The exact linearisation of Eq. 34 of [1]_ at rest filters the spectrum of the base, and the densities of the motion
+    by independent sources add up. Between its frequencies a table
     is straight in log-log axes (linear where it touches zero), a matrix linear. Integrals are Gauss quadratures over
     panels that shrink geometrically towards every pole, so that resonances are resolved whatever their damping.
 
@@ -137,36 +145,45 @@ def random_response(
     eta = losses(hexapod, linear, loss_factor)
     _check_stands(linear)
     poles = complex_poles(linear, eta)
-    given = asked(omega, frequency)
-    if isinstance(psd, Spectrum | Mapping):
-        spectrum = ready_made(psd, axis, given)
-    else:
-        if given is None and not callable(psd):
-            raise ArgumentError("omega is missing; a psd of numbers needs their frequencies, as omega or frequency.")
-        grid = grid_around(poles) if given is None else given
-        spectrum = tabulated(psd, axis, grid, of, per_hertz=frequency is not None)
-    _check_damped(poles, spectrum.grid)
-    panels = Panels(graded(spectrum.grid, poles))
-    filters = _Filters(linear, shift(pose, as_point(hexapod, point)), eta, spectrum.quantity)
-    densities = filters.spectra(panels.omega, spectrum.density(panels.omega))
-    return _dataset(panels, densities).assign_attrs(attributes(hexapod, pose, point, eta, linear))
+    sources = list(load_sources(hexapod, loads, pose, poles))
+    if psd is not None:
+        one_of(of, "of", MOTIONS)
+        spectrum = spectrum_of(psd, axis, asked(omega, frequency), frequency is not None, poles, of)
+        sources.insert(0, Source("base", spectrum, None))
+    elif axis is not None or omega is not None or frequency is not None:
+        raise ArgumentError(
+            "axis, omega and frequency belong to psd, which is missing. Give those of a load to RandomLoad."
+        )
+    if not sources:
+        raise ArgumentError("psd and loads are both missing; give the spectrum of the base, or loads, or both.")
+    for source in sources:
+        _check_damped(poles, source.spectrum.grid)
+    panels = Panels(graded(np.unique(np.concatenate([source.spectrum.grid for source in sources])), poles))
+    answers = Answers(linear, steady_response(linear, panels.omega, eta), shift(pose, as_point(hexapod, point)), eta)
+    found = {source.name: answers.densities(panels.omega, source) for source in sources}
+    dataset = _dataset(panels, found).assign_attrs(attributes(hexapod, pose, point, eta, linear))
+    return dataset.assign_attrs(sources=list(found))
 
 
-def _dataset(panels: Panels, densities: dict[str, Array]) -> xr.Dataset:
+def _dataset(panels: Panels, by_source: dict[str, dict[str, Array]]) -> xr.Dataset:
     coordinates = {
         "omega": ("omega", panels.omega, in_unit("rad/s", "frequency")),
         "output": list(AXES),
         "output_unit": ("output", MOTION_UNITS),
         "leg": list(LEGS),
+        "source": list(by_source),
     }
     dataset = xr.Dataset(coords=coordinates)
     dataset.attrs["convention"] = "one-sided spectral density per rad/s: mean square = integral over omega > 0"
     for name, (along, unit) in QUANTITIES.items():
-        cumulative = np.sqrt(panels.cumulated(densities[name]))
+        total = np.sum([densities[name] for densities in by_source.values()], axis=0)
+        cumulative = np.sqrt(panels.cumulated(total))
+        alone = [np.sqrt(panels.cumulated(densities[name])[-1]) for densities in by_source.values()]
         amount, density = _units(unit)
-        dataset[f"psd_{name}"] = (("omega", along), densities[name], density)
+        dataset[f"psd_{name}"] = (("omega", along), total, density)
         dataset[f"cumulative_{name}"] = (("omega", along), cumulative, amount)
         dataset[f"rms_{name}"] = ((along,), cumulative[-1], amount)
+        dataset[f"source_rms_{name}"] = (("source", along), alone, amount)
     return dataset
 
 
@@ -175,38 +192,6 @@ def _units(unit: str) -> tuple[dict[str, str], dict[str, str]]:
     if unit == "N":
         return in_unit("N"), in_unit("N^2/(rad/s)")
     return in_mixed_units(unit), in_mixed_units(f"({unit})^2/(rad/s)")
-
-
-class _Filters(NamedTuple):
-    """From the base's spectrum to those of the quantities."""
-
-    linear: Linearisation
-    to_point: Array
-    eta: Array
-    of: Quantity
-
-    def spectra(self, omega: Array, base: Complex) -> dict[str, Array]:
-        """Spectral densities (n, 6) of every quantity; base: (n, 6) or (n, 6, 6)."""
-        steady = steady_response(self.linear, omega, self.eta)
-        relative = self.to_point @ steady.relative
-        absolute = self.to_point @ steady.absolute
-        order = {"displacement": 0, "velocity": 2, "acceleration": 4}[self.of]
-        with np.errstate(divide="ignore"):
-            displacement = omega[:, None] ** -float(order)
-        power = {
-            "displacement": (absolute, displacement),
-            "relative": (relative, displacement),
-            "acceleration": (absolute, omega[:, None] ** (4.0 - order)),
-            "leg_force": (leg_forces(self.linear, steady, self.eta), displacement),
-        }
-        return {name: _power(H, base) * scale for name, (H, scale) in power.items()}
-
-
-def _power(H: Complex, base: Complex) -> Array:
-    """Diagonal of H S H^*."""
-    if base.ndim == 2:
-        return np.einsum("nij,nj->ni", np.abs(H) ** 2, base.real)
-    return np.maximum(np.einsum("nij,nij->ni", H @ base, H.conj()).real, 0.0)
 
 
 def _check_stands(linear: Linearisation) -> None:

@@ -1,8 +1,8 @@
-"""The spectrum of a base that moves at random, however it is given, as one checked function of frequency."""
+"""The spectrum of a base that moves at random, or of a load, however it is given, as one checked function."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,40 +11,44 @@ from numpy.typing import ArrayLike
 from flexapod.checks import one_of
 from flexapod.conventions import AXES, TWO_PI, Array, Complex
 from flexapod.errors import ArgumentError, shown
-from flexapod.excitation.spectra import LOADS, MOTIONS, Quantity, Spectrum, check_axis
+from flexapod.excitation.spectra import LOADS, Quantity, Spectrum, check_axis
 
+#: Components of a load on the platform, in the order of `AXES`.
+LOAD_AXES = ("force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z")
 Density = ArrayLike | Callable[[Array], ArrayLike] | Spectrum | Mapping[str, Spectrum]
 
 
-class BaseSpectrum(NamedTuple):
-    """density: of omega (n,), rad/s, gives (n, 6) or (n, 6, 6) per rad/s. grid: the band and the density's kinks."""
+class SourceSpectrum(NamedTuple):
+    """density: of omega (n,), rad/s, gives (n, 6) or (n, 6, 6) per rad/s. grid: the band and the density's kinks.
+
+    quantity: of the base's motion; "force" or "moment" of any load.
+    """
 
     density: Callable[[Array], Complex]
     grid: Array
     quantity: Quantity
 
 
-def ready_made(psd: Spectrum | Mapping[str, Spectrum], axis: str | None, omega: Array | None) -> BaseSpectrum:
+def ready_made(
+    psd: Spectrum | Mapping[str, Spectrum], axis: str | None, omega: Array | None, of_loads: bool = False
+) -> SourceSpectrum:
     """Spectra by axis as one (n, 6), with their common band in eighths of octaves (for their kinks)."""
+    names = LOAD_AXES if of_loads else AXES
     if isinstance(psd, Spectrum):
-        psd = {_known(axis): psd}
+        psd = {_known(axis, names): psd}
     elif axis is not None or not psd:
         raise ArgumentError(
-            f"axis is {axis!r} and psd names {', '.join(psd) or 'none'}; give spectra by axis, or one and its axis."
+            f"axis is {axis!r} and psd names {', '.join(map(str, psd)) or 'none'}; give spectra by axis, or one and "
+            "its axis."
         )
     for name, item in psd.items():
         if not isinstance(item, Spectrum):
             raise ArgumentError(f"psd[{name!r}] is {shown(item)}; it must be a flexapod Spectrum.")
-        if item.quantity in LOADS:
-            raise ArgumentError(
-                f"psd of {name} is a spectrum of {item.quantity}; it must be one of the base's displacement, velocity "
-                f"or acceleration. A random {item.quantity} on the platform can be simulated in time: "
-                f"simulate(..., {item.quantity}=random_motion({name!r}, spectrum))."
-            )
-        check_axis(item, _known(name))
-    axes, spectra = [_unit_axis(name) for name in psd], list(psd.values())
+        _known(name, names)
+        (_check_load if of_loads else _check_motion)(item, name)
+    axes, spectra = [_unit_axis(name, names) for name in psd], list(psd.values())
     kinds = {item.quantity for item in spectra}
-    if len(kinds) > 1:
+    if len(kinds) > 1 and not of_loads:
         raise ArgumentError(f"psd mixes spectra of {' and '.join(sorted(kinds))}; they must be of one quantity.")
     ends = [end for item in spectra for end in (item.omega_min, item.omega_max)]
     low, high = min(ends), max(ends)
@@ -57,22 +61,45 @@ def ready_made(psd: Spectrum | Mapping[str, Spectrum], axis: str | None, omega: 
 
     def density(w: Array) -> Complex:
         parts = [item.values(w)[:, None] * unit for item, unit in zip(spectra, axes, strict=True)]
-        return _checked(np.sum(parts, axis=0), w, None)
+        return _checked(np.sum(parts, axis=0), w, None, names)
 
-    return BaseSpectrum(density, grid, spectra[0].quantity)
+    return SourceSpectrum(density, grid, spectra[0].quantity)
+
+
+def _check_motion(item: Spectrum, name: str) -> None:
+    if item.quantity in LOADS:
+        raise ArgumentError(
+            f"psd of {name} is a spectrum of {item.quantity}; it must be one of the base's displacement, velocity "
+            f"or acceleration. Give a random {item.quantity} on the platform as "
+            f'loads=flexapod.vibration.RandomLoad({{"{item.quantity}_{name}": spectrum}}).'
+        )
+    check_axis(item, name)
+
+
+def _check_load(item: Spectrum, name: str) -> None:
+    quantity = name.split("_")[0]
+    if item.quantity != quantity:
+        raise ArgumentError(
+            f"psd of {name} is a spectrum of {item.quantity}; it must be one of {quantity}, such as "
+            f'flat_spectrum(..., quantity="{quantity}") makes one.'
+        )
 
 
 def tabulated(
-    psd: ArrayLike | Callable[[Array], ArrayLike], axis: str | None, omega: Array, quantity: Quantity, per_hertz: bool
-) -> BaseSpectrum:
+    psd: ArrayLike | Callable[[Array], ArrayLike],
+    axis: str | None,
+    omega: Array,
+    quantity: Quantity,
+    per_hertz: bool,
+) -> SourceSpectrum:
     """A table over `omega`, or a function, of densities per rad/s, or per Hz over frequencies in Hz."""
-    one_of(quantity, "of", MOTIONS)
+    names = LOAD_AXES if quantity in LOADS else AXES
     grid, unit = _checked_band(omega), TWO_PI if per_hertz else 1.0
     if callable(psd):
-        return BaseSpectrum(lambda w: _checked(psd(w / unit), w, axis, unit), grid, quantity)
-    table = _checked(psd, grid, axis, unit)
+        return SourceSpectrum(lambda w: _checked(psd(w / unit), w, axis, names, unit), grid, quantity)
+    table = _checked(psd, grid, axis, names, unit)
     between = _linear if table.ndim == 3 else _power_law
-    return BaseSpectrum(lambda w: between(grid, table, w), grid, quantity)
+    return SourceSpectrum(lambda w: between(grid, table, w), grid, quantity)
 
 
 def _checked_band(omega: Array) -> Array:
@@ -81,14 +108,14 @@ def _checked_band(omega: Array) -> Array:
     return omega
 
 
-def _checked(psd: ArrayLike, omega: Array, axis: str | None, unit: float = 1.0) -> Complex:
+def _checked(psd: ArrayLike, omega: Array, axis: str | None, names: Sequence[str], unit: float = 1.0) -> Complex:
     """Densities over `unit`, (n, 6) or (n, 6, 6)."""
     try:
         table = np.asarray(np.asarray(psd) / unit, dtype=np.complex128)
     except (TypeError, ValueError, OverflowError) as error:
         raise ArgumentError("psd must hold numbers: (n,) with an axis, (n, 6), or (n, 6, 6).") from error
     if table.shape == omega.shape:
-        table = table[:, None] * _unit_axis(axis)
+        table = table[:, None] * _unit_axis(axis, names)
     elif axis is not None:
         raise ArgumentError(f"axis is {axis!r}, but psd has shape {table.shape}; one axis takes ({omega.size},).")
     if table.shape not in ((omega.size, 6), (omega.size, 6, 6)):
@@ -108,14 +135,14 @@ def _checked(psd: ArrayLike, omega: Array, axis: str | None, unit: float = 1.0) 
     return table
 
 
-def _known(axis: str | None) -> str:
+def _known(axis: str | None, names: Sequence[str]) -> str:
     if axis is None:
-        raise ArgumentError(f"axis is missing; a psd of one axis needs one of {', '.join(AXES)}.")
-    return one_of(axis, "axis", AXES)
+        raise ArgumentError(f"axis is missing; a psd of one axis needs one of {', '.join(names)}.")
+    return one_of(axis, "axis", names)
 
 
-def _unit_axis(axis: str | None) -> Array:
-    return np.eye(6)[AXES.index(_known(axis))]
+def _unit_axis(axis: str | None, names: Sequence[str]) -> Array:
+    return np.eye(6)[names.index(_known(axis, names))]
 
 
 def _linear(grid: Array, table: Complex, omega: Array) -> Complex:
