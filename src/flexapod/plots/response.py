@@ -117,7 +117,7 @@ def frequency_response(
 def random_spectra(
     dataset: xr.Dataset, quantity: str = "acceleration", *, figure: Figure | SubFigure | None = None
 ) -> Figure:
-    """Draw spectral density and cumulative RMS of a quantity on a base that moves at random.
+    """Draw spectral density and cumulative RMS of a quantity under random motion of the base and random loads.
 
     Parameters
     ----------
@@ -165,7 +165,9 @@ def random_spectra(
             _plain_decades(ax)
         legend(below, title=f"total RMS, {unit}", title_fontsize=letters())
     note_still(page, [_named(name) for name in everything if not drawn[name]], "nothing")
-    words = f"{quantity.replace('_', ' ')} on the moving base{of_point(dataset.attrs)}"
+    sources = dataset.attrs.get("sources", ["base"])
+    cause = "on the moving base" if list(sources) == ["base"] else f"by {' and '.join(sources)}"
+    words = f"{quantity.replace('_', ' ')} {cause}{of_point(dataset.attrs)}"
     entitle(page, f"{dataset.attrs['design']}: {words}")
     return page
 

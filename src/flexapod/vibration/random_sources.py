@@ -11,12 +11,14 @@ from numpy.typing import ArrayLike
 
 from flexapod.checks import instance, numbers
 from flexapod.conventions import Array, Complex
+from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, shown
 from flexapod.excitation.spectra import Quantity, Spectrum
-from flexapod.mechanics.inputs import ZERO
+from flexapod.mechanics.inputs import ZERO, PointLike, as_point
 from flexapod.mechanics.linearisation import Linearisation
+from flexapod.mechanics.point_motion import shift
 from flexapod.pose import Pose
-from flexapod.vibration.frequency_response import leg_forces, shift
+from flexapod.vibration.frequency_response import leg_forces
 from flexapod.vibration.grid import asked, grid_around
 from flexapod.vibration.harmonic import SteadyResponse
 from flexapod.vibration.source_spectrum import Density, SourceSpectrum, ready_made, tabulated
@@ -44,8 +46,8 @@ class RandomLoad:
         The same in Hz, in place of `omega`.
     axis : str, optional
         The axis where `psd` is of one: "force_x", "force_y", "force_z", "moment_x", "moment_y" or "moment_z".
-    point : array_like, optional
-        Where it acts, platform frame, m, (3,); the reference point by default.
+    point : array_like or str, optional
+        Where it acts, platform frame, m, (3,), or the name of a point of the design; the reference point by default.
     name : str, optional
         What it is called in results.
 
@@ -69,13 +71,14 @@ class RandomLoad:
     omega: ArrayLike | None = None
     frequency: ArrayLike | None = None
     axis: str | None = None
-    point: ArrayLike = ZERO
+    point: PointLike = ZERO
     name: str = "load"
 
     def __post_init__(self) -> None:
         if not isinstance(self.name, str) or not self.name.strip():
             raise ArgumentError(f'name of a load is {shown(self.name)}; it must be text, such as "wind".')
-        object.__setattr__(self, "point", numbers(self.point, f"point of the load {self.name!r}", (3,)))
+        if not isinstance(self.point, str):
+            object.__setattr__(self, "point", numbers(self.point, f"point of the load {self.name!r}", (3,)))
 
 
 class Source(NamedTuple):
@@ -138,7 +141,9 @@ def spectrum_of(
     return tabulated(psd, axis, grid, of, per_hertz)
 
 
-def load_sources(loads: RandomLoad | Sequence[RandomLoad], pose: Pose, poles: Complex) -> Iterator[Source]:
+def load_sources(
+    hexapod: Hexapod, loads: RandomLoad | Sequence[RandomLoad], pose: Pose, poles: Complex
+) -> Iterator[Source]:
     """The loads as sources. Raises ArgumentError for what is none, with its name."""
     loads = [loads] if isinstance(loads, RandomLoad) else loads
     if isinstance(loads, str) or not isinstance(loads, Sequence):
@@ -151,7 +156,7 @@ def load_sources(loads: RandomLoad | Sequence[RandomLoad], pose: Pose, poles: Co
             spectrum = spectrum_of(load.psd, load.axis, grid, load.frequency is not None, poles, "force")
         except ArgumentError as error:
             raise ArgumentError(f"the load {name!r}: {error}") from error
-        yield Source(name, spectrum, shift(pose, load.point).T)
+        yield Source(name, spectrum, shift(pose, as_point(hexapod, load.point)).T)
 
 
 def _names(loads: Sequence[RandomLoad]) -> list[str]:

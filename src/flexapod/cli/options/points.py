@@ -56,13 +56,14 @@ class _PointOption(click.Option):
             option.process = process
 
 
-def point_option(help: str) -> Callable[[Any], Any]:
-    """--point X Y Z or --point NAME, a `PointGiven`; the platform's origin where it is not given."""
+def point_option(help: str, name: str = "--point", multiple: bool = False) -> Callable[[Any], Any]:
+    """--point X Y Z or --point NAME, a `PointGiven`; the platform's origin where it is not given. multiple: several."""
     return click.option(
-        "--point",
+        name,
         cls=_PointOption,
         type=Point(),
-        default=(0.0, 0.0, 0.0),
+        multiple=multiple,
+        default=() if multiple else (0.0, 0.0, 0.0),
         metavar="X Y Z | NAME",
         help=f"{help}: in the platform's frame, m, or a name of the design's [points]. Default: its origin.",
     )

@@ -59,5 +59,15 @@ response_options = common.stack(
         help="Spectra of the base for RMS values: column frequency_hz and one or more of x, y, z (m/s2)^2/Hz, roll, "
         "pitch, yaw (rad/s2)^2/Hz, one-sided; or in the units of their titles, as z_g2/Hz or x_mm2/Hz.",
     ),
+    click.option(
+        "--load",
+        "loads",
+        type=click.Path(path_type=Path, exists=True, dir_okay=False),
+        multiple=True,
+        metavar="CSV",
+        help="Spectra of a random load on the platform: column frequency_hz and one or more of force_x, ... N2/Hz, "
+        "moment_x, ... (N m)2/Hz, in inertial axes, one-sided. Repeatable; it adds to --psd.",
+    ),
+    point_option("Where a load acts, one for all or for each --load in turn", "--at", multiple=True),
     common.out_option("Write figures, .csv and .nc here."),
 )

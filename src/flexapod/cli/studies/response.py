@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.progress import Progress
 
 from flexapod.cli.options.quantities import read
-from flexapod.cli.options.spectra import read_spectra
+from flexapod.cli.options.spectra import read_load, read_spectra
 from flexapod.conventions import AXES, LEGS, ROTATIONS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
@@ -23,6 +23,7 @@ from flexapod.report.study import Study
 from flexapod.vibration.frequency_response import transmissibility
 from flexapod.vibration.grid import band, grid_around
 from flexapod.vibration.harmonic import complex_poles, losses
+from flexapod.vibration.random_sources import RandomLoad
 from flexapod.vibration.random_vibration import random_response
 from flexapod.vibration.stepped import stepped_sine
 
@@ -43,13 +44,7 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
     options = {key: given[key] for key in ("point", "loss_factor", "joint")}
     response = transmissibility(hexapod, pose, omega=grid_around(poles, *ends, given["points"]), **options)
     stepped = None if given["amplitude"] is None else _stepped(hexapod, pose, given, (low, high), quiet)
-    random, notes = None, []
-    if given["psd"] is not None:
-        spectra = read_spectra(given["psd"])
-        notes = spectra.notes
-        random = random_response(
-            hexapod, pose, psd=spectra.density, frequency=spectra.frequency, of=spectra.of, **options
-        )
+    random, notes = _random(hexapod, pose, given, options)
     found = ResponseFindings(
         hexapod=hexapod,
         pose=pose,
@@ -70,6 +65,30 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
     return study(found, _peaks(found, moving, at_modes))
 
 
+def _random(
+    hexapod: Hexapod, pose: Pose, given: dict[str, Any], options: dict[str, Any]
+) -> tuple[xr.Dataset | None, list[str]]:
+    """The response to random motion of the base and random loads, where either is given, and what to say of them."""
+    base: dict[str, Any] = {}
+    loads, notes = [], []
+    if given["psd"] is not None:
+        spectra = read_spectra(given["psd"])
+        notes += spectra.notes
+        base = {"psd": spectra.density, "frequency": spectra.frequency, "of": spectra.of}
+    files, places = given["loads"], given["at"] or ((0.0, 0.0, 0.0),)
+    if len(places) not in (1, len(files)) or (given["at"] and not files):
+        raise click.UsageError(
+            f"--at gives {len(places)} places for {len(files)} loads. Give one for all, or one for each --load in turn."
+        )
+    for file, place in zip(files, places * len(files) if len(places) == 1 else places, strict=False):
+        spectra = read_load(file)
+        notes += spectra.notes
+        loads.append(RandomLoad(spectra.density, frequency=spectra.frequency, point=place, name=file.stem))
+    if not base and not loads:
+        return None, notes
+    return random_response(hexapod, pose, loads=loads, **base, **options), notes
+
+
 def _check(given: dict[str, Any]) -> None:
     axis, legs = given["axis"], given["source"] == "command"
     if axis is not None and (axis in LEGS) != legs:
@@ -79,9 +98,8 @@ def _check(given: dict[str, Any]) -> None:
         raise click.UsageError("--relative is for --from base; wrenches and commands act on a base at rest.")
     if given["psd"] is not None and given["source"] != "base":
         raise click.UsageError(
-            f"--psd gives spectra of the base's motion: it goes with --from base, not --from {given['source']}. Random "
-            "loads and leg commands are simulated in time: flexapod simulate --random force:z flat:10N:1Hz:100Hz. In "
-            "Python abs(transmissibility(...).compliance)**2 turns the density of a force into that of the motion."
+            f"--psd gives spectra of the base's motion: it goes with --from base, not --from {given['source']}. "
+            "Spectra of forces and moments on the platform are given by --load."
         )
     if given["amplitude"] is not None and (given["source"] != "base" or given["loss_factor"] is not None):
         raise click.UsageError(

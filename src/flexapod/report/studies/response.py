@@ -70,7 +70,8 @@ def study(f: ResponseFindings, peaks: Array) -> Study:
     sections = []
     for name in there:
         table = tables.get(name)
-        sections.append(Section(TITLES[name], [drawings[name], *([] if table is None else [table])]))
+        more = _sources_table(f) if name == "random" else []
+        sections.append(Section(TITLES[name], [drawings[name], *([] if table is None else [table]), *more]))
     return Study(
         hexapod=f.hexapod,
         subject="response",
@@ -84,7 +85,7 @@ def study(f: ResponseFindings, peaks: Array) -> Study:
     )
 
 
-TITLES = {"response": "Frequency response", "stepped": "Non-linear stepped sine", "random": "Random motion of the base"}
+TITLES = {"response": "Frequency response", "stepped": "Non-linear stepped sine", "random": "Random vibration"}
 
 
 def _stability(f: ResponseFindings) -> list[Caution]:
@@ -98,7 +99,7 @@ def _figure(f: ResponseFindings, name: str) -> Figure:
         return plots.response.frequency_response(f.response, f.variable, f.axis, natural=natural)
     if name == "random":
         assert f.random is not None
-        return plots.response.random_spectra(f.random)
+        return plots.response.random_spectra(f.random, "displacement" if _loaded(f.random) else "acceleration")
     assert f.stepped is not None
     linear = f.response.absolute.sel(base=f.axis)
     figure = plots.response.stepped_ratio(f.stepped, natural=natural, linear=linear, scale="log", unit="Hz")
@@ -185,7 +186,29 @@ def _rms_table(f: ResponseFindings) -> Table | None:
     for name, unit in (("displacement", "m, rad"), ("relative", "m, rad"), ("acceleration", "m/s², rad/s²")):
         columns.append(Column(name, without_rounding(f.random[f"rms_{name}"].values), unit))
     columns += [Column("leg", LEGS), Column("force", f.random.rms_leg_force.values, "N")]
-    return Table(columns, title="RMS on the base that moves at random")
+    return Table(columns, title=f"RMS by {' and '.join(_sources(f.random))}")
+
+
+def _loaded(random: xr.Dataset) -> bool:
+    """Whether there are random loads."""
+    return [str(name) for name in random.source.values] != ["base"]
+
+
+def _sources(random: xr.Dataset) -> list[str]:
+    """The sources in words."""
+    return ["the base that moves at random" if name == "base" else str(name) for name in random.source.values]
+
+
+def _sources_table(f: ResponseFindings) -> list[Table]:
+    """The RMS by each source alone, where there are several."""
+    if f.random is None or f.random.source.size < 2:
+        return []
+    columns = [Column("source", [str(name) for name in f.random.source.values])]
+    for k, axis in enumerate(AXES):
+        values = without_rounding(f.random.source_rms_displacement.values)[:, k]
+        columns.append(Column(axis, values, unit_of(axis)))
+    words = "RMS displacement by each source alone; independent sources add up in their squares."
+    return [Table(columns, words, title="RMS displacement by source")]
 
 
 def _data(f: ResponseFindings, peaks: Array) -> dict[str, Any]:
@@ -213,4 +236,8 @@ def _data(f: ResponseFindings, peaks: Array) -> dict[str, Any]:
         data["stepped"] = {"omega_rad_s": f.stepped.omega.values, "ratio": ratio, **status}
     if f.random is not None:
         data["random_rms"] = {name: f.random[f"rms_{name}"].values for name in RMS}
+        data["random_rms_by_source"] = {
+            str(source): {name: f.random[f"source_rms_{name}"].values[k] for name in RMS}
+            for k, source in enumerate(f.random.source.values)
+        }
     return data
