@@ -181,7 +181,7 @@ def test_a_spectrum_of_the_base_is_none_of_a_load(run, tmp_path, source):
     code, out, err = run("response", "cubic-isolator", "--from", source, "--psd", path)
     assert (code, out) == (2, "")
     assert f"not --from {source}" in err
-    assert "simulate --random force:z" in err
+    assert "on the platform are given by --load" in err
 
 
 # --- animate -------------------------------------------------------------------------------------------------------
