@@ -15,7 +15,7 @@ from benchmarks._contest import Plan, Record, take_turns
 from benchmarks._machine import keep_to_one_core, machine
 
 HERE = Path(__file__).parent
-TASKS = ("startup", "sweep", "modes", "dynamics", "simulate", "optimise", "certify", "web")
+TASKS = ("startup", "sweep", "poses", "calls", "modes", "dynamics", "simulate", "optimise", "certify", "web")
 TURNS = 9
 os.environ.setdefault("EXUDYN_MODULE", "fast")  # its build without range checks, which is 1.3 times as quick
 

@@ -13,7 +13,17 @@ from flexapod._suggestions import Suggesting, suggests
 from flexapod.checks import floats
 from flexapod.conventions import Array
 from flexapod.errors import FlexapodError, PoseError, shown
-from flexapod.rotations import FIXED, angles_of_matrix, checked_matrices, matrix_of_angles, rpy_matrix
+from flexapod.rotations import (
+    FIXED,
+    angles_of_matrix,
+    checked_matrices,
+    many_quaternions,
+    matrices_of_quaternions,
+    matrix_of_angles,
+    rpy_matrix,
+    rpy_of_matrices,
+    threads_for,
+)
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -26,12 +36,12 @@ MotionLike: TypeAlias = "Pose | Motion | ArrayLike"
 def vectors(value: ArrayLike, name: str, width: int = 3, error_type: type[FlexapodError] = PoseError) -> Array:
     """A copy of `value` as finite float64 of shape (..., width); raises `error_type` otherwise."""
     try:
-        array = floats(value)
+        array = np.ascontiguousarray(floats(value))
     except (TypeError, ValueError) as error:
         raise error_type(f"{name} is {shown(value)}; it must hold {width} numbers.") from error
     if array.ndim == 0 or array.shape[-1] != width:
         raise error_type(f"{name} has shape {array.shape}; its last axis must hold {width} numbers.")
-    if not np.isfinite(array).all():
+    if not _core.all_finite(array, threads_for(array.size)):
         raise error_type(f"{name} holds NaN or infinity; all its numbers must be finite.")
     return array
 
@@ -86,10 +96,11 @@ class Pose(metaclass=Suggesting):
     Pose(x=0 y=0 z=0.6 m, roll=0 pitch=0 yaw=0 deg)
     """
 
-    __slots__ = ("matrix", "position")
+    __slots__ = ("_matrix", "_quaternion", "position")
 
     position: Array
-    matrix: Array
+    _matrix: Array | None  # made of the quaternion when it is first asked for
+    _quaternion: Array | None
 
     def __init__(self, position: ArrayLike, rotation: Rotation | ArrayLike | None = None) -> None:
         try:
@@ -101,15 +112,29 @@ class Pose(metaclass=Suggesting):
                 "position has six numbers; it must have three, x, y, z in m. With angles: "
                 "Pose.from_rpy(x, y, z, roll, pitch, yaw)."
             ) from None
-        R = np.eye(3) if rotation is None else checked_matrices(rotation)
+        q = many_quaternions(rotation)
+        R = q if q is not None else np.eye(3) if rotation is None else checked_matrices(rotation)
+        own = (4,) if q is not None else (3, 3)
+        if p.ndim == 1 and R.shape == (3, 3):
+            self.position, self._matrix, self._quaternion = _read_only(p), _read_only(R), None
+            return
         try:
-            shape = np.broadcast_shapes(p.shape[:-1], R.shape[:-2])
+            shape = np.broadcast_shapes(p.shape[:-1], R.shape[: -len(own)])
         except ValueError:
             raise PoseError(
                 f"position {p.shape} and rotation {R.shape} do not fit: their leading axes must be equal or 1."
             ) from None
         self.position = np.broadcast_to(p, (*shape, 3))
-        self.matrix = np.broadcast_to(R, (*shape, 3, 3))
+        turned = np.broadcast_to(R, (*shape, *own))
+        self._matrix, self._quaternion = (turned, None) if q is None else (None, turned)
+
+    @property
+    def matrix(self) -> Array:
+        """Rotation matrices, (..., 3, 3), read-only."""
+        if self._matrix is None:
+            assert self._quaternion is not None
+            self._matrix = _read_only(matrices_of_quaternions(self._quaternion))
+        return self._matrix
 
     @classmethod
     def from_rpy(
@@ -214,26 +239,27 @@ class Pose(metaclass=Suggesting):
     def trusted(cls, position: Array, matrix: Array) -> Pose:
         """The poses of numbers that are known to be poses, or NaN where there is none: nothing is checked."""
         pose = Pose.__new__(Pose)
-        pose.position, pose.matrix = np.broadcast_to(position, position.shape), np.broadcast_to(matrix, matrix.shape)
+        pose._hold(position, matrix)
         return pose
+
+    def _hold(self, position: Array, matrix: Array) -> None:
+        """Keep views of numbers that nobody changes."""
+        self.position, self._matrix = _read_only(position[...]), _read_only(matrix[...])
+        self._quaternion = None
 
     @property
     def rotation(self) -> Rotation:
         """Orientation as a scipy `Rotation`, flattened over the batch axes."""
         from scipy.spatial.transform import Rotation
 
+        if self._quaternion is not None:
+            return Rotation.from_quat(self._quaternion.reshape(-1, 4) if self.shape else self._quaternion)
         return Rotation.from_matrix(self.matrix if self.matrix.ndim == 2 else self.matrix.reshape(-1, 3, 3))
 
     @property
     def rpy(self) -> Array:
         """Roll, pitch, yaw in rad, (..., 3): fixed axes x, y, z; pitch within +-pi/2, yaw 0 where pitch is +-pi/2."""
-        R = self.matrix
-        pitch = np.arctan2(-R[..., 2, 0], np.hypot(R[..., 0, 0], R[..., 1, 0]))
-        level = ~(np.hypot(R[..., 0, 0], R[..., 1, 0]) <= 1e-12)  # NaN stays NaN
-        yaw = np.where(level, np.arctan2(R[..., 1, 0], R[..., 0, 0]), 0.0)
-        steep = np.arctan2(-R[..., 1, 2], R[..., 1, 1])
-        roll = np.where(level, np.arctan2(R[..., 2, 1], R[..., 2, 2]), steep)
-        return np.stack([roll, pitch, yaw], axis=-1) + 0.0  # no -0.0
+        return rpy_of_matrices(self.matrix)
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -249,7 +275,23 @@ class Pose(metaclass=Suggesting):
         return hash((self.shape, (self.position + 0.0).tobytes(), (self.matrix + 0.0).tobytes()))  # -0.0 is 0.0
 
     def __getitem__(self, index: Any) -> Pose:
-        return Pose.trusted(self.position[index], self.matrix[index])
+        if self._matrix is not None:
+            return Pose.trusted(self.position[index], self._matrix[index])
+        assert self._quaternion is not None
+        pose = Pose.__new__(Pose)
+        pose.position, pose._matrix, pose._quaternion = self.position[index], None, self._quaternion[index]
+        return pose
+
+    @property
+    def numbers(self) -> tuple[Array, Array]:
+        """Positions (n, 3) and rotations, (n, 9) or as quaternions (n, 4), of all poses, as sweeps take them."""
+        turned = self._matrix if self._quaternion is None else self._quaternion
+        width = 9 if self._quaternion is None else 4
+        assert turned is not None
+        return (
+            np.ascontiguousarray(self.position).reshape(-1, 3),
+            np.ascontiguousarray(turned).reshape(-1, width),
+        )
 
     @property
     def packed(self) -> Array:
@@ -262,6 +304,11 @@ class Pose(metaclass=Suggesting):
         x, y, z = self.position
         roll, pitch, yaw = np.degrees(self.rpy)
         return f"Pose(x={x:.6g} y={y:.6g} z={z:.6g} m, roll={roll:.5g} pitch={pitch:.5g} yaw={yaw:.5g} deg)"
+
+
+def _read_only(array: Array) -> Array:
+    array.flags.writeable = False
+    return array
 
 
 def as_pose(value: Any, name: str = "pose") -> Pose:
@@ -280,7 +327,7 @@ def as_pose(value: Any, name: str = "pose") -> Pose:
 _PARTS = [
     (field.name, slice(field.offset, field.offset + field.index.size), field.shape) for field in _core.MOTION_LAYOUT
 ]
-_rates = attrgetter(*(name for name, _, _ in _PARTS[2:]))
+rates = attrgetter(*(name for name, _, _ in _PARTS[2:]))  # of a Motion, in the core's order
 
 
 def unpack(numbers: Array) -> dict[str, Array]:
@@ -348,11 +395,18 @@ class Motion:
         }
         pose = as_pose(pose)
         checked = {name: vectors(value, name) for name, value in given.items()}
+        if pose.position.ndim == 1 and all(v.ndim == 1 for v in checked.values()):
+            self.pose = pose
+            for name, value in checked.items():
+                setattr(self, name, _read_only(value))
+            return
         try:
             shape = np.broadcast_shapes(pose.shape, *(v.shape[:-1] for v in checked.values()))
         except ValueError:
             raise PoseError("the leading axes of pose, velocities and accelerations must be equal or 1.") from None
-        self.pose = Pose(np.broadcast_to(pose.position, (*shape, 3)), np.broadcast_to(pose.matrix, (*shape, 3, 3)))
+        self.pose = Pose.trusted(
+            np.broadcast_to(pose.position, (*shape, 3)), np.broadcast_to(pose.matrix, (*shape, 3, 3))
+        )
         for name, value in checked.items():
             setattr(self, name, np.broadcast_to(value, (*shape, 3)))
 
@@ -370,7 +424,7 @@ class Motion:
     def packed(self) -> Array:
         """(..., n): its numbers in the core's order (`flexapod._core.MOTION_LAYOUT`)."""
         flat = self.pose.matrix.reshape(*self.shape, 9)
-        return np.concatenate([self.pose.position, flat, *_rates(self)], axis=-1)
+        return np.concatenate([self.pose.position, flat, *rates(self)], axis=-1)
 
     @classmethod
     def unpacked(cls, numbers: Array) -> Motion:

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import floats
+from flexapod import _core
+from flexapod.checks import floats, thread_count
 from flexapod.conventions import Array
 from flexapod.errors import PoseError, shown
 
@@ -21,19 +22,52 @@ _ROTATION = (
 )
 
 
+def threads_for(count: int) -> int:
+    """Threads for work on so many rotations: one where there are few."""
+    return thread_count(None) if count > 20_000 else 1
+
+
 def checked_matrices(rotation: Any) -> Array:
     """A copy of rotations as matrices (..., 3, 3); raises PoseError for what does not rotate."""
-    matrix = rotation.as_matrix() if hasattr(rotation, "as_matrix") else rotation
+    made = hasattr(rotation, "as_matrix")
+    matrix = rotation.as_matrix() if made else rotation
     try:
-        matrix = floats(matrix)  # a copy: a pose does not change with its maker's arrays
+        # a copy, unless it was just made: a pose does not change with its maker's arrays
+        matrix = np.ascontiguousarray(floats(matrix, copy=not made))
     except (TypeError, ValueError) as error:
         raise PoseError(f"rotation is {shown(rotation)}; {_ROTATION}") from error
     if matrix.ndim < 2 or matrix.shape[-2:] != (3, 3):
         raise PoseError(f"rotation has shape {matrix.shape}; {_ROTATION}")
-    skew = np.abs(matrix @ np.swapaxes(matrix, -1, -2) - np.eye(3)).max(initial=0.0)
-    if not skew < 1e-9 or np.any(np.linalg.det(matrix) < 0):
+    if not _core.all_rotate(matrix, threads_for(matrix.size // 9)):
         raise PoseError("rotation is not a rotation matrix: R R^T must be the identity to 1e-9 and det R be +1.")
     return matrix
+
+
+def many_quaternions(rotation: Any) -> Array | None:
+    """Quaternions (..., 4) of many rotations of SciPy, scalar last; None for one rotation, and for all else."""
+    if not hasattr(rotation, "as_quat") or not hasattr(rotation, "as_matrix"):
+        return None
+    try:
+        found = np.ascontiguousarray(floats(rotation.as_quat(), copy=False))
+    except (TypeError, ValueError):
+        return None
+    if found.ndim < 2 or found.shape[-1] != 4 or not _core.all_of_length_one(found, threads_for(found.size // 4)):
+        return None
+    return found
+
+
+def matrices_of_quaternions(quaternions: Array) -> Array:
+    """Rotation matrices (..., 3, 3) of quaternions (..., 4) of length one with their scalar last."""
+    rows = np.ascontiguousarray(quaternions)
+    found: Array = _core.matrices_of_quaternions(rows, threads_for(rows.size // 4))
+    return found.reshape(*quaternions.shape[:-1], 3, 3)
+
+
+def rpy_of_matrices(matrices: Array) -> Array:
+    """Roll, pitch, yaw (..., 3) of rotation matrices (..., 3, 3), rad; yaw is 0 where pitch is +-pi/2."""
+    rows = np.ascontiguousarray(matrices)
+    found: Array = _core.angles_of_matrices(rows, threads_for(rows.size // 9))
+    return found.reshape(*matrices.shape[:-2], 3)
 
 
 def check_order(order: Any) -> str:
@@ -75,8 +109,12 @@ def angles_of_matrix(matrix: Array, order: str = FIXED) -> Array:
 
 def rpy_matrix(rpy: ArrayLike) -> Array:
     """Rotation matrices (..., 3, 3) of roll, pitch, yaw (..., 3) in rad about the fixed axes x, y, z, in this order."""
-    angles = np.asarray(rpy)  # complex ones keep their derivatives
-    angles = angles.astype(np.result_type(angles, np.float64))
+    angles = np.asarray(rpy)
+    if angles.dtype.kind != "c":
+        numbers = np.ascontiguousarray(angles, dtype=np.float64)
+        found: Array = _core.matrices_of_angles(numbers, threads_for(numbers.size // 3))
+        return found.reshape(*angles.shape[:-1], 3, 3)
+    # complex ones keep their derivatives
     (cr, cp, cy), (sr, sp, sy) = (np.moveaxis(f(angles), -1, 0) for f in (np.cos, np.sin))
     rows = [
         [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],

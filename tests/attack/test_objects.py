@@ -178,6 +178,11 @@ MADE = {
     "Hexapod.from_values": Made(fx.Hexapod.from_values, {"values": H.values(), "short_forms": ()}, fx.natural_modes),
     "Hexapod.from_toml": Made(fx.Hexapod.from_toml, {"text": H.to_toml()}, fx.natural_modes),
     "Hexapod.replace": Made(lambda changes: H.replace(changes), {"changes": {"platform.mass": 25.0}}, fx.natural_modes),
+    "Hexapod.compiled": Made(H.compiled, {"base": fx.Pose([0, 0, 0.1]), "joint": "universal"},
+                             lambda handle: handle.stability_index(HOME.packed)),
+    **{f"CompiledHexapod.{name}": Made(getattr(H.compiled(), name), dict.fromkeys(more, np.zeros(6)) | {"pose": HOME.packed}, _nothing)
+       for name, more in {"stability_index": (), "natural_frequencies": (), "leg_lengths": (), "jacobian": (), "linearised": ("wrench",),
+                          "forward_dynamics": ("twist", "leg_force", "wrench"), "inverse_dynamics": ("twist", "acceleration", "wrench")}.items()},
     "Hexapod.save": Made(H.save, {"path": "own.toml"}, _nothing),
     "LegPart.rod": Made(design.LegPart.rod, {"mass": 1.0, "length": 0.1, "radius": 0.01, "upper": True}, _body),
     "Trajectory.grid": Made(LINE.grid, {"samples": 4}, _nothing),
@@ -204,7 +209,7 @@ MADE = {
                               lambda store: store.run(1)),
 }  # fmt: skip
 #: What is given back by functions, or is a base of classes of one's own: no user calls their constructors.
-FOUND = {"Certificate", "Constraint", "ConstraintQuantity", "ControlLaw", "DesignDerivatives", "FoundPose", "Linearisation", "Objective", "OptimalDesign",
+FOUND = {"Certificate", "CompiledHexapod", "Constraint", "ConstraintQuantity", "ControlLaw", "DesignDerivatives", "FoundPose", "Linearisation", "Objective", "OptimalDesign",
          "ParetoFront", "PathIndex", "Plan", "PoseSet", "Requirement", "Robustness", "SweepStore", "UncertainParameter", "Verification",
          "Check"}  # fmt: skip
 

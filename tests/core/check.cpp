@@ -43,8 +43,8 @@ void sweep(const double* design, const double* poses, std::size_t n) {
   const std::unique_ptr<bool[]> within(new bool[n]);
   const sweep_task::Limits limits = some_limits();
   sweep_task::Task task{};
-  task.design = design, task.joint = Joint::universal, task.poses = poses, task.width = 6, task.quantities = 1023;
-  task.limits = &limits;
+  task.design = design, task.joint = Joint::universal, task.quantities = 1023;
+  task.poses = {poses, poses + 3, 6, 6, 3}, task.limits = &limits;
   task.omega_1_ = lowest.data(), task.omega_ = omega.data(), task.cond_H_ = cond.data();
   task.leg_length_ = length.data(), task.leg_distance_ = distance.data(), task.leg_force_ = force.data();
   task.lowest_stiffness_ = stiffness.data(), task.universal_angle_ = universal.data();

@@ -44,7 +44,7 @@ def test_pose_takes_scipy_rotations_one_or_many():
     np.testing.assert_array_equal(fx.Pose([0, 0, 1], one).matrix, one.as_matrix())
     poses = fx.Pose([0, 0, 1], many)
     assert poses.shape == (4,)
-    np.testing.assert_array_equal(poses.matrix, many.as_matrix())
+    np.testing.assert_allclose(poses.matrix, many.as_matrix(), rtol=0, atol=2 * EPS)
     np.testing.assert_array_equal(poses.position, [[0, 0, 1]] * 4)
     np.testing.assert_allclose(poses.rotation.as_matrix(), many.as_matrix(), atol=4 * EPS)
 

@@ -79,8 +79,8 @@ def test_matrices_are_derivatives_of_the_dynamics(name, joint, measured):
             # rounding, through J_p's condition of some thousands; exact in velocities (quadratic) and accelerations.
             measured("rest/tangent", np.abs(mine - theirs).max() / np.abs(theirs).max(), 1e-8)
     equations = fx.equations_of_motion(hexapod, pose, base=BASE, joint=joint)
-    np.testing.assert_array_equal(tangent.M, equations.J_p)
-    np.testing.assert_array_equal(tangent.H, equations.H)
+    assert relative(tangent.M, equations.J_p) < 1e-14  # sums over the legs in another order
+    assert relative(tangent.H, equations.H) < 1e-14
 
 
 @pytest.mark.parametrize("name", MACHINES)

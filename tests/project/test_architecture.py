@@ -51,6 +51,7 @@ CORE_ORDER = (
     "sweep",
     "certify",
     "simulation",
+    "one_pose",
     "kernels",
     "bench",
     "bindings",

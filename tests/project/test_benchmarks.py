@@ -15,6 +15,8 @@ ROOT = Path(__file__).parents[2]
 TASKS = [
     "Start-up",
     "Pose sweep",
+    "Sweep of poses, all threads",
+    "One call for one pose",
     "Natural frequencies, one pose",
     "Equations of motion",
     "Simulation, rtol 1e-9",

@@ -42,7 +42,7 @@ int flops(unsigned quantities) {
   const sweep_task::Limits limits = no_limits();
   sweep_task::Task task{};
   task.design = numbers.data(), task.joint = Joint::universal;
-  task.poses = numbers.data() + design_size, task.width = 6;
+  task.poses = poses_in_rows(numbers.data() + design_size, 6);
   task.quantities = quantities, task.limits = &limits;
   sweep({"counter", nullptr, &count, nullptr}, task, n, 1);
   std::printf("%.17g\n", static_cast<double>(Counted::count) / static_cast<double>(n));

@@ -9,6 +9,10 @@ namespace flexapod {
 void bind_types(nanobind::module_& m);
 /// Functions of a design and of motions.
 void bind_mechanics(nanobind::module_& m);
+/// Calls for one pose, and the handle for loops.
+void bind_one_pose(nanobind::module_& m);
+/// Checks and conversions of rotations.
+void bind_rotations(nanobind::module_& m);
 /// The sweep over poses.
 void bind_sweep(nanobind::module_& m);
 /// Certificates over boxes of poses and along paths.

@@ -106,11 +106,6 @@ RestLoad rest_load(const Input& wrench, const Input& unstretched) {
   return load;
 }
 
-auto tangent_(const Input& design, Joint joint, const Input& platform, const Input& base, const Input& wrench,
-              const Input& unstretched) {
-  return numpy(batch::tangent(machine_of(design, joint), states_of(platform, base), rest_load(wrench, unstretched)));
-}
-
 auto settle_(const Input& design, Joint joint, const Input& start, const Input& base, const Input& wrench,
              const Input& unstretched) {
   return numpy(batch::settle(machine_of(design, joint), states_of(start, base), rest_load(wrench, unstretched)));
@@ -146,7 +141,6 @@ void bind_mechanics(nb::module_& m) {
   m.def("natural_modes", &of_states<batch::natural_modes>);
   m.def("inertia_parts", &of_states<batch::inertia_parts>);
   m.def("frequency_derivatives", &of_states<batch::frequency_derivatives>);
-  m.def("tangent", &tangent_);
   m.def("settle", &settle_);
 }
 

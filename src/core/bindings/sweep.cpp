@@ -1,6 +1,8 @@
 // The sweep over poses as Python sees it.
 #include "sweep/batch.hpp"
 
+#include <nanobind/stl/pair.h>
+
 #include "bindings/arrays.hpp"
 #include "bindings/bind.hpp"
 #include "kernels/isa.hpp"
@@ -40,18 +42,15 @@ void bind_limits(nb::module_& m) {
       .def_ro("spherical_moment", &Limits::spherical_moment);
 }
 
-nb::dict sweep_(const Input& design, Joint joint, const Input& poses, Quantity quantities, const Limits& limits,
-                int threads) {
+nb::dict sweep_of(const Input& design, Joint joint, const sweep_task::Poses& poses, size_t n, Quantity quantities,
+                  const Limits& limits, int threads) {
   if (threads < 1) throw std::invalid_argument("threads is " + std::to_string(threads) + "; it must be >= 1");
-  if (poses.ndim() != 2 || (poses.shape(1) != 6 && poses.shape(1) != 12))
-    throw std::invalid_argument("poses must have shape (n, 6) or (n, 12)");
   sweep_task::Task task{};
   task.design = rows(design, 1, design_size, "design"), task.joint = joint;
-  task.poses = poses.data(), task.width = static_cast<int>(poses.shape(1));
-  task.quantities = quantities, task.limits = &limits;
+  task.poses = poses, task.quantities = quantities, task.limits = &limits;
   SweepRows found = [&] {
     const nb::gil_scoped_release release;
-    return sweep(kernels().sweep, task, poses.shape(0), threads);
+    return sweep(kernels().sweep, task, n, threads);
   }();
   nb::dict result;
   for (auto& [name, array] : found.numbers) result[name] = numpy(std::move(array));
@@ -60,11 +59,33 @@ nb::dict sweep_(const Input& design, Joint joint, const Input& poses, Quantity q
   return result;
 }
 
+nb::dict sweep_rows(const Input& design, Joint joint, const Input& poses, Quantity quantities, const Limits& limits,
+                    int threads) {
+  if (poses.ndim() != 2 || (poses.shape(1) != 6 && poses.shape(1) != 12))
+    throw std::invalid_argument("poses must have shape (n, 6) or (n, 12)");
+  const sweep_task::Poses given = poses_in_rows(poses.data(), poses.shape(1));
+  return sweep_of(design, joint, given, poses.shape(0), quantities, limits, threads);
+}
+
+/// Positions (n, 3) and rotations, (n, 4) or (n, 9).
+nb::dict sweep_parts(const Input& design, Joint joint, const std::pair<Input, Input>& poses, Quantity quantities,
+                     const Limits& limits, int threads) {
+  const auto& [position, rotation] = poses;
+  const size_t n = position.size() / 3;
+  if (rotation.ndim() != 2 || (rotation.shape(1) != 4 && rotation.shape(1) != 9))
+    throw std::invalid_argument("rotations must have shape (n, 4) or (n, 9)");
+  const size_t width = rotation.shape(1);
+  const sweep_task::Poses given{rows(position, n, 3, "positions"), rows(rotation, n, width, "rotations"), 3, width,
+                                static_cast<int>(width)};
+  return sweep_of(design, joint, given, n, quantities, limits, threads);
+}
+
 }  // namespace
 
 void bind_sweep(nb::module_& m) {
   bind_limits(m);
-  m.def("sweep", &sweep_);
+  m.def("sweep", &sweep_rows);
+  m.def("sweep", &sweep_parts);
   nb::dict asked;
   for (const SweepArray& array : sweep_arrays) asked[array.name] = array.quantity;
   asked[within_limits.first] = within_limits.second;

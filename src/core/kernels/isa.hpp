@@ -7,6 +7,7 @@
 #include <string>
 
 #include "certify/task.hpp"
+#include "one_pose/task.hpp"
 #include "simulation/task.hpp"
 #include "sweep/task.hpp"
 
@@ -14,6 +15,7 @@
   namespace flexapod_##isa {                                \
     extern const sweep_task::Kernel sweep_kernel;           \
     extern const certify_task::Kernel certify_kernel;       \
+    extern const one_pose_task::Kernel one_pose_kernel;     \
     extern const simulation_task::Kernel simulation_kernel; \
   }
 #if defined(FLEXAPOD_X86)
@@ -28,6 +30,7 @@ namespace flexapod {
 struct Kernels {
   const sweep_task::Kernel& sweep;
   const certify_task::Kernel& certify;
+  const one_pose_task::Kernel& one_pose;
   const simulation_task::Kernel& simulation;
 
   const char* name() const { return sweep.name; }
@@ -37,10 +40,13 @@ struct Kernels {
 /// All that this build has, the best first.
 inline constexpr Kernels all_kernels[] = {
 #if defined(FLEXAPOD_X86)
-    {flexapod_avx512::sweep_kernel, flexapod_avx512::certify_kernel, flexapod_avx512::simulation_kernel},
-    {flexapod_avx2::sweep_kernel, flexapod_avx2::certify_kernel, flexapod_avx2::simulation_kernel},
+    {flexapod_avx512::sweep_kernel, flexapod_avx512::certify_kernel, flexapod_avx512::one_pose_kernel,
+     flexapod_avx512::simulation_kernel},
+    {flexapod_avx2::sweep_kernel, flexapod_avx2::certify_kernel, flexapod_avx2::one_pose_kernel,
+     flexapod_avx2::simulation_kernel},
 #endif
-    {flexapod_baseline::sweep_kernel, flexapod_baseline::certify_kernel, flexapod_baseline::simulation_kernel}};
+    {flexapod_baseline::sweep_kernel, flexapod_baseline::certify_kernel, flexapod_baseline::one_pose_kernel,
+     flexapod_baseline::simulation_kernel}};
 
 /// The best kernels that run here, or those that the environment variable FLEXAPOD_SIMD names.
 inline const Kernels& choose_kernels() {

@@ -14,6 +14,16 @@ template <class T> T signed_angle(const T& y, const T& x) {
   return select(below, -angle, angle);
 }
 
+/// Roll, pitch and yaw of a rotation: pitch within +-pi/2, and yaw 0 where it is +-pi/2.
+template <class T> Vec3<T> roll_pitch_yaw_of(const Mat3<T>& R) {
+  const T level = sqrt(R.row[0].x * R.row[0].x + R.row[1].x * R.row[1].x);
+  const auto steep = level <= T(1e-12);                                                   // not where R holds NaN
+  const auto angle = [](const T& y, const T& x) { return signed_angle(y + T(0.0), x); };  // -0 is 0
+  const T roll = angle(select(steep, -R.row[1].z, R.row[2].y), select(steep, R.row[1].y, R.row[2].z));
+  const T yaw = select(steep, T(0.0), angle(R.row[1].x, R.row[0].x));
+  return {roll, angle(-R.row[2].x, level), yaw};
+}
+
 /// theta / sin(theta) and its derivative by cos(theta), of an angle below pi given by both. Below 0.2 rad by the series
 /// in h = (1 - cos)/2 = sin^2(theta/2) of arcsin(sqrt h) / sqrt(h (1 - h)).
 template <class T> struct AngleRatio {

@@ -301,15 +301,6 @@ inline auto frequency_derivatives(const Machine<double>& machine, const States& 
   return std::tuple{std::move(by_design), std::move(by_pose)};
 }
 
-/// M, C, K, M_b, C_b, K_b, H (7, 6, 6) at rest.
-inline Rows tangent(const Machine<double>& machine, const States& s, const RestLoad& load) {
-  const Tangent t = flexapod::tangent(machine, s.platform->pose, s.base->pose, load);
-  Rows matrices({7, 6, 6});
-  double* to = matrices.data();
-  for (const Mat6<double>& m : {t.M, t.C, t.K, t.M_b, t.C_b, t.K_b, t.H}) write(to, m);
-  return matrices;
-}
-
 /// The pose (12,) where the platform settles from the one given, and how the search ended.
 inline auto settle(const Machine<double>& machine, const States& s, const RestLoad& load) {
   Pose<double> pose = s.platform->pose;

@@ -80,25 +80,30 @@ template <class T, class D> Mat6<T> inertia(const Machine<D>& machine, const Geo
   return J.matrix();
 }
 
+/// A leg's part of J_b, for its joints at q_p and q_b.
+template <class T, class D>
+void add_base_coupling(Mat6<T>& J, const LegAxes<T>& leg, const LegInertia<D>& inertia, const Vec3<T>& q_p,
+                       const Vec3<T>& q_b, Joint joint) {
+  const LegInertiaMatrices<T> in = leg_inertia_matrices(leg, inertia);
+  const Mat3<T> Q_b = transpose(leg.axes) * (in.Q_b * leg.axes);
+  const Vec3<T> spin_force = transposed(leg.axes, in.spin);
+  const Vec3<T> spin = joint == Joint::universal ? leg.s() - leg.tau * leg.axes.row[2] : Vec3<T>();  // n / (n.s)
+  const T force[3] = {spin_force.x, spin_force.y, spin_force.z};
+  Vec6<T> top[3];
+  for (int r = 0; r < 3; ++r) top[r] = Vec6<T>::of(Q_b.row[r], cross(q_b, Q_b.row[r]) - force[r] * spin);
+  for (int j = 0; j < 6; ++j) {
+    const Vec3<T> column(top[0][j], top[1][j], top[2][j]);
+    const Vec6<T> both = Vec6<T>::of(column, cross(q_p, column));
+    for (int r = 0; r < 6; ++r) J[r][j] += both[r];
+  }
+}
+
 /// J_b of Eq. 34: how acceleration of the base enters. In the exact joint model a turning base also spins the legs.
 template <class T, class D> Mat6<T> base_coupling(const Machine<D>& machine, const Geometry<T>& g) {
   Mat6<T> J;
-  for (int i = 0; i < 6; ++i) {
-    const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
-    const LegInertiaMatrices<T> in = leg_inertia_matrices(leg, machine.inertia[i]);
-    const Mat3<T> Q_b = transpose(leg.axes) * (in.Q_b * leg.axes);
-    const Vec3<T> spin_force = transposed(leg.axes, in.spin);
-    const bool spins = machine.joint == Joint::universal;
-    const Vec3<T> spin = spins ? leg.s() - leg.tau * leg.axes.row[2] : Vec3<T>();  // n / (n.s)
-    const T force[3] = {spin_force.x, spin_force.y, spin_force.z};
-    Vec6<T> top[3];
-    for (int r = 0; r < 3; ++r) top[r] = Vec6<T>::of(Q_b.row[r], cross(g.q_b[i], Q_b.row[r]) - force[r] * spin);
-    for (int j = 0; j < 6; ++j) {
-      const Vec3<T> column(top[0][j], top[1][j], top[2][j]);
-      const Vec6<T> both = Vec6<T>::of(column, cross(g.q_p[i], column));
-      for (int r = 0; r < 6; ++r) J[r][j] += both[r];
-    }
-  }
+  for (int i = 0; i < 6; ++i)
+    add_base_coupling(J, LegAxes<T>(g.S[i], g.k[i], machine.joint), machine.inertia[i], g.q_p[i], g.q_b[i],
+                      machine.joint);
   return J;
 }
 

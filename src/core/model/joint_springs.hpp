@@ -40,11 +40,13 @@ template <class D> const D& joint_stiffness(const LegSprings<D>& springs, int j)
 template <class T, class D, class P>
 void add_joint_stiffness(SpatialInertia<T>& K, const LegAxes<T>& leg, const LegSprings<D>& springs, const Vec3<P>& q_p,
                          Joint joint) {
-  const Vec3<T>&s = leg.axes.row[0], &y = leg.axes.row[1];
+  const Vec3<T>&s = leg.axes.row[0], &y = leg.axes.row[1], &z = leg.axes.row[2];
   const T u = leg.u, first = joint == Joint::universal ? leg.cosecant : T(1.0), zero(0.0);
   const T across = u * u * (springs.k_u[0] * (first * first) + springs.k_s + springs.k_t * (leg.tau * leg.tau));
   const T along = u * u * (springs.k_u[1] + springs.k_s);
-  const Sym3<T> Q = rotate(transpose(leg.axes), Sym3<T>{zero, across, along, zero, zero, zero});
+  const Vec3<T> y_k = across * y, z_k = along * z;
+  const Sym3<T> Q{y_k.x * y.x + z_k.x * z.x, y_k.y * y.y + z_k.y * z.y, y_k.z * y.z + z_k.z * z.z,
+                  y_k.x * y.y + z_k.x * z.y, y_k.x * y.z + z_k.x * z.z, y_k.y * y.z + z_k.y * z.z};
   const T bend = u * springs.k_s, twist = (leg.tau * u) * springs.k_t, more = T(springs.k_t - springs.k_s);
   const Vec3<T> b = bend * s, t = twist * y;
   const Mat3<T> G{
@@ -74,9 +76,9 @@ template <class T> struct JointSprings {
   Vec3<T> universal;  // leg axes: does the work of the joint's springs at the rate of the leg relative to the base
   Vec3<T> spherical;  // leg axes: likewise relative to the platform; on the platform by the leg
 
-  template <class D, class R>
+  template <class D, class P, class B>
   JointSprings(const LegSprings<D>& k, const JointRest<D>& rest, const LegAxes<T>& leg, const Vec3<T>& axis,
-               const Mat3<R>& R_p, const Mat3<R>& R_b, Joint joint) {
+               const Mat3<P>& R_p, const Mat3<B>& R_b, Joint joint) {
     const Vec3<T>& s = leg.s();
     const auto carried = [&](int r) { return Vec3<T>(R_b * rest.in_base.row[r]); };
     if (joint == Joint::universal) {
@@ -124,10 +126,10 @@ template <class T> struct JointSprings {
 
 /// Adds the moments of the springs of a leg's joints to what its spherical joint carries. Axis: k; R_p, R_b: of platform
 /// and base.
-template <class T, class D, class R>
+template <class T, class D, class P, class B>
 FLEXAPOD_APART void add_joint_springs(SphericalLoad<T>& load, const LegSprings<D>& k, const JointRest<D>& rest,
-                                      const LegAxes<T>& leg, const Vec3<T>& axis, const Mat3<R>& R_p,
-                                      const Mat3<R>& R_b, Joint joint) {
+                                      const LegAxes<T>& leg, const Vec3<T>& axis, const Mat3<P>& R_p,
+                                      const Mat3<B>& R_b, Joint joint) {
   const JointSprings<T> springs(k, rest, leg, axis, R_p, R_b, joint);
   load.moment += springs.spherical;
   load.force += leg.W_transposed(springs.universal + springs.spherical);

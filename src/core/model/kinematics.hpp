@@ -20,6 +20,18 @@ struct LegRates {
   }
 };
 
+inline constexpr double least_sine = 1e-7;  // of the angle between a leg and its universal joint's axis
+
+/// Below this length, m, a leg's direction is rounding.
+inline double shortest_leg(const Design<double>& d) {
+  Vec3<double> low = d.b[0], high = d.b[0];
+  for (const Vec3<double>& b : d.b) {
+    low = {std::min(low.x, b.x), std::min(low.y, b.y), std::min(low.z, b.z)};
+    high = {std::max(high.x, b.x), std::max(high.y, b.y), std::max(high.z, b.z)};
+  }
+  return 1e-9 * std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+}
+
 /// What makes a leg one: a length, and a direction across its universal axis (sine of the angle between them).
 struct LegFit {
   double length[6], sine[6];

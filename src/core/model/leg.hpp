@@ -32,9 +32,13 @@ template <class T> struct LegAxes {
   const Vec3<T>& s() const { return axes.row[0]; }
 
   /// W v: angular velocity from the relative velocity v of the joints (leg axes).
-  Vec3<T> W(const Vec3<T>& v) const { return {tau * u * v.y, -(u * v.z), u * v.y}; }
+  template <class V = T> Vec3<product_t<T, V>> W(const Vec3<V>& v) const {
+    return {tau * u * v.y, -(u * v.z), u * v.y};
+  }
   /// W^T m: the force at the platform joint that balances a moment m about the base joint.
-  Vec3<T> W_transposed(const Vec3<T>& m) const { return {T(0.0), u * (tau * m.x + m.z), -(u * m.y)}; }
+  template <class V> Vec3<product_t<T, V>> W_transposed(const Vec3<V>& m) const {
+    return {product_t<T, V>(0.0), u * (tau * m.x + m.z), -(u * m.y)};
+  }
 };
 
 /// Q_p and Q_b of one leg (Eqs 24, 25; corrections E1, E2) in leg axes, and the reaction of its spin.
@@ -91,8 +95,8 @@ template <class T> struct LegMotion {
   Vec3<T> omega, omega_rel;  // angular velocity, and that relative to the base
   Vec3<T> A;                 // angular acceleration
 
-  LegMotion(const LegAxes<T>& leg, const LegEnds<T>& end, Joint joint) {
-    const T tau = leg.tau, u = leg.u;
+  template <class U> LegMotion(const LegAxes<U>& leg, const LegEnds<T>& end, Joint joint) {
+    const U tau = leg.tau, u = leg.u;
     const Vec3<T>& w_b = end.omega_b;
     const bool universal = joint == Joint::universal;
     omega = leg.W(end.v);
@@ -131,6 +135,22 @@ SphericalLoad<T> spherical_load(const LegAxes<T>& leg, const LegInertia<D>& in, 
   SphericalLoad<T> load;
   load.moment = friction.spherical;
   load.force = f_u + leg.W_transposed(N + friction.universal + friction.spherical);
+  load.force.x += friction.prismatic;
+  return load;
+}
+
+/// The same of a leg at rest; a: acceleration against gravity, in leg axes.
+template <class T, class D>
+SphericalLoad<T> weight_load(const LegAxes<T>& leg, const LegInertia<D>& in, const Vec3<T>& a) {
+  return {in.m_u * a + leg.W_transposed(cross(in.c_d + in.c_u, a)), Vec3<T>()};
+}
+
+/// The part of it that friction has.
+template <class T, class U, class E>
+SphericalLoad<T> friction_load(const LegAxes<U>& leg, const Leg<E>& parts, const LegEnds<T>& end,
+                               const LegMotion<T>& motion) {
+  const JointFriction<T> friction(parts, joint_rates(end, motion));
+  SphericalLoad<T> load{leg.W_transposed(friction.universal + friction.spherical), friction.spherical};
   load.force.x += friction.prismatic;
   return load;
 }

@@ -44,19 +44,13 @@ inline Modes natural_modes(const Machine<double>& machine, const Geometry<double
 template <class T, class K, class U>
 T rayleigh_residual(const K (&k)[spring_count], const Mat6<T>& J, const SpringMatrix<T>& directions,
                     const Vec6<U>& shape, const U& lambda) {
-  Vec6<T> v;
-  for (int i = 0; i < 6; ++i) v[i] = T(shape[i]);
   T stretch[spring_count];
-  spring_rates(directions, v, stretch);
-  return stiffness_product(k, stretch, stretch) - T(lambda) * dot(v, J * v);
+  spring_rates(directions, shape, stretch);
+  return stiffness_product(k, stretch, stretch) - lambda * dot(shape, J * shape);
 }
 
 /// v^T K v of springs that do not lie along the legs.
-template <class T, class U> T other_product(const Mat6<T>& K, const Vec6<U>& shape) {
-  Vec6<T> v;
-  for (int i = 0; i < 6; ++i) v[i] = T(shape[i]);
-  return dot(v, K * v);
-}
+template <class T, class U> T other_product(const Mat6<T>& K, const Vec6<U>& shape) { return dot(shape, K * shape); }
 template <class T, class D>
 Mat6<T> other_stiffness(const Machine<D>& machine, const Geometry<T>& g, const Mat3<T>& R_p, const Mat3<T>& R_b) {
   SpatialInertia<T> K{};

@@ -91,6 +91,14 @@ template <class T> Mat3<T> roll_pitch_yaw(const Vec3<T>& sine, const Vec3<T>& co
            {-sp, cp * sr, cp * cr}}};
 }
 
+/// The rotation of a quaternion w + [x, y, z] of length one.
+template <class T> Mat3<T> quaternion_rotation(const T& w, const Vec3<T>& v) {
+  const T &x = v.x, &y = v.y, &z = v.z;
+  return {{{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
+           {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
+           {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)}}};
+}
+
 /// The pose moved by a finite displacement: t + d, exp(e) R.
 inline Pose<double> moved(const Pose<double>& pose, const Vec6<double>& x) {
   return {pose.t + x.top(), rotation(x.bottom()) * pose.R};

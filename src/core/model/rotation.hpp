@@ -35,12 +35,7 @@ struct Quaternion {
   }
   /// The same rotation with its axis given in other axes: R applied to the vector part.
   Quaternion resolved(const Mat3<double>& R) const { return {w, R * v}; }
-  Mat3<double> matrix() const {
-    const double x = v.x, y = v.y, z = v.z;
-    return {{{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
-             {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
-             {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)}}};
-  }
+  Mat3<double> matrix() const { return quaternion_rotation(w, v); }
 };
 
 inline Quaternion operator*(const Quaternion& a, const Quaternion& b) {

@@ -31,37 +31,6 @@ Vec6<T> rest_residual(const Machine<double>& machine, const Pose<T>& platform, c
   return r;
 }
 
-/// Linear dynamics about rest: M x'' + C x' + K x + M_b x_b'' + C_b x_b' + K_b x_b = H f + w, with x, x_b the small
-/// displacements (translation of the reference point, rotation vector) of platform and base in inertial axes,
-/// f changes of leg force, w changes of the external wrench.
-struct Tangent {
-  Mat6<double> M, C, K, M_b, C_b, K_b, H;
-};
-
-inline Tangent tangent(const Machine<double>& machine, const Pose<double>& platform, const Pose<double>& base,
-                       const RestLoad& load) {
-  using D = Dual<12>;
-  Tangent result;
-  const Geometry<double> g(machine.design, platform, base);
-  result.M = inertia(machine, g, platform.R);
-  result.H = force_transformation(g);
-  result.M_b = base_coupling(machine, g);
-  const Vec6<D> r = rest_residual(machine, displaceable<D>(platform, 0), displaceable<D>(base, 6), load);
-
-  Motion<D> moving = at_rest(constant<D>(platform)), moving_base = at_rest(constant<D>(base));
-  moving.v = variables<D>(0), moving.w = variables<D>(3);
-  moving_base.v = variables<D>(6), moving_base.w = variables<D>(9);
-  const Geometry<D> fixed(machine.design, moving.pose, moving_base.pose);
-  const Vec6<D> friction = inverse_wrench(machine, fixed, moving, moving_base);
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) {
-      result.K[i][j] = r[i].d[j], result.K_b[i][j] = r[i].d[6 + j];
-      result.C[i][j] = friction[i].d[j], result.C_b[i][j] = friction[i].d[6 + j];
-      result.M_b[i][j] = -result.M_b[i][j];
-    }
-  return result;
-}
-
 enum class Rest { found, singular, not_found };
 
 /// Newton on the residual from a start pose, with exact derivatives and step halving. The pose is left where the

@@ -32,6 +32,45 @@ template <int N, class T = double> struct Dual {
     const T inverse = T(1.0) / b.v, ratio = a.v * inverse;
     return chain(ratio, inverse, a, -ratio * inverse, b);
   }
+  // With a constant: its derivatives are not multiplied by zero.
+  template <class U> static constexpr bool constant = std::is_same_v<U, T> || std::is_arithmetic_v<U>;
+  template <class U>
+    requires(constant<U>)
+  friend Dual operator+(const Dual& a, const U& b) {
+    Dual r = a;
+    r.v = a.v + T(b);
+    return r;
+  }
+  template <class U>
+    requires(constant<U>)
+  friend Dual operator+(const U& a, const Dual& b) {
+    return b + a;
+  }
+  template <class U>
+    requires(constant<U>)
+  friend Dual operator-(const Dual& a, const U& b) {
+    return a + -T(b);
+  }
+  template <class U>
+    requires(constant<U>)
+  friend Dual operator-(const U& a, const Dual& b) {
+    return -b + a;
+  }
+  template <class U>
+    requires(constant<U>)
+  friend Dual operator*(const Dual& a, const U& b) {
+    return chain(a.v * T(b), T(b), a);
+  }
+  template <class U>
+    requires(constant<U>)
+  friend Dual operator*(const U& a, const Dual& b) {
+    return b * a;
+  }
+  template <class U>
+    requires(constant<U>)
+  friend Dual operator/(const Dual& a, const U& b) {
+    return a * (T(1.0) / T(b));
+  }
   friend auto operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
   friend auto operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
 

@@ -27,8 +27,8 @@ template <class T> void add(Vec6<T>& to, const Vec3<T>& top, const Vec3<T>& bott
   const Vec6<T> v = Vec6<T>::of(top, bottom);
   for (int i = 0; i < 6; ++i) to[i] += v[i];
 }
-template <class T> Vec6<T> operator*(const Mat6<T>& m, const Vec6<T>& v) {
-  Vec6<T> r;
+template <class A, class B> Vec6<product_t<A, B>> operator*(const Mat6<A>& m, const Vec6<B>& v) {
+  Vec6<product_t<A, B>> r;
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) r[i] += m[i][j] * v[j];
   return r;
@@ -39,8 +39,8 @@ template <class T> Vec6<T> transposed(const Mat6<T>& m, const Vec6<T>& v) {
     for (int i = 0; i < 6; ++i) r[j] += m[i][j] * v[i];
   return r;
 }
-template <class T> T dot(const Vec6<T>& a, const Vec6<T>& b) {
-  T sum = a[0] * b[0];
+template <class A, class B> product_t<A, B> dot(const Vec6<A>& a, const Vec6<B>& b) {
+  product_t<A, B> sum = a[0] * b[0];
   for (int i = 1; i < 6; ++i) sum += a[i] * b[i];
   return sum;
 }

@@ -39,6 +39,11 @@ inline sweep_task::Limits no_limits() {
   return limits;
 }
 
+/// Poses in rows of 6 (position; roll, pitch, yaw) or 12 (position; rotation matrix by rows).
+inline sweep_task::Poses poses_in_rows(const double* rows, std::size_t width) {
+  return {rows, rows + 3, width, width, static_cast<int>(width) - 3};
+}
+
 /// Results of a sweep: a row for each pose.
 struct SweepRows {
   std::vector<std::pair<const char*, Array<double>>> numbers;

@@ -14,11 +14,14 @@ template <int lanes> FLEXAPOD_COLD void wind_down(double (&angles)[lanes]) {
 
 /// A task's poses from `first` on, in lanes; those beyond `count` are filled up with the last of them.
 template <class T> void load_poses(const Task& task, size_t first, size_t count, double (&rows)[12][T::lanes]) {
+  const sweep_task::Poses& poses = task.poses;
   for (int l = 0; l < T::lanes; ++l) {
-    const double* pose = task.poses + (first + (static_cast<size_t>(l) < count ? l : count - 1)) * task.width;
-    for (int c = 0; c < task.width; ++c) rows[c][l] = pose[c];
+    const size_t i = first + (static_cast<size_t>(l) < count ? l : count - 1);
+    const double *position = poses.position + i * poses.step, *rotation = poses.rotation + i * poses.turn_step;
+    for (int c = 0; c < 3; ++c) rows[c][l] = position[c];
+    for (int c = 0; c < poses.turned; ++c) rows[3 + c][l] = rotation[c];
   }
-  if (task.width == 6)
+  if (poses.turned == 3)
     for (int c = 3; c < 6; ++c)
       if (any(abs(T::load(rows[c])) > 1e6)) [[unlikely]]
         wind_down(rows[c]);
@@ -76,7 +79,7 @@ template <class T, Swept kind> struct SweepModes {
   FLEXAPOD_COLD void by_all_columns(const mask_t<T>& where, SingularSquares<T>& found) const {
     double numbers[12][T::lanes];
     load_poses<T>(task, rows.first, static_cast<size_t>(rows.count), numbers);
-    const PosePack<T> at(machine, numbers, task.width);
+    const PosePack<T> at(machine, numbers, task.poses.turned);
     T exact[6];
     squares_by_rotations(all_columns(machine, at, dynamics.J, dynamics.springs.along), exact);
     for (int i = 0; i < 6; ++i) found.share[i] = select(where, exact[i] / found.sum, found.share[i]);
@@ -145,7 +148,7 @@ template <class T, Swept kind> class Sweep {
     const SweepQuantities<Part, kind> quantities{machine, task, {first, static_cast<int>(count)}, at};
     quantities.evaluate(part.fault);
   }
-  FLEXAPOD_FLAT PosePack<Part> pose_pack() const { return PosePack<Part>(machine, rows, task.width); }
+  FLEXAPOD_FLAT PosePack<Part> pose_pack() const { return PosePack<Part>(machine, rows, task.poses.turned); }
   FLEXAPOD_FLAT void assemble(const PosePack<Part>& at) { part.set(machine, at); }
 
   void join(MassAndForceMap<T, kind>& joined, int i) const {

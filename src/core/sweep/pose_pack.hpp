@@ -50,10 +50,11 @@ template <class T> struct PosePack {
   Geometry<T, double> g;
   T fault;
 
-  PosePack(const SweptMachine& m, const double (*rows)[T::lanes], int width)
-      : pose(read(rows, width)), g(m.machine.design, base()) {
+  /// turned: numbers of a rotation, as `sweep_task::Poses` has them.
+  PosePack(const SweptMachine& m, const double (*rows)[T::lanes], int turned)
+      : pose(read(rows, turned)), g(m.machine.design, base()) {
     T zero(0.0);
-    for (int i = 0; i < width; ++i) zero += T::load(rows[i]) * 0.0;
+    for (int i = 0; i < 3 + turned; ++i) zero += T::load(rows[i]) * 0.0;
     fault = worse(!(zero <= 0.0), sweep_task::not_finite, T(0.0));  // infinity and NaN times zero are NaN
     const T least(1e-24 * m.size * m.size);
     for (const Vec3<T>& S : g.S) fault = worse(!(dot(S, S) > least), sweep_task::no_leg, fault);
@@ -63,10 +64,11 @@ template <class T> struct PosePack {
   Pose<T> base() const { return {-transposed(pose.R, pose.t), transpose(pose.R)}; }
 
  private:
-  Pose<T> read(const double (*rows)[T::lanes], int width) {
+  Pose<T> read(const double (*rows)[T::lanes], int turned) {
     const auto row = [&](int i) { return T::load(rows[i]); };
     const Vec3<T> t(row(0), row(1), row(2));
-    if (width == 12) return {t, {{{row(3), row(4), row(5)}, {row(6), row(7), row(8)}, {row(9), row(10), row(11)}}}};
+    if (turned == 4) return {t, quaternion_rotation(row(6), {row(3), row(4), row(5)})};
+    if (turned == 9) return {t, {{{row(3), row(4), row(5)}, {row(6), row(7), row(8)}, {row(9), row(10), row(11)}}}};
     const SinCos<T> r(row(3)), p(row(4)), y(row(5));
     const Mat3<T> R = roll_pitch_yaw<T>({r.sin, p.sin, y.sin}, {r.cos, p.cos, y.cos});
     roll_axis = {R.row[0].x, R.row[1].x, R.row[2].x};
@@ -104,10 +106,13 @@ template <class T, Swept kind> struct MassAndForceMap {
   }
   /// With springs of all kinds as well.
   void set_stiffness(const SweptMachine& m, const PosePack<T>& at) {
-    set_legs(at);
-    if constexpr (kind != Swept::constant) {
+    if constexpr (kind == Swept::constant) {
+      set_legs(at);
+    } else {
       const auto axes = [&](int i) { return LegAxes<T>(at.g.S[i], at.g.k[i], m.machine.joint); };
       const LegAxes<T> legs[6] = {axes(0), axes(1), axes(2), axes(3), axes(4), axes(5)};
+      fault = at.fault;
+      for (int i = 0; i < 6; ++i) set_spring_directions(directions, i, at.g.q_p[i], legs[i]);
       set_springs(m, at, legs);
     }
   }

@@ -24,9 +24,16 @@ template <class T, Swept kind> struct SweepQuantities {
     const unsigned asked = task.quantities;
     const auto note = [&](const T& found) { fault = select(fault > 0.0, fault, found); };
     if (asked & geometric) geometry();
+    if (asked & Quantity::rpy) coordinates();
     if (asked & Quantity::leg_force) note(static_force());
     if (asked & Quantity::lowest_stiffness) note(stiffness());
     if (asked & Quantity::omega_1_gradient) note(gradient());
+  }
+
+  /// Roll, pitch and yaw of poses that are given by other numbers.
+  FLEXAPOD_FLAT void coordinates() const {
+    const Vec3<T> angles = roll_pitch_yaw_of(at.pose.R);
+    rows.put(task.rpy_, angles.x, 0, 3), rows.put(task.rpy_, angles.y, 1, 3), rows.put(task.rpy_, angles.z, 2, 3);
   }
 
   void geometry() const {
@@ -147,7 +154,7 @@ template <class T, Swept kind> struct SweepQuantities {
     const T half = 0.5 * rsqrt(lambda);
     T by[6];
     for (int i = 0; i < 6; ++i) by[i] = half * residual.d[i];
-    if (task.width == 6) {
+    if (task.poses.turned == 3) {
       const Vec3<T> turn(by[3], by[4], by[5]);
       by[3] = dot(turn, at.roll_axis), by[4] = dot(turn, at.pitch_axis);
     }

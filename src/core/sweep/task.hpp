@@ -22,7 +22,8 @@ namespace sweep_task {
   QUANTITY(joint_angle)                     \
   QUANTITY(within_limits)                   \
   QUANTITY(omega_1_gradient)                \
-  QUANTITY(joint_moment)
+  QUANTITY(joint_moment)                    \
+  QUANTITY(rpy)
 
 // ARRAY(name, quantity, columns): the arrays of numbers that come back, and what to ask for to get them.
 #define FLEXAPOD_SWEEP_ARRAYS(ARRAY)           \
@@ -37,7 +38,8 @@ namespace sweep_task {
   ARRAY(spherical_angle, joint_angle, 6)       \
   ARRAY(universal_moment, joint_moment, 6)     \
   ARRAY(spherical_moment, joint_moment, 6)     \
-  ARRAY(omega_1_gradient, omega_1_gradient, 6)
+  ARRAY(omega_1_gradient, omega_1_gradient, 6) \
+  ARRAY(rpy, rpy, 3)
 
 #define FLEXAPOD_NUMBERED(name) name,
 enum class QuantityNumber : unsigned { FLEXAPOD_SWEEP_QUANTITIES(FLEXAPOD_NUMBERED) };
@@ -61,14 +63,20 @@ struct Limits {
   double leg_distance;                        // m
 };
 
+/// Where poses are, and by how many numbers their rotations are given.
+struct Poses {
+  const double *position, *rotation;  // of the first pose
+  std::size_t step, turn_step;        // numbers from one position and from one rotation to the next
+  int turned;  // 3: roll, pitch, yaw; 4: a quaternion of length one, its scalar last; 9: a matrix
+};
+
 struct Task {
   const double* design;  // its numbers, as in model/design.hpp
   core_enums::Joint joint;
-  const double* poses;  // rows of 6 (position; roll, pitch, yaw) or 12 (position; rotation matrix by rows)
-  int width;
+  Poses poses;
   unsigned quantities;
   const Limits* limits;
-  // Results, n rows of one or of six numbers; those not asked for may be null.
+  // Results, n rows of one, three or six numbers; those not asked for may be null.
 #define FLEXAPOD_RESULT(name, quantity, columns) double* name##_;
   FLEXAPOD_SWEEP_ARRAYS(FLEXAPOD_RESULT)
   bool* within_limits_;

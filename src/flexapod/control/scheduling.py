@@ -23,7 +23,7 @@ from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, single_base, w
 from flexapod.mechanics.linearisation import linearise
 from flexapod.pose import Pose, PoseLike
 from flexapod.rotations import rpy_matrix
-from flexapod.workspace.pose_sets import PoseSet
+from flexapod.workspace.pose_sets import PoseSet, six_numbers
 from flexapod.workspace.region import RegionLike, poses_of
 from flexapod.workspace.sweeping import coordinates
 
@@ -194,4 +194,4 @@ def _dataset(poses: PoseSet, rows: Array, values: dict[str, Array], status: np.n
         name: (poses.dims, values[name].reshape(poses.shape), attrs) for name, attrs in about.items()
     }
     variables["status"] = (poses.dims, status.reshape(poses.shape))
-    return xr.Dataset(variables, coordinates(poses, rows))
+    return xr.Dataset(variables, coordinates(poses, list(six_numbers(rows).T)))

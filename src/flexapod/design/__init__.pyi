@@ -1,4 +1,6 @@
 from . import flexures as flexures
+from .compiled import CompiledHexapod as CompiledHexapod
+from .compiled import LinearMatrices as LinearMatrices
 from .design_file import packaged_designs as packaged_designs
 from .design_file import template as template
 from .flexible_joints import JointStiffness as JointStiffness

@@ -15,9 +15,10 @@ from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod._suggestions import Suggesting, suggests
-from flexapod.conventions import Array
+from flexapod.conventions import JOINT_MODELS, Array, JointModel
 from flexapod.design import changes as design_changes
 from flexapod.design import design_file
+from flexapod.design.compiled import CompiledHexapod
 from flexapod.design.flexible_joints import Suspension
 from flexapod.design.geometry_checks import joint_warnings, platform_warnings, unit_axes, warnings_of_part
 from flexapod.design.home import Home
@@ -33,7 +34,7 @@ from flexapod.design.value import Value, bytes_of
 from flexapod.design.values import parts_of, values_of_legs, values_of_suspension
 from flexapod.errors import DesignError, shown
 from flexapod.output_files import write_file
-from flexapod.pose import Pose
+from flexapod.pose import Pose, PoseLike
 
 _WORDS = {
     "load": "flexapod.load(name or path)",
@@ -361,6 +362,35 @@ class Hexapod(Value, metaclass=Suggesting):
     def packed(self) -> Array:
         """The design's numbers in the core's order (`flexapod._core.DESIGN_LAYOUT`), read-only."""
         return packed(self.values())
+
+    @cached_property
+    def one_pose(self) -> dict[str, _core.OnePose]:
+        """What answers a call for one pose, by joint model."""
+        return {joint: _core.OnePose(self.packed, _core.Joint[joint]) for joint in JOINT_MODELS}
+
+    def compiled(self, *, base: PoseLike | None = None, joint: JointModel = "universal") -> CompiledHexapod:
+        """This machine for loops that call it very often, with plain arrays whose shapes are all that is checked.
+
+        Parameters
+        ----------
+        base : Pose or array_like, optional
+            Pose of the base in the inertial frame, in which it rests. Left out, the base frame is the inertial frame.
+        joint : {"universal", "spin_free"}
+            Model of the base joints.
+
+        Returns
+        -------
+        CompiledHexapod
+            Its methods take and give arrays of one state.
+
+        Raises
+        ------
+        PoseError
+            For a base that is not one pose.
+        ArgumentError
+            For an unknown joint model.
+        """
+        return CompiledHexapod(self, base, joint)
 
     @cached_property
     def digest(self) -> str:

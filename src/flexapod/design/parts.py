@@ -210,6 +210,15 @@ class Legs(Value):
         compliance: Array = series_compliance(self.series_stiffness)
         return compliance
 
+    @functools.cached_property
+    def spring_losses(self) -> Array:
+        """Structural loss factor of each spring in the core's order, (42,), read-only; none of a suspension's."""
+        leg = np.array(_core.SPRING_LEGS)  # first those along the legs, then those of the joints; -1: suspension
+        along = np.arange(len(leg)) < 6
+        found = np.where(along, self.loss_factor[leg], np.where(leg >= 0, self.joint_stiffness.loss_factor[leg], 0.0))
+        found.flags.writeable = False
+        return found
+
     def _set_axial(self) -> None:
         """Check the stiffness, or the law in its place, and the springs in series."""
         law = self.stiffness_law

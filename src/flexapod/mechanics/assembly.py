@@ -49,7 +49,7 @@ class FoundPose(Pose):
     misfit: Any
 
     def __init__(self, position: Array, matrix: Array, status: Any, misfit: Any) -> None:
-        self.position, self.matrix = np.broadcast_to(position, position.shape), np.broadcast_to(matrix, matrix.shape)
+        self._hold(position, matrix)
         self.status, self.misfit = (str(status) if np.ndim(status) == 0 else status), misfit
 
     def __getitem__(self, index: Any) -> FoundPose:

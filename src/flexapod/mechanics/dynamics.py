@@ -11,7 +11,7 @@ from flexapod import _core
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
-from flexapod.mechanics.inputs import NO_LEGS, ZERO, as_joint, per_leg, states, wrench
+from flexapod.mechanics.inputs import NO_LEGS, ZERO, as_joint, at_once, per_leg, states, wrench
 from flexapod.pose import MotionLike
 from flexapod.showing import in_notebooks
 
@@ -152,6 +152,11 @@ def forward_dynamics(
     >>> round(float(acceleration[2]), 3)
     -3.642
     """
+    found: tuple[Array, Array] | None = at_once(
+        "forward_dynamics", hexapod, pose, base, joint, leg_force, force, moment
+    )
+    if found is not None:
+        return found
     s = states(hexapod, pose, base)
     result = _core.forward_dynamics(
         hexapod.packed,
@@ -217,6 +222,9 @@ def inverse_dynamics(
     >>> forces.round(0).tolist()
     [7911.0, 7911.0, 7911.0, 7911.0, 7911.0, 7911.0]
     """
+    found: Array | None = at_once("inverse_dynamics", hexapod, pose, base, joint, force, moment)
+    if found is not None:
+        return found
     s = states(hexapod, pose, base)
     loads = wrench(force, moment, s.shape)
     result = _core.inverse_dynamics(hexapod.packed, as_joint(joint), s.platform, s.base, loads)

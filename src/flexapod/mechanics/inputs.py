@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod.checks import numbers
-from flexapod.conventions import Array
+from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, DesignError, PoseError, shown
-from flexapod.pose import Motion, MotionLike, Pose, PoseLike, as_pose, vectors
+from flexapod.pose import Motion, MotionLike, Pose, PoseLike, as_pose, rates, vectors
 
-LEAST_SINE = 1e-7  # of the angle between a leg and its universal joint's axis
+LEAST_SINE = _core.least_sine
 ZERO = (0.0, 0.0, 0.0)
 NO_LEGS = (0.0,) * 6
 
@@ -94,6 +94,36 @@ def point_attributes(hexapod: Hexapod, point: PointLike) -> dict[str, object]:
     return {"point_m": as_point(hexapod, point).tolist(), "point": point if isinstance(point, str) else ""}
 
 
+def at_once(
+    question: str,
+    hexapod: Hexapod,
+    pose: MotionLike | None,
+    base: MotionLike | None,
+    joint: JointModel,
+    *more: ArrayLike,
+) -> Any:
+    """The core's answer to a question at one pose, checks included (`_core.OnePose`). None for all that is unusual.
+
+    That is a batch, numbers that are no plain arrays, and whatever is wrong: the way of many poses then tells of it.
+    """
+    if not isinstance(hexapod, Hexapod) or not isinstance(joint, str):
+        return None
+    machine = hexapod.one_pose.get(joint)
+    if machine is None:
+        return None
+    return getattr(machine, question)(_given(hexapod.home if pose is None else pose), _given(base), *more)
+
+
+def _given(state: MotionLike | None) -> tuple[Any, Any, Any]:
+    """Position and rotation, or what was given instead and None; rates of a motion, or None."""
+    if isinstance(state, Pose):
+        # of many poses nobody needs the matrices here
+        return state.position, state.matrix if state.position.ndim == 1 else None, None
+    if isinstance(state, Motion):
+        return *_given(state.pose)[:2], rates(state)
+    return state, None, None
+
+
 def states(hexapod: Hexapod, platform: MotionLike | None, base: MotionLike | None = None) -> States:
     """Rows for the core. A single pose that no leg can take raises PoseError; in a batch its row is NaN."""
     as_hexapod(hexapod)
@@ -108,10 +138,11 @@ def states(hexapod: Hexapod, platform: MotionLike | None, base: MotionLike | Non
         raise PoseError(f"pose has batch axes {axes[0]}, base {axes[1]}; they must be equal or 1.") from None
     rows = [np.ascontiguousarray(_spread(rows, shape).reshape(-1, _core.motion_size)) for rows in given]
     length, sine = _core.leg_fit(hexapod.packed, *rows)
-    good = np.all((length >= _shortest(hexapod)) & (sine >= LEAST_SINE), axis=1, keepdims=True)
+    shortest = _core.shortest_leg(hexapod.packed)
+    good = np.all((length >= shortest) & (sine >= LEAST_SINE), axis=1, keepdims=True)
     if not good.all():
         if not shape:
-            _refuse(hexapod, length[0], sine[0])
+            _refuse(shortest, length[0], sine[0])
         rows[0] = np.where(good, rows[0], np.nan)
     return States(rows[0], rows[1], shape)
 
@@ -124,15 +155,10 @@ def _numbers(state: Pose | Motion) -> Array:
     return np.concatenate([packed, np.zeros((*state.shape, _core.motion_size - packed.shape[-1]))], axis=-1)
 
 
-def _shortest(hexapod: Hexapod) -> float:
-    """Below this length, m, a leg's direction is rounding."""
-    return float(1e-9 * np.ptp(hexapod.base_joints, axis=0).max())
-
-
-def _refuse(hexapod: Hexapod, length: Array, sine: Array) -> None:
+def _refuse(shortest: float, length: Array, sine: Array) -> None:
     """Raises PoseError for the first leg that has no length, or lies along its universal joint's axis."""
-    i = int(np.argmin((length >= _shortest(hexapod)) & (sine >= LEAST_SINE)))
-    if length[i] < _shortest(hexapod):
+    i = int(np.argmin((length >= shortest) & (sine >= LEAST_SINE)))
+    if length[i] < shortest:
         raise PoseError(
             f"leg {i + 1} has length {length[i]:.3g} m at this pose; its joints must not meet. Move the platform."
         )

@@ -10,7 +10,7 @@ from flexapod import _core
 from flexapod.checks import positive
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.mechanics.inputs import as_hexapod, states
+from flexapod.mechanics.inputs import as_hexapod, at_once, states
 from flexapod.pose import MotionLike, Pose, PoseLike
 from flexapod.showing import in_notebooks
 
@@ -72,7 +72,8 @@ def inverse_kinematics(hexapod: Hexapod, pose: PoseLike | None = None, *, base: 
     >>> fx.inverse_kinematics(fx.load("motion-base")).round(3).tolist()
     [2.706, 2.706, 2.706, 2.706, 2.706, 2.706]
     """
-    return leg_rates(hexapod, pose, base=base).length
+    length: Array | None = at_once("leg_lengths", hexapod, pose, base, "universal")
+    return leg_rates(hexapod, pose, base=base).length if length is None else length
 
 
 def leg_rates(hexapod: Hexapod, pose: MotionLike | None = None, *, base: MotionLike | None = None) -> LegRates:

@@ -9,19 +9,16 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod import _core
 from flexapod._suggestions import suggests
 from flexapod.conventions import TWO_PI, Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
-from flexapod.mechanics.inputs import ZERO, as_joint, single_base, single_pose, states, wrench
+from flexapod.mechanics.inputs import ZERO, at_once, single_base, single_pose, wrench
 from flexapod.mechanics.modes import MODE_WORDS
-from flexapod.mechanics.springs import axial_stiffness, spring_losses, spring_matrix
 from flexapod.mechanics.state_space import StateSpace, state_space_of
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.optional import needed
-from flexapod.pose import PoseLike, unpack
-from flexapod.rotations import skew
+from flexapod.pose import Pose, PoseLike
 from flexapod.showing import in_notebooks
 
 if TYPE_CHECKING:
@@ -257,21 +254,20 @@ def linearise(
     >>> tangent.modes().frequency.round(2).tolist()  # Hz
     [4.6, 4.6, 4.8, 4.94, 4.94, 8.06]
     """
-    pose, base = single_pose(hexapod, pose), single_base(hexapod, base)
-    rest = hold(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
-    s = states(hexapod, pose, base)
-    M, C, K, M_b, C_b, K_b, H = _core.tangent(
-        hexapod.packed, as_joint(joint), s.platform, s.base, wrench(force, moment, ()), rest.unstretched_length
-    )
-    if not (np.isfinite(K).all() and np.isfinite(C).all()):
+    found = at_once("linearise", hexapod, pose, base, joint, force, moment)
+    if found is None:
+        pose, base = single_pose(hexapod, pose), single_base(hexapod, base)
+        hold(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
+        (load,) = wrench(force, moment, ())
+        found = at_once("linearise", hexapod, pose, base, joint, *np.split(load, 2))
+    if found is None:
         raise SingularPoseError(
             "no leg forces of finite size hold this pose: it is singular but for rounding. Move the platform away."
         )
-    r = unpack(s.platform[0])["position"] - unpack(s.base[0])["position"]
-    F = spring_matrix(hexapod, pose, base=base, joint=joint)
-    stiffness, slope = axial_stiffness(hexapod, rest.unstretched_length)
-    command = stiffness + slope * (rest.unstretched_length - rest.leg_length)
-    carry = np.eye(6)
-    carry[:3, 3:] = skew(r).T
-    losses = spring_losses(hexapod, F.shape[1])
+    (M, C, K, M_b, C_b, K_b, H, carry), legs, F, numbers = found
+    leg_force, leg_length, unstretched, stiffness, command = legs
+    at = hexapod.home if pose is None else pose
+    at = at if isinstance(at, Pose) else Pose.trusted(numbers[:3], numbers[3:].reshape(3, 3))
+    rest = Equilibrium(at, leg_force, leg_length, unstretched)
+    losses = hexapod.legs.spring_losses[: F.shape[1]]
     return Linearisation(M, C, K, M_b, C_b, K_b, H, stiffness, rest, carry, hexapod.gravity, F, command, losses)

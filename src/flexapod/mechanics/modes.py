@@ -11,7 +11,7 @@ from flexapod._suggestions import suggests
 from flexapod.checks import not_negative, numbers
 from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.mechanics.inputs import ZERO, PointLike, as_joint, as_point, pose_or_home
+from flexapod.mechanics.inputs import ZERO, PointLike, as_joint, as_point, at_once, pose_or_home
 from flexapod.mechanics.point_motion import shift
 from flexapod.mechanics.springs import law_states
 from flexapod.pose import PoseLike
@@ -109,6 +109,9 @@ def natural_modes(
     >>> modes.frequency.round(2).tolist()  # Hz
     [4.46, 4.48, 8.84, 14.97, 15.88, 17.28]
     """
+    found = at_once("natural_modes", hexapod, pose, base, joint) if point is ZERO else None
+    if found is not None:
+        return NaturalModes(*found)
     s = law_states(hexapod, pose, base)
     omega, shape = _core.natural_modes(hexapod.packed, as_joint(joint), s.platform, s.base)
     shape = shape.reshape(*s.shape, 6, 6)

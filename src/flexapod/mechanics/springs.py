@@ -27,13 +27,6 @@ def spring_matrix(
     return F.reshape(*s.shape, 6, F.shape[-1])
 
 
-def spring_losses(hexapod: Hexapod, count: int) -> Array:
-    """Structural loss factor of each of the `count` columns of F; none of the suspension's, which has a damper."""
-    of_springs = np.where(np.arange(len(SPRING_LEG)) < 6, hexapod.legs.loss_factor[SPRING_LEG], 0.0)
-    of_joints = hexapod.legs.joint_stiffness.loss_factor[SPRING_LEG]
-    return np.where((np.arange(len(SPRING_LEG)) >= 6) & (SPRING_LEG >= 0), of_joints, of_springs)[:count]
-
-
 def axial_stiffness(hexapod: Hexapod, length: Array) -> tuple[Array, Array]:
     """Stiffness of the legs, N/m, with what is in series with them, at lengths (..., 6), and its derivative by them.
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import prod
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,9 +17,12 @@ from flexapod.checks import floats, whole
 from flexapod.conventions import AXES, Array
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.pose import Pose
+from flexapod.rotations import rpy_of_matrices
 from flexapod.workspace.box import BITS, Box
 from flexapod.workspace.sobol import PIECE, Sobol
 
+#: Poses as the sweep's kernel takes them: rows of 6 or 12 numbers, or positions (n, 3) and rotations, (n, 4) or (n, 9).
+PoseNumbers: TypeAlias = "Array | tuple[Array, Array]"
 MOST = 2**40  # poses of a set: a year of a computer's work
 
 
@@ -77,6 +80,10 @@ class PoseSet:
             x, y, z (m), roll, pitch, yaw (rad); or position (m) and rotation matrix by rows.
         """
         raise NotImplementedError
+
+    def numbers(self) -> PoseNumbers:
+        """Return all poses as a sweep in memory takes them: `rows`, or positions and rotations."""
+        return self.rows(0, self.count)
 
     def describe(self) -> dict[str, Any]:
         """Return how the set is made, as plain data."""
@@ -190,6 +197,24 @@ class GivenPoses(PoseSet):
         return {**self.describe(), "digest": content}
 
 
+class ListedPoses(GivenPoses):
+    """The poses of a `Pose`, of which rows are made when they are asked for."""
+
+    def __init__(self, poses: Pose) -> None:
+        self._poses = poses
+        super().__init__(poses.position.reshape(-1, 3), shape=poses.shape)
+
+    def numbers(self) -> PoseNumbers:
+        return self._poses.numbers
+
+    def rows(self, start: int, stop: int) -> Array:
+        position, matrix = self._rows[start:stop], self._poses.matrix.reshape(-1, 9)[start:stop]
+        return np.concatenate([position, matrix], axis=1)
+
+    def identity(self) -> dict[str, Any]:
+        return GivenPoses(self.rows(0, self.count)).identity()
+
+
 def _axis_described(axis: Array) -> Any:
     """The values of an axis as plain data, even ones briefly."""
     if axis.size > 2 and np.array_equal(axis, np.linspace(axis[0], axis[-1], axis.size)):
@@ -220,8 +245,7 @@ def given_poses(poses: Pose | ArrayLike) -> PoseSet:
     Raises PoseError for a wrong shape, and for no pose at all; NaN is left to the sweep.
     """
     if isinstance(poses, Pose):
-        packed = poses.packed
-        found = GivenPoses(packed.reshape(-1, packed.shape[-1]), shape=poses.shape)
+        found: GivenPoses = ListedPoses(poses)
     else:
         array = six_columns(poses)
         found = GivenPoses(array.reshape(-1, 6), shape=array.shape[:-1])
@@ -234,7 +258,7 @@ def six_numbers(rows: Array) -> Array:
     """Rows of x, y, z, roll, pitch, yaw, from such rows, or from rows of twelve: a position and a matrix."""
     if rows.shape[1] == 6:
         return rows
-    return np.concatenate([rows[:, :3], Pose(rows[:, :3], rows[:, 3:].reshape(-1, 3, 3)).rpy], axis=1)
+    return np.concatenate([rows[:, :3], rpy_of_matrices(rows[:, 3:].reshape(-1, 3, 3))], axis=1)
 
 
 def six_columns(value: Any) -> Array:

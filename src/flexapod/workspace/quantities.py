@@ -99,18 +99,20 @@ def chosen(quantities: str | Iterable[str] | None, hexapod: Hexapod) -> tuple[st
 
 def evaluate(
     hexapod: Hexapod,
-    rows: Array,
+    poses: Array | tuple[Array, Array],
     quantities: tuple[str, ...],
     joint: JointModel,
     threads: int,
     limits: _core.SweepLimits | None = None,
 ) -> dict[str, Any]:
-    """The quantities and `status` at poses, rows (n, 6) or (n, 12), from the compiled kernel.
+    """The quantities and `status` at poses from the compiled kernel.
+
+    poses: rows (n, 6) or (n, 12), or positions (n, 3) and rotations, quaternions (n, 4) or matrices (n, 9).
 
     limits: `kernel_limits(hexapod)`, for those who call often.
     """
     limits = kernel_limits(hexapod) if limits is None else limits
-    found = _core.sweep(hexapod.packed, as_joint(joint), rows, _asked(quantities), limits, threads)
+    found = _core.sweep(hexapod.packed, as_joint(joint), poses, _asked(quantities), limits, threads)
     return {name: found[name] for name in (*quantities, "status")}
 
 

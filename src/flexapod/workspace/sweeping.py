@@ -14,7 +14,7 @@ from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.mechanics.inputs import as_joint
-from flexapod.workspace.pose_sets import GridPoses, PoseSet, six_numbers
+from flexapod.workspace.pose_sets import GridPoses, PoseNumbers, PoseSet
 from flexapod.workspace.quantities import (
     QUANTITIES,
     attributes,
@@ -116,12 +116,13 @@ def sweep(
     points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities, hexapod)
     as_joint(joint)
     _check_memory(points.count, wanted)
-    rows = points.rows(0, points.count)
-    found = evaluate(hexapod, rows, wanted, joint, thread_count(threads))
+    poses = points.numbers()
+    turned = () if isinstance(poses, np.ndarray) and poses.shape[1] == 6 else ("rpy",)
+    found = evaluate(hexapod, poses, (*wanted, *turned), joint, thread_count(threads))
     status = found["status"]
     if status[0] == _not_finite() and (status == status[0]).all():
         raise PoseError(f"all {points.count} poses hold NaN or infinity; at least one must be finite.")
-    return dataset(points, rows, found, provenance(hexapod, joint))
+    return dataset(points, _columns(poses, found.pop("rpy", None)), found, provenance(hexapod, joint))
 
 
 def _check_memory(count: int, quantities: tuple[str, ...]) -> None:
@@ -143,11 +144,18 @@ def _not_finite() -> int:
     return next(code for code, word in statuses().items() if word == "not_finite")
 
 
-def dataset(points: PoseSet, rows: Array, found: dict[str, Any], attrs: dict[str, Any]) -> xr.Dataset:
+def _columns(poses: PoseNumbers, rpy: Array | None) -> list[Array]:
+    """The six coordinates, (n,) each; rpy: roll, pitch, yaw of poses that have other numbers."""
+    position = poses if isinstance(poses, np.ndarray) else poses[0]
+    angles = position[:, 3:] if rpy is None else rpy
+    return [*position[:, :3].T, *angles.T]
+
+
+def dataset(points: PoseSet, columns: list[Array], found: dict[str, Any], attrs: dict[str, Any]) -> xr.Dataset:
     """Results in the order of the poses, as a Dataset with units."""
     import xarray as xr
 
-    coords = coordinates(points, rows)
+    coords = coordinates(points, columns)
     variables = {}
     for name, values in found.items():
         trailing = QUANTITIES[name].trailing if name in QUANTITIES else ""
@@ -165,10 +173,12 @@ def dataset(points: PoseSet, rows: Array, found: dict[str, Any], attrs: dict[str
     return xr.Dataset(variables, coords, attrs)
 
 
-def coordinates(points: PoseSet, rows: Array) -> dict[str, Any]:
-    """The six pose coordinates as xarray takes them: axes of a grid, or one value a pose."""
+def coordinates(points: PoseSet, columns: list[Array]) -> dict[str, Any]:
+    """The six pose coordinates as xarray takes them: axes of a grid, or one value a pose of each of six columns."""
     if isinstance(points, GridPoses):
         axes = {name: (name if name in points.dims else (), points.axes[name]) for name in AXES}
         return {name: (dims, axis if dims else axis[0], attributes(name)) for name, (dims, axis) in axes.items()}
-    rows = six_numbers(rows)
-    return {name: (points.dims, rows[:, k].reshape(points.shape), attributes(name)) for k, name in enumerate(AXES)}
+    return {
+        name: (points.dims, column.reshape(points.shape), attributes(name))
+        for name, column in zip(AXES, columns, strict=True)
+    }

@@ -1,0 +1,90 @@
+// Questions at one pose for one instruction set, compiled as sweep/kernel.cpp is.
+#include "decomposition/singular_lanes.hpp"
+#include "model/modes.hpp"
+#include "one_pose/tangent.hpp"
+#include "one_pose/task.hpp"
+
+namespace flexapod {
+namespace {
+
+using one_pose_task::State;
+
+const MachineAtPose& machine_at(const void* machine) { return *static_cast<const MachineAtPose*>(machine); }
+const Motion<double>& motion(const double* numbers) { return *reinterpret_cast<const Motion<double>*>(numbers); }
+const Vec6<double>& vec6(const double* numbers) { return *reinterpret_cast<const Vec6<double>*>(numbers); }
+
+void* new_machine(const double* design, Joint joint) {
+  return new MachineAtPose(*reinterpret_cast<const Design<double>*>(design), joint);
+}
+void delete_machine(void* machine) { delete static_cast<MachineAtPose*>(machine); }
+
+/// B = L^-1 F of the springs along the legs.
+FLEXAPOD_FLAT SpringMatrix<double> scaled_springs(const MachineAtPose& m, const Pose<double>& platform,
+                                                  const Pose<double>& base) {
+  SpatialInertia<Lanes> J{};
+  double h[6][leg_groups * Lanes::lanes], length[leg_groups * Lanes::lanes];
+  for (int g = 0; g < leg_groups; ++g) {
+    const LegPlaces::Group at = leg_places(m.legs, g, platform, base);
+    const LegAxes<Lanes> leg(at.S, at.k, m.legs.joint);
+    add_leg_inertia(J, leg, m.legs.group[g].inertia, at.q_p);
+    const Vec6<Lanes> column = leg_wrench(at.q_p, leg.s());
+    for (int r = 0; r < 6; ++r) column[r].store(h[r] + g * Lanes::lanes);
+    leg.L.store(length + g * Lanes::lanes);
+  }
+  SpatialInertia<double> all = platform_inertia(m.legs.design, platform.R);
+  all.top = all.top + sum(J.top), all.bottom = all.bottom + sum(J.bottom);
+  for (int i = 0; i < 3; ++i) all.bottom_left.row[i] += sum(J.bottom_left.row[i]);
+  SpringMatrix<double> B;
+  for (int j = 0; j < 6; ++j) {
+    const double root = std::sqrt(m.machine.stiffness(j, length[j]));
+    for (int r = 0; r < 6; ++r) B[r][j] = root * h[r][j];
+  }
+  Cholesky<double>(all.matrix()).forward_all(B);
+  return B;
+}
+
+template <Wanted wanted> void frequencies_along(const MachineAtPose& m, const State& at, int count, double* omega) {
+  const SpringMatrix<double> B = scaled_springs(m, motion(at.platform).pose, motion(at.base).pose);
+  const auto [share, sum] = singular_squares<wanted, double>([&] { return B; });
+  for (int i = 0; i < count; ++i) omega[i] = sum < 1e300 ? std::sqrt(sum * share[i]) : NAN;
+}
+
+void frequencies(const void* machine, const State& at, int count, double* omega) {
+  const MachineAtPose& m = machine_at(machine);
+  if (m.machine.features.others()) {
+    const Pose<double>&platform = motion(at.platform).pose, &base = motion(at.base).pose;
+    const Modes modes =
+        natural_modes(m.machine, Geometry<double>(m.machine.design, platform, base), platform.R, base.R);
+    std::copy_n(modes.omega, count, omega);
+  } else if (count == 1) {
+    frequencies_along<Wanted::lowest>(m, at, 1, omega);
+  } else {
+    frequencies_along<Wanted::all>(m, at, 6, omega);
+  }
+}
+
+void accelerations(const void* machine, const State& at, const double* leg_force, const double* wrench,
+                   double* acceleration) {
+  const Motion<double>& platform = motion(at.platform);
+  const Vec6<double> found = forward_dynamics(machine_at(machine).legs, platform, motion(at.base), vec6(leg_force),
+                                              external_wrench(platform.pose.R, vec6(wrench)));
+  std::copy_n(found.a, 6, acceleration);
+}
+
+void tangent(const void* machine, const State& at, const double* wrench, const double* unstretched,
+             double (*matrices)[36]) {
+  RestLoad load{vec6(wrench), {}};
+  std::copy_n(unstretched, 6, load.L_0);
+  const TangentAtRest of(machine_at(machine), motion(at.platform).pose, motion(at.base).pose, load);
+  const Tangent& t = of.found;
+  for (const Mat6<double>* m : {&t.M, &t.C, &t.K, &t.M_b, &t.C_b, &t.K_b, &t.H})
+    std::copy_n(&m->a[0][0], 36, *matrices++);
+}
+
+}  // namespace
+
+extern const one_pose_task::Kernel one_pose_kernel;
+const one_pose_task::Kernel one_pose_kernel = {FLEXAPOD_ISA, &new_machine,   &delete_machine,
+                                               &frequencies, &accelerations, &tangent};
+
+}  // namespace flexapod
