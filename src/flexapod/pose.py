@@ -36,11 +36,12 @@ MotionLike: TypeAlias = "Pose | Motion | ArrayLike"
 def vectors(value: ArrayLike, name: str, width: int = 3, error_type: type[FlexapodError] = PoseError) -> Array:
     """A copy of `value` as finite float64 of shape (..., width); raises `error_type` otherwise."""
     try:
-        array = np.ascontiguousarray(floats(value))
+        array = floats(value)
     except (TypeError, ValueError) as error:
         raise error_type(f"{name} is {shown(value)}; it must hold {width} numbers.") from error
     if array.ndim == 0 or array.shape[-1] != width:
         raise error_type(f"{name} has shape {array.shape}; its last axis must hold {width} numbers.")
+    array = np.ascontiguousarray(array)
     if not _core.all_finite(array, threads_for(array.size)):
         raise error_type(f"{name} holds NaN or infinity; all its numbers must be finite.")
     return array

@@ -33,11 +33,12 @@ def checked_matrices(rotation: Any) -> Array:
     matrix = rotation.as_matrix() if made else rotation
     try:
         # a copy, unless it was just made: a pose does not change with its maker's arrays
-        matrix = np.ascontiguousarray(floats(matrix, copy=not made))
+        matrix = floats(matrix, copy=not made)
     except (TypeError, ValueError) as error:
         raise PoseError(f"rotation is {shown(rotation)}; {_ROTATION}") from error
     if matrix.ndim < 2 or matrix.shape[-2:] != (3, 3):
         raise PoseError(f"rotation has shape {matrix.shape}; {_ROTATION}")
+    matrix = np.ascontiguousarray(matrix)
     if not _core.all_rotate(matrix, threads_for(matrix.size // 9)):
         raise PoseError("rotation is not a rotation matrix: R R^T must be the identity to 1e-9 and det R be +1.")
     return matrix
