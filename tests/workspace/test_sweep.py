@@ -47,6 +47,8 @@ def test_every_quantity_is_that_of_the_single_pose_function(name, joint):
         "lowest_stiffness": 1 / np.linalg.eigvalsh(compliance)[:, -1],
         "universal_moment": np.linalg.norm(moments.universal_moment, axis=-1),
         "spherical_moment": np.abs(moments.bending_moment),
+        "leg_compression": fx.inverse_dynamics(design, pose, joint=joint).max(axis=1),
+        "leg_tension": -fx.inverse_dynamics(design, pose, joint=joint).min(axis=1),
         "within_limits": fx.check_limits(design, pose).ok,
     }
     assert set(expected) == set(QUANTITIES)

@@ -53,6 +53,7 @@ void bind_designs(nb::module_& m) {
            })
       .def("force_transformation", [](const DesignDirections& self) { return arrays(self.force_transformation()); })
       .def("stiffness", [](const DesignDirections& self) { return arrays(self.stiffness()); })
+      .def("held_wrench", [](const DesignDirections& self) { return arrays(self.held_wrench()); })
       .def("legs", [](const DesignDirections& self) {
         LegGradient found = self.legs();
         return nb::make_tuple(arrays(std::move(found.length)), arrays(std::move(found.distance)),

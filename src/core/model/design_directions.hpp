@@ -6,6 +6,7 @@
 
 #include "model/design_gradient.hpp"
 #include "model/leg_distance.hpp"
+#include "model/statics.hpp"
 #include "numbers/array.hpp"
 
 namespace flexapod {
@@ -104,6 +105,17 @@ class DesignDirections {
         for (size_t a = 0; a < 36; ++a) K[a / 6][a % 6] += others[a / 6][a % 6];
       }
       for (size_t a = 0; a < 36; ++a) found.put(i, a, K[a / 6][a % 6], block.first, block.count);
+    });
+    return found;
+  }
+
+  /// The wrench at the reference point that leg forces hold at rest, (n, 6): weight, springs of joints and suspension.
+  ValueGradient held_wrench() const {
+    ValueGradient found(n_, 6, m_);
+    for_each([&](const Block& block, const Machine<Seed>& machine, const Geometry<Seed>& g, const Pose<Seed>& pose,
+                 size_t i) {
+      const Vec6<Seed> wrench = inverse_wrench(machine, g, at_rest(pose), at_rest(Pose<Seed>()));
+      for (int a = 0; a < 6; ++a) found.put(i, static_cast<size_t>(a), wrench[a], block.first, block.count);
     });
     return found;
   }

@@ -142,7 +142,7 @@ def _inside(place: Place, pose: np.ndarray) -> bool:
 def _breaks(given: Certificate) -> bool:
     assert given.pose is not None
     if given.claim == "limits":
-        return not check_limits(given.hexapod, given.pose).ok
+        return not check_limits(given.hexapod, given.pose, joint=given.joint).ok
     if given.claim == "index" and given.broken:
         return bool(np.isnan(evaluate(given.hexapod, given.pose[None], ("omega_1",), given.joint, 1)["omega_1"][0]))
     if given.claim == "index" and given.wanted is not None:

@@ -11,6 +11,7 @@ from flexapod.certificates.proving import Setup, prove
 from flexapod.certificates.question import Asked, checked_gap, checked_level, limited, question
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
+from flexapod.workspace.limit_margins import refuse_force_limits
 from flexapod.workspace.store.dask_cluster import Cluster
 
 
@@ -143,6 +144,7 @@ def certify_limits(
     asked = question(hexapod, region, "universal")
     if not limited(hexapod):
         raise ArgumentError(f"{hexapod.name!r} has no limits, so that there is nothing to prove. Add [limits] to it.")
+    refuse_force_limits(hexapod)
     setup = Setup.of(
         time_limit=time_limit,
         threads=threads,

@@ -128,7 +128,7 @@ def lowered(question: Question, at: Array) -> Known:
     box = Box(*place.parts[int(inside.argmax())])
     if not box.free:
         return Known(index.root(six), six)
-    limits = margins_to_keep(question.hexapod, not question.within_limits)
+    limits = margins_to_keep(question.hexapod, not question.within_limits, question.joint)
     end = BoxSearch(index, box, limits, 1, 0, 1).descend(six)
     return min(Known(index.root(six), six), Known(index.root(end), end), key=lambda one: one.value)
 

@@ -15,6 +15,7 @@ from flexapod.errors import ArgumentError, DesignError, PoseError, shown
 from flexapod.mechanics.inputs import as_hexapod, as_joint
 from flexapod.pose import Pose
 from flexapod.workspace.box import Box, Workspace
+from flexapod.workspace.limit_margins import refuse_force_limits
 from flexapod.workspace.proof import Boxes, PathPieces, Place, Prover
 from flexapod.workspace.region import Curve, RegionLike, as_region, home_of
 
@@ -86,6 +87,8 @@ def question(
             f"within_limits is True, but {hexapod.name!r} has no limits, so that all poses are. Leave it out, or add "
             "[limits] to the design."
         )
+    if within_limits:
+        refuse_force_limits(hexapod)
     if within_limits and joint == "spin_free" and hexapod.limits.universal_moment is not None:
         raise ArgumentError(
             f"{hexapod.name!r} limits the moment of its universal joints (limits.universal_moment); which poses keep "

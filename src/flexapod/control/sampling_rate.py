@@ -91,7 +91,7 @@ def sampling_time(
             search = BoxSearch(
                 SquaredFrequency(hexapod, joint, mode=6, highest=True),
                 box,
-                margins_to_keep(hexapod, all_poses),
+                margins_to_keep(hexapod, all_poses, joint),
                 whole(samples, "samples"),
                 seed=0,
                 threads=thread_count(threads),

@@ -22,8 +22,8 @@ from flexapod.design.value_checks import check_value
 from flexapod.errors import DesignError, shown, told_apart
 
 MOST_IN_SERIES = 5  #: springs with one leg
-#: Fields of `Limits` that a load or a motion can exceed, and no pose alone.
-_OF_A_LOAD = ("leg_compression", "leg_tension", "leg_rate", "leg_acceleration", "leg_power")
+#: Fields of `Limits` that a motion can exceed, and no machine at rest.
+_OF_A_MOTION = ("leg_rate", "leg_acceleration", "leg_power")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -306,9 +306,10 @@ class Limits(Value):
 
     Notes
     -----
-    The paper's machines have no limits. `flexapod.check_limits` says whether a pose keeps those of lengths, angles and
-    distances. Those of forces, speeds and power are of a load or a motion: `flexapod.envelope`,
-    `flexapod.load_cases` and `flexapod.paths.path_loads` say whether they are kept.
+    The paper's machines have no limits. `flexapod.check_limits` says whether a pose at rest keeps those of lengths,
+    angles, distances, moments, and of leg forces under the machine's weight. Those of speeds, accelerations and power
+    are of a motion: `flexapod.envelope`, `flexapod.plan_path` and `flexapod.paths.path_loads` say whether they are
+    kept, and whether forces are on the way; `flexapod.load_cases` takes other loads at rest.
 
     Examples
     --------
@@ -348,10 +349,10 @@ class Limits(Value):
 
     @property
     def given(self) -> bool:
-        """Whether poses are limited: lengths, angles or distances of the legs."""
-        return any(getattr(self, item.name) is not None for item in fields(self) if item.name not in _OF_A_LOAD)
+        """Whether poses at rest are limited: lengths, angles, distances and forces of the legs, moments of joints."""
+        return any(getattr(self, item.name) is not None for item in fields(self) if item.name not in _OF_A_MOTION)
 
     @property
-    def of_loads_given(self) -> bool:
-        """Whether loads or motions are limited: forces, speeds, accelerations or power of the legs."""
-        return any(getattr(self, name) is not None for name in _OF_A_LOAD)
+    def of_motions(self) -> tuple[str, ...]:
+        """Names of the limits given that only a motion can exceed: speeds, accelerations and power of the legs."""
+        return tuple(name for name in _OF_A_MOTION if getattr(self, name) is not None)

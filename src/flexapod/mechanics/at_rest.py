@@ -127,7 +127,9 @@ def pose_state(hexapod: Hexapod, pose: PoseLike | None = None, *, joint: JointMo
         describe_shapes(hexapod, where, modes.shape, None, joint),
         linear,
         tangent,
-        pose_cautions(hexapod, where, modes.omega, condition, tangent, None if linear is None else linear.rest),
+        pose_cautions(
+            hexapod, where, modes.omega, condition, tangent, None if linear is None else linear.rest, joint=joint
+        ),
     )
 
 

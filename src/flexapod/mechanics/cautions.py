@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod import _core
-from flexapod.conventions import AXES, Array, Complex
+from flexapod.conventions import AXES, Array, Complex, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import states
 from flexapod.mechanics.joint_limits import check_limits
@@ -117,6 +117,8 @@ def pose_cautions(
     condition: float,
     tangent: Tangent | None,
     rest: Equilibrium | None = None,
+    *,
+    joint: JointModel = "universal",
 ) -> list[Caution]:
     """All cautions about one pose, the gravest first.
 
@@ -128,7 +130,7 @@ def pose_cautions(
         *_unsupported(condition, tangent),
         *([] if tangent is None else _stability(hexapod, pose, tangent)),
         *axes_along_legs(hexapod, pose),
-        *(Caution("limit", f"Limit exceeded: {text}.") for text in check_limits(hexapod, pose).exceeded),
+        *(Caution("limit", f"Limit exceeded: {text}.") for text in check_limits(hexapod, pose, joint=joint).exceeded),
         *_angles_without_home(hexapod),
         *legs_that_cross(hexapod, pose),
         *([] if rest is None else soft_legs(hexapod, rest)),

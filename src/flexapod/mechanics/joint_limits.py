@@ -7,12 +7,14 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import _core
-from flexapod.conventions import LEG_PAIRS, Array
+from flexapod.conventions import LEG_PAIRS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError, told_apart
-from flexapod.mechanics.inputs import States, pose_or_home, states
+from flexapod.mechanics.inputs import States, as_joint, pose_or_home, states
 from flexapod.mechanics.joint_springs import joint_moments
 from flexapod.mechanics.kinematics import force_transformation, home_pose, inverse_kinematics
+from flexapod.mechanics.limited import LimitedQuantity
+from flexapod.mechanics.load_limits import static_force_excess
 from flexapod.pose import PoseLike, as_pose
 from flexapod.showing import in_notebooks
 
@@ -153,8 +155,14 @@ def leg_distances(hexapod: Hexapod, at: States) -> Array:
     return _core.leg_distances(hexapod.packed, at.platform, at.base).reshape(*at.shape, len(LEG_PAIRS))
 
 
-def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None) -> LimitsCheck:
-    """Check leg lengths, joint angles, moments of flexures and the distance between legs against the design's limits.
+def check_limits(
+    hexapod: Hexapod,
+    pose: PoseLike | None = None,
+    *,
+    base: PoseLike | None = None,
+    joint: JointModel = "universal",
+) -> LimitsCheck:
+    """Check all that the design limits at a pose at rest: lengths, angles, moments, distances and forces.
 
     Parameters
     ----------
@@ -165,6 +173,8 @@ def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLi
         home pose.
     base : Pose or array_like, optional
         Pose of the base in the inertial frame. Left out, the base frame is the inertial frame.
+    joint : {"universal", "spin_free"}
+        Model of the base joints, which moments and forces depend on.
 
     Returns
     -------
@@ -183,8 +193,10 @@ def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLi
     Notes
     -----
     Joint angles are those of `joint_angles`, the distance is that of `flexapod.mechanics.leg_distance`. The moments are
-    those of `joint_moments` in the exact joint model: of a base joint about both axes together, and of a platform joint
-    across the leg. Joints without springs have none.
+    those of `joint_moments`: of a base joint about both axes together, and of a platform joint across the leg. Joints
+    without springs have none. Leg forces are those of `hold`, under the machine's own weight; at a singular pose, where
+    none hold, a limit of them is not kept. Limits of leg rate, acceleration and power are of a motion and are not
+    checked here.
 
     Examples
     --------
@@ -192,11 +204,12 @@ def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLi
     >>> bool(check.ok), check.exceeded[0]
     (False, 'leg 1: length 3.723 m is above 3.261 m')
     """
+    as_joint(joint)
     one = not pose_or_home(hexapod, pose).shape and (base is None or not as_pose(base, "base").shape)
     shape = () if one else states(hexapod, pose, base).shape
     ok = np.ones(shape, dtype=bool)
     words: list[str] = []
-    for quantity in limit_excess(hexapod, pose, base=base):
+    for quantity in limit_excess(hexapod, pose, base=base, joint=joint):
         _, _, value, least, most = quantity
         kept = np.asarray((value >= least) & (value <= most))
         ok &= kept.all(axis=-1) if kept.ndim > len(shape) else kept  # of each leg, or of all of them
@@ -205,20 +218,15 @@ def check_limits(hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLi
     return LimitsCheck(ok, tuple(words))
 
 
-class LimitedQuantity(NamedTuple):
-    """A limited quantity: its name and unit, its values and its bounds."""
-
-    name: str
-    unit: str
-    value: Array
-    least: Array | float
-    most: Array | float
-
-
 def limit_excess(
-    hexapod: Hexapod, pose: PoseLike | None = None, *, base: PoseLike | None = None
+    hexapod: Hexapod,
+    pose: PoseLike | None = None,
+    *,
+    base: PoseLike | None = None,
+    joint: JointModel = "universal",
+    forces: bool = True,
 ) -> list[LimitedQuantity]:
-    """Every quantity that the design limits, with its bounds."""
+    """Every quantity that the design limits at rest, with its bounds. forces: those of the weight as well."""
     limits = hexapod.limits
     result = []
     law = hexapod.legs.stiffness_law
@@ -236,14 +244,18 @@ def limit_excess(
             if most is not None:
                 value = np.degrees(getattr(angles, name))
                 result.append(LimitedQuantity(f"{name} joint angle", "deg", value, -np.inf, float(np.degrees(most))))
-    result += moment_excess(hexapod, pose, base)
+    result += moment_excess(hexapod, pose, base, joint)
     if limits.leg_distance is not None:
         distance = np.asarray(leg_distance(hexapod, pose, base=base))
         result.append(LimitedQuantity("least distance between legs", "m", distance, limits.leg_distance, np.inf))
+    if forces:
+        result += static_force_excess(hexapod, pose, base, joint)
     return result
 
 
-def moment_excess(hexapod: Hexapod, pose: PoseLike | None, base: PoseLike | None = None) -> list[LimitedQuantity]:
+def moment_excess(
+    hexapod: Hexapod, pose: PoseLike | None, base: PoseLike | None = None, joint: JointModel = "universal"
+) -> list[LimitedQuantity]:
     """The moments of the springs in the joints that the design limits, with their bounds."""
     limits = hexapod.limits
     if limits.universal_moment is None and limits.spherical_moment is None:
@@ -252,7 +264,7 @@ def moment_excess(hexapod: Hexapod, pose: PoseLike | None, base: PoseLike | None
         shape = states(hexapod, pose, base).shape
         bends = {"universal": np.zeros((*shape, 6)), "spherical": np.zeros((*shape, 6))}
     else:
-        found = joint_moments(hexapod, pose, base=base)
+        found = joint_moments(hexapod, pose, base=base, joint=joint)
         bends = {"universal": np.linalg.norm(found.universal_moment, axis=-1), "spherical": found.bending_moment}
     most = {"universal": limits.universal_moment, "spherical": limits.spherical_moment}
     return [

@@ -150,6 +150,47 @@ class JointAngles(ConstraintQuantity):
         return _flat(np.arccos(np.clip(cosine, -1, 1)), -slope / sine[..., None])
 
 
+@dataclass(frozen=True)
+class JointMoments(ConstraintQuantity):
+    """Bending moments of the springs in the joints of one kind."""
+
+    joint: Literal["universal", "spherical"]
+    unit = "N m"
+
+    @property
+    def quantities(self) -> tuple[str, ...]:  # type: ignore[override]
+        return (f"{self.joint}_moment",)
+
+    def columns(self, found: Found, numbers: Array) -> Array:
+        return found[f"{self.joint}_moment"]
+
+    def derivatives(self, at: DesignDerivatives) -> Values:
+        mine = slice(0, 6) if self.joint == "universal" else slice(6, 12)
+        square, slope = (part[:, mine] for part in at.joint_moment)
+        moment = np.sqrt(np.maximum(square, 1e-24))  # a joint that is hardly bent bounds nothing
+        return _flat(moment, 0.5 * slope / moment[..., None])
+
+
+@dataclass(frozen=True)
+class LegForces(ConstraintQuantity):
+    """Forces with which legs push, or pull, at rest under the machine's weight."""
+
+    sense: Literal["compression", "tension"]
+    unit = "N"
+
+    @property
+    def quantities(self) -> tuple[str, ...]:  # type: ignore[override]
+        return (f"leg_{self.sense}",)
+
+    def columns(self, found: Found, numbers: Array) -> Array:
+        return found[f"leg_{self.sense}"][:, None]
+
+    def derivatives(self, at: DesignDerivatives) -> Values:
+        sign = 1.0 if self.sense == "compression" else -1.0
+        force, slope = at.static_force
+        return _flat(sign * force, sign * slope)
+
+
 class LegDistance(ConstraintQuantity):
     """Smallest distance of the axes of two legs."""
 

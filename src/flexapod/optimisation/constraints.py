@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal, get_args
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from flexapod.checks import one_of, positive
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.parts import Limits
 from flexapod.errors import ArgumentError
 from flexapod.optimisation import constraint_quantities as quantities
 from flexapod.optimisation.constraint_quantities import ConstraintQuantity, Side
@@ -231,7 +233,10 @@ class Deflection(OneBound):
 @in_notebooks
 @dataclass(frozen=True)
 class DesignLimits(Constraint):
-    """Keep the limits of the design itself: leg lengths, joint angles and clearance of the legs.
+    """Keep the limits of the design itself: lengths, clearance and forces of legs, angles and moments of joints.
+
+    Forces are those of rest under the machine's weight. Limits of leg rate, acceleration and power are of a motion,
+    which poses do not have: they are not kept.
 
     Parameters
     ----------
@@ -257,6 +262,31 @@ class DesignLimits(Constraint):
                 found += JointAngle(joint, most, region=where).requirements(hexapod, region, measure)
         if limits.leg_distance:
             found += LegClearance(limits.leg_distance, region=where).requirements(hexapod, region, measure)
+        found += [*_moment_limits(limits, where), *_force_limits(limits, where)]
         if not found:
-            raise ArgumentError(f"{hexapod.name!r} has no [limits] to respect. Add them, or leave DesignLimits out.")
+            motions = f" of poses (those of {', '.join(limits.of_motions)} are of motions)" * bool(limits.of_motions)
+            raise ArgumentError(
+                f"{hexapod.name!r} has no [limits]{motions} to respect. Add them, or leave DesignLimits out."
+            )
         return found
+
+
+def _moment_limits(limits: Limits, where: Region) -> Iterator[Requirement]:
+    for joint in ("universal", "spherical"):
+        most = getattr(limits, f"{joint}_moment")
+        if most is not None:
+            quantity = quantities.JointMoments(joint)
+            yield Requirement(f"moment of {joint} joints", quantity, "most", np.array(most), where)
+
+
+def _force_limits(limits: Limits, where: Region) -> Iterator[Requirement]:
+    for sense in ("compression", "tension"):
+        most = getattr(limits, f"leg_{sense}")
+        if most == 0:
+            raise ArgumentError(
+                f"limits.leg_{sense} is 0 N; a search takes margins as parts of the limit, which must be > 0 for it. "
+                "Give a small force in its place."
+            )
+        if most is not None:
+            quantity = quantities.LegForces(sense)
+            yield Requirement(f"{sense} of legs at rest", quantity, "most", np.array(most), where)

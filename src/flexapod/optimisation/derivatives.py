@@ -11,6 +11,7 @@ from flexapod.conventions import Array
 from flexapod.design.layout import HOME
 from flexapod.pose import Motion, Pose
 from flexapod.workspace.coordinates import twist_of_coordinates
+from flexapod.workspace.static_forces import static_forces
 
 _NO_HOME = np.zeros((0, _core.motion_size)), np.zeros((0, 6))
 
@@ -72,6 +73,16 @@ class DesignDerivatives:
     def joint_cosine(self) -> tuple[Array, Array]:
         """Cosines of the angles of universal, then of spherical joints, (k, 12) and (k, 12, n)."""
         return self._legs[2]
+
+    @property
+    def joint_moment(self) -> tuple[Array, Array]:
+        """Squares of the bending moments of universal, then of spherical joints, (k, 12) N2 m2 and (k, 12, n)."""
+        return self._legs[3]
+
+    @cached_property
+    def static_force(self) -> tuple[Array, Array]:
+        """Of the legs at rest under the weight, compression > 0, (k, 6) N and (k, 6, n)."""
+        return static_forces(self._directions)
 
     @cached_property
     def _legs(self) -> tuple[tuple[Array, Array], ...]:

@@ -162,7 +162,7 @@ def robustness(
         raise ArgumentError(f"sensitivity is {sensitivity}; it must be a power of two, at least 16, such as 1024.")
     where = as_region(region)
     rows = where.rows(home_of(hexapod, where), whole(pose_samples, "pose_samples"))
-    of, rows = len(rows), rows if all_poses else _within_limits(hexapod, rows)
+    of, rows = len(rows), rows if all_poses else _within_limits(hexapod, rows, joint)
     index = _Index(ensemble, rows, joint, threads)
     nominal = index.nominal(hexapod.name)
     u = Sobol(len(ensemble.names), seed).points(0, samples)
@@ -194,11 +194,11 @@ def robustness(
     )
 
 
-def _within_limits(hexapod: Hexapod, rows: Array) -> Array:
+def _within_limits(hexapod: Hexapod, rows: Array, joint: JointModel) -> Array:
     """The poses that the design's own limits allow. Raises PoseError where they allow none."""
     if not hexapod.limits.given:
         return rows
-    kept = np.atleast_1d(check_limits(hexapod, Pose.from_rpy(*rows.T)).ok)
+    kept = np.atleast_1d(check_limits(hexapod, Pose.from_rpy(*rows.T), joint=joint).ok)
     if not kept.any():
         raise none_within(len(rows))
     return rows[kept]

@@ -246,7 +246,7 @@ def _samples(hexapod: Hexapod, path: Trajectory, times: Array, values: Array, jo
     variables: dict[str, Any] = {
         "index": ("time", values, in_unit("rad/s", "dynamic stability index")),
         "condition_number": ("time", condition_number(hexapod, pose), in_unit("1", "condition number of H (metres)")),
-        "within_limits": ("time", check_limits(hexapod, pose).ok),
+        "within_limits": ("time", check_limits(hexapod, pose, joint=joint).ok),
         "weight": ("time", weight, in_unit("1")),
         "cumulative_index": ("time", cumulative, in_unit("rad", "integral of weight times index")),
         "position": (("time", "axis"), pose.position, in_unit("m")),

@@ -8,6 +8,7 @@ import numpy as np
 
 from flexapod.checks import positive
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.parts import Limits
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.kinematics import leg_rates
 from flexapod.pose import Motion
@@ -51,6 +52,11 @@ class LegSpeed:
                 positive(value, f"{name} of the leg speed", unit)
         if not (np.isfinite(self.rate) or np.isfinite(self.acceleration)):
             raise ArgumentError("leg speed has no bound; give a rate (m/s), an acceleration (m/s2), or both.")
+
+    def within(self, limits: Limits) -> LegSpeed:
+        """The lesser of these speeds and those that a design allows."""
+        allowed = (limits.leg_rate or np.inf, limits.leg_acceleration or np.inf)
+        return LegSpeed(min(self.rate, allowed[0]), min(self.acceleration, allowed[1]))
 
 
 def duration(hexapod: Hexapod, motions: Motion, speed: LegSpeed) -> float:

@@ -118,7 +118,7 @@ def path_loads(
             "power": (grid, leg_force * legs.rate, in_unit("W", "actuator power")),
             "stroke": ("leg", np.ptp(legs.length, axis=0), in_unit("m", "leg travel")),
             "peak_force": ("leg", np.abs(leg_force).max(axis=0), in_unit("N", "peak leg force")),
-            "within_limits": ("time", check_limits(hexapod, motion.pose).ok),
+            "within_limits": ("time", check_limits(hexapod, motion.pose, joint=joint).ok),
             "loads_within_limits": ("time", _kept(hexapod, leg_force, legs)),
         },
         {"time": ("time", times, in_unit("s")), "leg": list(LEGS)},

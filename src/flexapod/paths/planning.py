@@ -81,7 +81,9 @@ def plan_path(
     The bound on the index is that of [1]_, conclusion 1. Where the straight line does not keep the requirements, BIT*
     [2]_ (from OMPL) finds a way round, on the side of the singular poses where the ends are. SLSQP [3]_ then makes it
     short or quick and smooth. A path is taken only where it passes no singular pose and the minima of all its margins,
-    refined between 800 instants, are >= 0.
+    refined between 800 instants, are >= 0. Where the design limits forces, speeds, accelerations or power of the legs,
+    a path timed by a LegSpeed takes as long as it needs to keep them; one of a given duration that exceeds them is
+    refused, with the duration in which it would keep them.
 
     References
     ----------

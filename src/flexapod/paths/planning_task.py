@@ -17,6 +17,7 @@ from flexapod.mechanics.kinematics import det_sign
 from flexapod.paths.analysis import dips, path_index
 from flexapod.paths.chart import Chart
 from flexapod.paths.leg_speed import LegSpeed, duration
+from flexapod.paths.load_timing import exceeded, least_duration
 from flexapod.paths.ompl_planner import search
 from flexapod.paths.plan import Plan
 from flexapod.paths.requirements import Margins, PathRequirements
@@ -55,6 +56,9 @@ class PlanningTask:
         needed = requirements if isinstance(requirements, PathRequirements) else PathRequirements(requirements)
         self.hexapod, self.required, self.objective, self.timing = hexapod, needed, objective, timing
         self.margins = Margins(hexapod, needed)
+        self.limited = self.margins.limited
+        if isinstance(timing, LegSpeed):
+            self.timing = timing.within(self.limited.limits)
         both = Pose(np.stack([start.position, goal.position]), np.stack([start.matrix, goal.matrix]))
         for pose, name in ((start, "start"), (goal, "goal")):
             self.margins.check(pose, name)
@@ -144,9 +148,27 @@ class PlanningTask:
         if not isinstance(self.timing, LegSpeed):
             return unit.retimed(float(self.timing))
         motions = unit(np.linspace(0.0, 1.0, 801))
-        return unit.retimed(duration(self.hexapod, motions, self.timing))
+        quick = unit.retimed(duration(self.hexapod, motions, self.timing))
+        needed = least_duration(self.limited, quick, self.required.joint)
+        return quick if needed is None else quick.retimed(needed)
+
+    def check_loads(self, path: Trajectory) -> None:
+        """Raises PathError where the legs exceed limits of force, speed, acceleration or power on the way."""
+        beyond = exceeded(self.limited, path, self.required.joint)
+        if not beyond:
+            return
+        needed = least_duration(self.limited, path, self.required.joint)
+        what = f"in {path.duration:.5g} s the path exceeds the design's limits of leg {' and '.join(beyond)}"
+        if needed is None:
+            raise PathError(f"{what}, and slower as well. Widen the limits, or choose other poses.")
+        raise PathError(
+            f"{what}; it keeps them in {needed:.6g} s. Give it that much time (timing, on the command line "
+            "--duration), or widen the limits."
+        )
 
     def plan(self, path: Trajectory, straight: Trajectory, rough: Pose | None, batches: int) -> Plan:
+        self.check_loads(path)
+
         def least(path: Trajectory) -> float:
             return path_index(self.hexapod, path, joint=self.required.joint, singular="keep").minimum
 

@@ -35,7 +35,8 @@ class PathRequirements:
     clearance : float, optional
         Least distance between leg axes, m, in place of that in the design's limits.
     limits : bool, optional
-        Whether the design's limits are kept.
+        Whether the design's limits are kept: those of poses at rest, leg forces under the weight among them, and those
+        of force, speed, acceleration and power of the legs on the path as it is timed.
     reach : float, optional
         How far the search may leave the box around start and goal, m; half the mean leg length by default.
     turn : float, optional
@@ -125,7 +126,7 @@ class Margins:
             found.append(
                 1 - np.asarray(condition_number(self.hexapod, poses))[:, None] / self.required.condition_number
             )
-        for quantity in limit_excess(self.limited, poses):
+        for quantity in limit_excess(self.limited, poses, joint=self.required.joint):
             value = quantity.value.reshape(poses.shape[0], -1)
             least, most = np.broadcast_to(quantity.least, value.shape), np.broadcast_to(quantity.most, value.shape)
             both = np.isfinite(least) & np.isfinite(most)
@@ -152,7 +153,7 @@ class Margins:
             raise PathError(
                 f"the {name} pose has cond(H) = {told}, above the bound of {bound}. Raise the bound, or move the pose."
             )
-        exceeded = check_limits(self.limited, pose).exceeded
+        exceeded = check_limits(self.limited, pose, joint=required.joint).exceeded
         if exceeded:
             raise PathError(
                 f"the {name} pose is outside the limits: {'; '.join(exceeded)}. Move it, or widen the limits."

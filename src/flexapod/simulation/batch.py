@@ -119,7 +119,7 @@ def simulate_many(
     notes = [note for run, omega in zip(runs, highest, strict=True) for note in of_recordings(run, omega)]
     found = integrate(runs, at, joint=joint, options=options, works=energies, progress=progress)
     each = [one_run(run, found, i, at, told) for i, run in enumerate(runs)]
-    notes = list(dict.fromkeys([*notes, *_of_results(runs, each)]))
+    notes = list(dict.fromkeys([*notes, *_of_results(runs, each, joint)]))
     for note in notes:
         warnings.warn(note, UserWarning, stacklevel=_outside())
     dataset = xr.concat([part.reindex(time=at) for part in each], dim="run", combine_attrs="drop_conflicts")
@@ -144,9 +144,9 @@ def _one_point(runs: Sequence[SimulationRun], point: PointLike) -> Array:
     return places[0] if places else np.zeros(3)
 
 
-def _of_results(runs: Sequence[SimulationRun], each: Sequence[xr.Dataset]) -> list[str]:
+def _of_results(runs: Sequence[SimulationRun], each: Sequence[xr.Dataset], joint: JointModel) -> list[str]:
     """What there is to say of the results; of many runs, of the first for each kind and how many there are."""
-    found = [of_results(run, result) for run, result in zip(runs, each, strict=True)]
+    found = [of_results(run, result, joint) for run, result in zip(runs, each, strict=True)]
     said = [i for i, notes in enumerate(found) if notes]
     if len(runs) == 1 or not said:
         return [note for notes in found for note in notes]

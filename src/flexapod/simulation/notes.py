@@ -7,11 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from flexapod.conventions import LEGS, ROTATIONS, TRANSLATIONS, Array
+from flexapod.conventions import LEGS, ROTATIONS, TRANSLATIONS, Array, JointModel
 from flexapod.errors import ArgumentError
 from flexapod.excitation.excitation import Excitation, Term
-from flexapod.mechanics.joint_limits import LimitedQuantity, limit_excess
+from flexapod.mechanics.joint_limits import limit_excess
 from flexapod.mechanics.kinematics import inverse_kinematics
+from flexapod.mechanics.limited import LimitedQuantity
+from flexapod.mechanics.load_limits import load_excess
 from flexapod.mechanics.viscous_losses import LEFT_OUT, has_losses
 from flexapod.pose import Pose
 from flexapod.simulation.datasets import platform_pose
@@ -63,9 +65,9 @@ def _of_recording(run: SimulationRun, use: str, term: Term, name: str, highest: 
         yield f"begins at {value} in its first row, off zero: {what}. {remedy}"
 
 
-def of_results(run: SimulationRun, result: xr.Dataset) -> list[str]:
+def of_results(run: SimulationRun, result: xr.Dataset, joint: JointModel) -> list[str]:
     """Losses left out, limits of the machine that the motion exceeds, and an energy balance that is off."""
-    return [*_of_losses(run), *_of_limits(run, result), *_of_balance(result)]
+    return [*_of_losses(run), *_of_limits(run, result, joint), *_of_balance(result)]
 
 
 def _of_losses(run: SimulationRun) -> list[str]:
@@ -73,14 +75,20 @@ def _of_losses(run: SimulationRun) -> list[str]:
     return [LEFT_OUT] if has_losses(run.hexapod) else []
 
 
-def _of_limits(run: SimulationRun, result: xr.Dataset) -> list[str]:
-    if not run.hexapod.limits.given or not result.sizes["time"]:
+def _of_limits(run: SimulationRun, result: xr.Dataset, joint: JointModel) -> list[str]:
+    """Forces are those of the run; rates, accelerations and power of actuators are not those of legs that vibrate."""
+    if not (run.hexapod.limits.given and result.sizes["time"]):
         return []
     platform = platform_pose(result)
     base = Pose(result.base_position.values, result.base_rotation.values)
     times = result.time.values
     return [
-        words for quantity in limit_excess(run.hexapod, platform, base=base) for words in _exceeded(quantity, times)
+        words
+        for quantity in (
+            *limit_excess(run.hexapod, platform, base=base, joint=joint, forces=False),
+            *load_excess(run.hexapod, result.leg_force.values),
+        )
+        for words in _exceeded(quantity, times)
     ]
 
 

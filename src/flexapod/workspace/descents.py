@@ -122,8 +122,8 @@ class BoxSearch:
 
     def _inside(self, rows: Array) -> np.ndarray:
         index = self.index
-        kernel = self.limits.kernel if self.limits is not None else None
-        found = evaluate(index.hexapod, rows, ("within_limits",), index.joint_name, self.threads, kernel)
+        kernel, forces = (None, True) if self.limits is None else (self.limits.kernel, not self.limits.only_law)
+        found = evaluate(index.hexapod, rows, ("within_limits",), index.joint_name, self.threads, kernel, forces=forces)
         return found["within_limits"]
 
     def _within(self, even: Array) -> tuple[Array, float]:

@@ -252,7 +252,7 @@ def _check_start(limits: TravelLimits) -> None:
     broken = [name for name, margin in zip(limits.names, margins, strict=True) if not margin >= 0]
     if not broken:
         return
-    words = list(check_limits(hexapod, where).exceeded) or broken
+    words = list(check_limits(hexapod, where, joint=limits.joint).exceeded) or broken
     if bounds.least_index is not None and broken == ["bound of the index"]:
         found = bounds.least_index + margins[limits.names.index("bound of the index")]
         told, bound = told_apart(float(found), bounds.least_index, (5, 5))

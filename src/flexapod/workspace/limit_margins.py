@@ -8,15 +8,19 @@ from typing import NamedTuple
 import numpy as np
 
 from flexapod import _core
-from flexapod.conventions import AXES, LEG_PAIRS, LEGS, Array
+from flexapod.conventions import AXES, LEG_PAIRS, LEGS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME, numbers
-from flexapod.errors import PoseError
+from flexapod.errors import ArgumentError, PoseError
+from flexapod.mechanics.inputs import as_joint
+from flexapod.mechanics.load_limits import force_bounds
 from flexapod.pose import Motion, Pose
 from flexapod.workspace.coordinates import twist_of_coordinates
 from flexapod.workspace.quantities import kernel_limits
+from flexapod.workspace.static_forces import static_forces
 
 _TINY = np.finfo(float).eps
+_FORCES = 45  # the first column of forces
 
 
 def none_within(count: int) -> PoseError:
@@ -27,17 +31,26 @@ def none_within(count: int) -> PoseError:
     )
 
 
+def refuse_force_limits(hexapod: Hexapod) -> None:
+    """Raises ArgumentError for limits of leg forces, of which nothing can be proved yet."""
+    if force_bounds(hexapod.limits) is not None:
+        raise ArgumentError(
+            f"{hexapod.name!r} limits leg forces (limits.leg_compression, limits.leg_tension), of which nothing can be "
+            "proved yet. Leave them out of the design that is proved."
+        )
+
+
 class LimitMargins:
     """Margins of every limit of a design at x, y, z, roll, pitch, yaw (6,), with exact derivatives.
 
     A margin is a share of what it is taken from: of the greatest leg length, of 1 - cos of the largest angle, of the
-    least distance between legs, of the square of the largest moment. Those >= 0 are kept. Each is a smooth function of
-    the pose: the least distance between legs is that of every two of them. `names` says what each margin limits,
-    `kernel` is the same for sweeps. The range of a stiffness law limits the legs' lengths as well; with `only_law`
-    nothing else does.
+    least distance between legs, of the square of the largest moment, of the root of the squares of a leg's force and
+    its limit. Those >= 0 are kept. Each is a smooth function of the pose: the least distance between legs is that of
+    every two of them. `names` says what each margin limits, `kernel` is the same for sweeps. Forces are those of rest,
+    under the weight. The range of a stiffness law limits the legs' lengths as well; with `only_law` nothing else does.
     """
 
-    def __init__(self, hexapod: Hexapod, only_law: bool = False) -> None:
+    def __init__(self, hexapod: Hexapod, only_law: bool = False, joint: JointModel = "universal") -> None:
         own = numbers(hexapod)
         self._design, self._still = own[: HOME.start], np.zeros((len(AXES), HOME.start))
         self._home = np.zeros((0, _core.motion_size))
@@ -47,27 +60,31 @@ class LimitMargins:
         self.kernel, self.only_law = kernel_limits(hexapod, only_law), only_law
         self.names = tuple(bound.name for bound in bounds)
         self._columns = np.array([bound.column for bound in bounds], dtype=int)
-        self._bounds = np.array([bound.value for bound in bounds])
-        self._factor = np.array([bound.sign / bound.scale for bound in bounds])
+        self._bounds, self._sign, self._scale = (
+            np.array([getattr(bound, name) for bound in bounds], dtype=float) for name in ("value", "sign", "scale")
+        )
+        self._joint, self._of_force = as_joint(joint), self._columns >= _FORCES
 
     def __call__(self, six: Array) -> tuple[Array, Array]:
         """Margins (m,), and their derivatives by the six coordinates (m, 6)."""
         at = _core.DesignDirections(
             design=self._design,
-            joint=_core.Joint.universal,  # legs lie the same in both models
+            joint=self._joint,
             platform=Motion(Pose.from_rpy(*six)).packed.reshape(1, -1),
             directions=self._still,
             displacements=np.ascontiguousarray(twist_of_coordinates(six).T[None]),
             home=self._home,
             home_displacements=np.zeros((len(AXES) if len(self._home) else 0, 6)),
         )
-        parts = at.legs()
+        parts = [*at.legs(), *([static_forces(at)] if self._of_force.any() else [])]
         value = np.concatenate([value[0] for value, _ in parts])[self._columns]
         slope = np.concatenate([slope[0] for _, slope in parts])[self._columns]
-        return self._factor * (value - self._bounds), self._factor[:, None] * slope
+        size = np.where(self._of_force, np.hypot(self._scale, value), self._scale)
+        by_value = np.where(self._of_force, (self._scale**2 + self._bounds * value) / size**2, 1.0)
+        return self._sign * (value - self._bounds) / size, (self._sign * by_value / size)[:, None] * slope
 
 
-def margins_to_keep(hexapod: Hexapod, all_poses: bool) -> LimitMargins | None:
+def margins_to_keep(hexapod: Hexapod, all_poses: bool, joint: JointModel = "universal") -> LimitMargins | None:
     """The margins that a pose must keep to count; None where all poses do.
 
     Where all poses are asked for, those outside the range of a stiffness law still have no frequencies.
@@ -75,13 +92,14 @@ def margins_to_keep(hexapod: Hexapod, all_poses: bool) -> LimitMargins | None:
     limited = hexapod.limits.given and not all_poses
     if not limited and hexapod.legs.stiffness_law is None:
         return None
-    return LimitMargins(hexapod, only_law=not limited)
+    return LimitMargins(hexapod, not limited, joint)
 
 
 class _Bound(NamedTuple):
     """sign (value of the column - value) / scale >= 0.
 
-    Columns: 6 lengths, 15 distances, 12 cosines of angles, 12 squares of moments.
+    Columns: 6 lengths, 15 distances, 12 cosines of angles, 12 squares of moments, 6 forces. What a force is taken from
+    also has its square beside that of the scale: it is infinite at a singular pose.
     """
 
     name: str
@@ -121,3 +139,14 @@ def _bounds(hexapod: Hexapod) -> Iterator[_Bound]:
         if moment is not None:
             for i, leg in enumerate(LEGS):
                 yield _Bound(f"moment of the {kind} joint of leg {leg}", first + i, -1, moment**2, moment**2)
+    for words, sign, most in (("compression", -1, limits.leg_compression), ("tension", 1, limits.leg_tension)):
+        if most is not None:
+            for i, leg in enumerate(LEGS):
+                yield _Bound(
+                    f"greatest {words} of leg {leg}", _FORCES + i, sign, -sign * most, most or _weight(hexapod)
+                )
+
+
+def _weight(hexapod: Hexapod) -> float:
+    """Of the platform, N; that of 1 kg where there is none."""
+    return float(np.linalg.norm(hexapod.gravity)) * hexapod.platform_mass or 9.81

@@ -8,6 +8,7 @@ from operator import or_
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod import _core
 from flexapod.checks import one_of
@@ -15,8 +16,12 @@ from flexapod.conventions import AXES, Array, JointModel, Unit, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.parts import Limits
 from flexapod.errors import ArgumentError, shown
+from flexapod.mechanics.dynamics import inverse_dynamics
 from flexapod.mechanics.inputs import as_joint
 from flexapod.mechanics.joint_limits import neutral_directions
+from flexapod.mechanics.load_limits import force_bounds
+from flexapod.pose import Pose
+from flexapod.rotations import matrices_of_quaternions
 from flexapod.tables import normal_unit
 
 
@@ -40,10 +45,15 @@ QUANTITIES: dict[str, Quantity] = {
     "spherical_moment": Quantity("N m", "bending moment of the spherical joint's springs", "leg"),
     "leg_distance": Quantity("m", "least distance between two leg axes"),
     "leg_force": Quantity("N", "largest static leg force under gravity"),
+    "leg_compression": Quantity("N", "largest static compression of a leg under gravity"),
+    "leg_tension": Quantity("N", "largest static tension of a leg under gravity"),
     "lowest_stiffness": Quantity("N/m", "lowest stiffness against displacement of the reference point"),
-    "within_limits": Quantity("1", "whether legs and joints are within the design's limits", dtype="bool"),
+    "within_limits": Quantity("1", "whether legs and joints at rest are within the design's limits", dtype="bool"),
 }
+#: Poses as the kernel takes them: rows (n, 6) or (n, 12), or positions (n, 3) and rotations (n, 4) or (n, 9).
+Rows = Array | tuple[Array, Array]
 _DEFAULT = ("omega_1", "cond_H")
+SIGNED_FORCES = ("leg_compression", "leg_tension")  #: found one pose after the other, where the rest is by lanes
 #: What else a quantity is called -> its name here.
 COMMON_NAMES = {
     "frequency": "omega_1",
@@ -99,21 +109,59 @@ def chosen(quantities: str | Iterable[str] | None, hexapod: Hexapod) -> tuple[st
 
 def evaluate(
     hexapod: Hexapod,
-    poses: Array | tuple[Array, Array],
+    poses: Rows,
     quantities: tuple[str, ...],
     joint: JointModel,
     threads: int,
     limits: _core.SweepLimits | None = None,
+    *,
+    forces: bool = True,
 ) -> dict[str, Any]:
     """The quantities and `status` at poses from the compiled kernel.
 
     poses: rows (n, 6) or (n, 12), or positions (n, 3) and rotations, quaternions (n, 4) or matrices (n, 9).
 
-    limits: `kernel_limits(hexapod)`, for those who call often.
+    limits: `kernel_limits(hexapod)`, for those who call often. forces: whether `within_limits` is of leg forces too.
     """
     limits = kernel_limits(hexapod) if limits is None else limits
-    found = _core.sweep(hexapod.packed, as_joint(joint), poses, _asked(quantities), limits, threads)
+    bounds = force_bounds(hexapod.limits) if forces and "within_limits" in quantities else None
+    asked = tuple(name for name in quantities if name not in SIGNED_FORCES)
+    if bounds is not None or not asked:
+        asked = (*asked, "leg_force")
+    found = _core.sweep(hexapod.packed, as_joint(joint), poses, _asked(asked), limits, threads)
+    if not {*SIGNED_FORCES}.isdisjoint(quantities):
+        force = inverse_dynamics(hexapod, _as_pose(poses), joint=joint)
+        found |= {"leg_compression": force.max(axis=1), "leg_tension": -force.min(axis=1)}
+    if bounds is not None:
+        found["within_limits"] = found["within_limits"] & _forces_kept(hexapod, poses, joint, found, bounds)
     return {name: found[name] for name in (*quantities, "status")}
+
+
+def _forces_kept(
+    hexapod: Hexapod, poses: Rows, joint: JointModel, found: dict[str, Any], bounds: tuple[float, float]
+) -> NDArray[np.bool_]:
+    """Whether the forces of rest are within their bounds, (n,); false where no forces hold the pose.
+
+    The kernel tells the largest force without its sign: only where one bound alone allows it are the forces looked at.
+    """
+    least, most = bounds
+    kept: NDArray[np.bool_] = found["leg_force"] <= min(-least, most)
+    left = found["within_limits"] & ~kept & (found["leg_force"] <= max(-least, most))
+    if left.any():
+        force = inverse_dynamics(hexapod, _as_pose(poses)[left], joint=joint)
+        kept[left] = ((force >= least) & (force <= most)).all(axis=1)
+    return kept
+
+
+def _as_pose(poses: Rows) -> Pose:
+    """The poses that the kernel takes as rows."""
+    if not isinstance(poses, tuple):
+        angles = poses.shape[1] == 6
+        return Pose.from_rpy(*poses.T) if angles else Pose.trusted(poses[:, :3], poses[:, 3:].reshape(-1, 3, 3))
+    position, turned = poses
+    if turned.shape[1] == 4:
+        return Pose.trusted(position, matrices_of_quaternions(turned))
+    return Pose.trusted(position, turned.reshape(-1, 3, 3))
 
 
 @cache

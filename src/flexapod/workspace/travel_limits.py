@@ -170,7 +170,7 @@ class TravelLimits:
         if self.bounds.least_index is not None:
             found = evaluate(self.hexapod, poses.packed, ("omega_1",), self.joint, 1, self._kernel)["omega_1"]
             yield found[:, None] - self.bounds.least_index
-        for moment in moment_excess(self.hexapod, poses):
+        for moment in moment_excess(self.hexapod, poses, joint=self.joint):
             yield moment.most - moment.value.reshape(-1, 6)
         if limits.leg_compression is not None or limits.leg_tension is not None:
             force = inverse_dynamics(self.hexapod, poses, joint=self.joint)

@@ -14,7 +14,7 @@ from flexapod.mechanics.inputs import as_hexapod
 from flexapod.showing import in_notebooks
 from flexapod.workspace.box import Box
 from flexapod.workspace.descents import BoxSearch, SquaredFrequency, starts_of
-from flexapod.workspace.limit_margins import LimitMargins, margins_to_keep, none_within
+from flexapod.workspace.limit_margins import LimitMargins, margins_to_keep, none_within, refuse_force_limits
 from flexapod.workspace.proof import Boxes, Prover, Standing, Watch, run, six_of
 from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.region import RegionLike, as_region, home_of
@@ -149,9 +149,11 @@ def worst_pose(
     """
     where = as_region(region)
     index = SquaredFrequency(as_hexapod(hexapod), joint, mode=1)
-    limits = margins_to_keep(hexapod, all_poses)
+    limits = margins_to_keep(hexapod, all_poses, joint)
     home = home_of(hexapod, where)
     box, threads = where.box(home), thread_count(threads)
+    if certified and not all_poses:
+        refuse_force_limits(hexapod)
     if box is None:
         if certified:
             raise ArgumentError(
@@ -214,7 +216,9 @@ def _worst_of(index: SquaredFrequency, limits: LimitMargins | None, rows: Array,
     """The worst of some poses."""
     wanted = ("omega_1", "within_limits") if limits is not None else ("omega_1",)
     kernel = limits.kernel if limits is not None else None
-    found = evaluate(index.hexapod, rows, wanted, index.joint_name, threads, kernel)
+    found = evaluate(
+        index.hexapod, rows, wanted, index.joint_name, threads, kernel, forces=limits is None or not limits.only_law
+    )
     omega, share = found["omega_1"], 1.0
     if not np.isfinite(omega).any():
         raise PoseError(f"none of the {len(rows)} poses can be computed. Look at the status of a sweep of them.")

@@ -42,6 +42,7 @@ def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
     from flexapod.mechanics import joint_limits, kinematics, plausibility
     from flexapod.mechanics.at_rest import pose_state
     from flexapod.mechanics.cautions import NO_FAULT
+    from flexapod.mechanics.load_limits import motion_limits_words
 
     nowhere = "No home pose and no --pose: nothing was checked at a pose, neither limits nor singularity nor stability."
     keys = ("stability", "leg_lengths_m", "leg_distance_m", "condition_number", "singularity", "limits_exceeded")
@@ -56,20 +57,15 @@ def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
         joint_limits.leg_distance(hexapod, pose),
         state.condition_shown(kinematics.condition_number(hexapod, pose)),
         [one.text for one in told if one.code == "singular" or "elsewhere" in one.numbers],
-        (*joint_limits.check_limits(hexapod, pose).exceeded, *([] if state.singular else _forces(hexapod, pose))),
+        joint_limits.check_limits(hexapod, pose).exceeded,
     )
     found = dict(zip(keys, values, strict=True))
-    return {"pose_m_deg": pose_numbers(pose), **found, "not_checked": None, "cautions": [one.text for one in told]}
-
-
-def _forces(hexapod: Hexapod, pose: Pose) -> list[str]:
-    """What the leg forces that hold the pose at rest exceed, in words."""
-    from flexapod.mechanics.joint_limits import in_words
-    from flexapod.mechanics.load_limits import load_excess
-    from flexapod.mechanics.statics import hold
-
-    force = hold(hexapod, pose).leg_force
-    return [f"at rest, {words}" for quantity in load_excess(hexapod, force) for words in in_words(quantity)]
+    return {
+        "pose_m_deg": pose_numbers(pose),
+        **found,
+        "not_checked": motion_limits_words(hexapod.limits) or None,
+        "cautions": [one.text for one in told],
+    }
 
 
 def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:
@@ -79,9 +75,9 @@ def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:
     out.print(repr(hexapod), markup=False, soft_wrap=True)
     for line in ("What was read, in SI units and degrees:", *read_back.lines(hexapod)):
         out.print(line, markup=False, soft_wrap=True)
-    if pose is None:
+    if found["not_checked"]:
         out.print(found["not_checked"], soft_wrap=True)
-    else:
+    if pose is not None:
         lengths = found["leg_lengths_m"]
         out.print(f"At {pose!r}: {found['stability']}", markup=False, soft_wrap=True)
         out.print(

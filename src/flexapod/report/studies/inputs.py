@@ -152,4 +152,10 @@ def limits(hexapod: Hexapod) -> list[str]:
             found.append(f"moment of {name} joints {number(moment)} N m")
     if given.leg_distance is not None:
         found.append(f"distance of leg axes at least {number(round(1e3 * given.leg_distance, 9))} mm")
+    for name, most in (("compression", given.leg_compression), ("tension", given.leg_tension)):
+        if most is not None:
+            found.append(f"{name} of legs {number(most)} N")
+    for name in given.of_motions:
+        words = name.removeprefix("leg_")
+        found.append(f"{words} of legs {number(getattr(given, name))} {_unit(f'limits.{name}')}, of motions")
     return found

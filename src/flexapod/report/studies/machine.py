@@ -237,7 +237,7 @@ def _modes(f: Findings) -> Section:
 def _legs(f: Findings) -> Section:
     """Leg by leg: length, static force and joint angles; what is beyond a limit is marked."""
     beyond: dict[str, NDArray[np.bool_]] = {}
-    for quantity in limit_excess(f.hexapod, f.pose):
+    for quantity in limit_excess(f.hexapod, f.pose, joint=f.joint):
         if np.size(quantity.value) == 6:
             beyond[f"{quantity.name} {quantity.unit}"] = (quantity.value < quantity.least) | (
                 quantity.value > quantity.most
@@ -246,7 +246,7 @@ def _legs(f: Findings) -> Section:
     if f.rest is not None:
         columns += [
             Column("unstretched", 1e3 * f.rest.unstretched_length, "mm", 6, on="page"),
-            Column("static force", f.rest.leg_force, "N"),
+            Column("static force", f.rest.leg_force, "N", marked=beyond.get("force at rest N")),
         ]
     for name, angles in (("universal", f.angles.universal), ("spherical", f.angles.spherical)):
         words = [f"{x:.2f}" for x in np.degrees(angles)]

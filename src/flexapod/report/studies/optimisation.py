@@ -7,6 +7,7 @@ import numpy as np
 from flexapod import plots
 from flexapod.conventions import TWO_PI, JointModel
 from flexapod.mechanics.cautions import Caution
+from flexapod.mechanics.load_limits import motion_limits_words
 from flexapod.optimisation.design_results import Check, OptimalDesign, VariableRange
 from flexapod.optimisation.pareto import ParetoFront
 from flexapod.report.numbers import DASH, brief, file_name, percent, shown, six_words
@@ -74,6 +75,8 @@ def _optimal_rows(found: OptimalDesign) -> list[Row]:
 
 def _cautions(found: OptimalDesign) -> list[Caution]:
     cautions = _begun(found, found.start.name)
+    if words := motion_limits_words(found.hexapod.limits):
+        cautions.append(Caution("motion_limits", words))
     if not found.verification.holds:
         broken = ", ".join(check.name for check in found.verification.checks if not check.kept)
         cautions.append(Caution("broken", f"The dense sweep breaks: {broken}. Search with more poses."))

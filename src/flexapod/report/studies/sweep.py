@@ -14,6 +14,7 @@ from flexapod import plots
 from flexapod.conventions import AXES, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
+from flexapod.mechanics.load_limits import motion_limits_words
 from flexapod.report.studies import least_index
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 from flexapod.workspace.summary import At, SweepSummary
@@ -63,7 +64,9 @@ def _cautions(
     hexapod: Hexapod, sweep: xr.Dataset, summary: SweepSummary | None, worst: WorstPose | None
 ) -> list[Caution]:
     least = worst.pose if worst is not None else None if summary is None else summary.worst.pose
-    return [] if least is None else least_index.cautions(hexapod, least, sweep.attrs["joint"])
+    words = motion_limits_words(hexapod.limits)
+    unjudged = [Caution("motion_limits", words)] if words else []
+    return [*unjudged, *([] if least is None else least_index.cautions(hexapod, least, sweep.attrs["joint"]))]
 
 
 def pose_text(pose: Array) -> str:
