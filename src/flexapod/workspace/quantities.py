@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import cache, reduce
 from operator import or_
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,7 +51,7 @@ QUANTITIES: dict[str, Quantity] = {
     "within_limits": Quantity("1", "whether legs and joints at rest are within the design's limits", dtype="bool"),
 }
 #: Poses as the kernel takes them: rows (n, 6) or (n, 12), or positions (n, 3) and rotations (n, 4) or (n, 9).
-Rows = Array | tuple[Array, Array]
+Rows: TypeAlias = "Array | tuple[Array, Array]"
 _DEFAULT = ("omega_1", "cond_H")
 SIGNED_FORCES = ("leg_compression", "leg_tension")  #: found one pose after the other, where the rest is by lanes
 #: What else a quantity is called -> its name here.
