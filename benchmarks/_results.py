@@ -40,7 +40,7 @@ class Results:
         notes = [
             f"Machine: {where}.",
             f"Times are medians of {self.turns} turns, ratios medians of the turns' ratios to Flexapod's first line of "
-            f"the task. {clock.capitalize()}; wall time and all cores for the page.",
+            f"the task. {clock.capitalize()}; wall time and all cores for the page and for sweeps on all threads.",
         ]
         if self.absent:
             notes.append(f"Not installed, so not compared: {', '.join(self.absent)} (`pip install` these names).")
