@@ -41,7 +41,7 @@ def main(trials: int = 200, points: int = 2**12, verify: int = 2**17, samples: i
     front = fx.pareto_front(
         machine, variables, fx.optimisation.Footprint(), fx.LeastIndex(workspace), limits, refine=5, **options
     )
-    optimisation.front(front).savefig(folder / "front.png")
+    optimisation.front(front).figure.savefig(folder / "front.png")
 
     uncertain = [
         fx.Uncertain("legs.stiffness_law.fixed", 0.1),

@@ -21,7 +21,7 @@ LINK = re.compile(r'href="core:([^"#]*)(?:#([^"]*))?"')
 DEFINITIONS = (
     r"\b(?:struct|class|enum|union|concept|namespace)\s+(?:class\s+)?{name}\b(?![^{{]*;\s*(?://.*)?$)",
     r"\busing\s+{name}\s*=|#define\s+{name}\b",
-    r"^(?!\s*(?:return|else|throw|if|for|while|case)\b)[\w\s:<>,&*~\[\]]*(?<![\w.>]){name}\s*\((?!.*;\s*(?://.*)?$)",
+    r"^(?!\s*(?:return|else|throw|if|for|while|case)\b)(?:\s*template <[^>]*>)?[\w\s:<>,&*~\[\]]*(?<![\w.>]){name}\s*\((?!.*;\s*(?://.*)?$)",
     r"^\s*(?:(?:inline|static|extern|const|constexpr|constinit)\s+)+[\w\s:<>,&*]*\b{name}\s*[=({{\[]",
     r"^\s*(?!return|struct|class|enum|using|else|throw)[A-Za-z_][\w:<>,\s]*[\s>&*,]{name}\s*[,;=\[]",  # a member
 )

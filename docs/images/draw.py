@@ -35,6 +35,7 @@ PICTURES = {
     "tutorial-better.png": "draw_tutorial.py",
     "tutorial-map.png": "draw_tutorial.py",
     "tutorial-report.png": "draw_tutorial.py",
+    "two-columns.png": "draw_guides.py",
     "web-dark.png": "draw_page.py",
     "web-light.png": "draw_page.py",
 }

@@ -10,6 +10,7 @@ import warnings
 import numpy as np
 import pytest
 from tests.attack.bounded import limited, rounds, tried
+from tests.helpers.plain import plain_machine
 from tests.helpers.public import FUNCTIONS, PUBLIC
 
 import flexapod as fx
@@ -21,7 +22,7 @@ pytest.importorskip("optuna")
 pytest.importorskip("ompl")
 pytest.importorskip("zarr")
 
-H = fx.load("precision-positioner")
+H = plain_machine("precision-positioner")
 HOME = fx.home_pose(H)
 UP = fx.Pose(HOME.position + np.array([0, 0, 0.002]))
 SHAKEN = fx.harmonic("z", 1e-6, 100.0)

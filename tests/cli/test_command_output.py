@@ -233,7 +233,7 @@ def test_path_of_a_file_without_a_bound(run, tmp_path):
     told = words(run, "path", "mukherjee-i", file, "--set", "limits.leg_length=[0.1, 0.87]", "--out", out)
     assert "bound" not in told
     assert "Warning: The path leaves the design's limits for" in told
-    assert {f.name for f in out.iterdir()} == {"path-index.png", "path-loads.png", "path.html"}
+    assert {f.name for f in out.iterdir()} == {"path.csv", "path-index.png", "path-loads.png", "path.html"}
     assert "leaves the design&#x27;s limits" in (out / "path.html").read_text()
 
 

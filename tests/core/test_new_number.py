@@ -32,13 +32,13 @@ from flexapod import _core
 from flexapod.design.layout import PLACES, describe, entries, numbers
 
 assert _core.plain_size == 217
-machine = plain_machine("motion-base").replace({"legs.lead_mm": [4, 5, 6, 7, 8, 9], "legs.stiffness": [2e7, 3e7, 4e7, 5e7, 6e7, 7e7]})
+machine = fx.load("motion-base").replace({"legs.lead_mm": [4, 5, 6, 7, 8, 9], "legs.stiffness": [2e7, 3e7, 4e7, 5e7, 6e7, 7e7]})
 assert np.array_equal(machine.legs.more["lead"], np.arange(4, 10) / 1000)
 assert np.array_equal(machine.packed[PLACES["legs.lead"]], machine.legs.more["lead"])
 assert np.array_equal(machine.packed[PLACES["legs.stiffness"]], machine.legs.stiffness)
 assert np.array_equal(machine.packed[PLACES["legs.upper.inertia"]], machine.legs.upper.inertia)
 assert fx.Hexapod.from_toml(machine.to_toml()) == machine
-assert plain_machine("motion-base").legs.more["lead"][3] == 0.005  # its default
+assert fx.load("motion-base").legs.more["lead"][3] == 0.005  # its default
 try:
     machine.replace({"legs.lead": -1.0})
 except fx.errors.DesignError as error:

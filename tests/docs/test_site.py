@@ -64,7 +64,7 @@ def test_every_key_of_a_design_is_in_the_table():
     [
         ("model/leg.hpp", "LegAxes", "struct LegAxes {"),
         ("model/leg.hpp", "leg_inertia", "Sym3<T> leg_inertia("),
-        ("model/leg.hpp", "LegAxes::W", "Vec3<T> W(const"),
+        ("model/leg.hpp", "LegAxes::W", "W(const Vec3<V>& v) const {"),
         ("model/equations.hpp", "base_coupling", "Mat6<T> base_coupling("),
         ("model/joint.hpp", "Joint", "enum class Joint"),
     ],

@@ -200,7 +200,7 @@ def test_the_dense_sweep_that_breaks_a_constraint_is_said_so(positioner):
     assert "The dense sweep breaks: total mass. Search with more poses." in page(studies.optimal(broken, "x"))
     assert "The dense sweep breaks" not in page(studies.optimal(found, "x"))
     figure = optimisation.search(found)  # no trial: the begin and the end alone
-    assert len(figure.axes[0].get_xticks()) == 0
+    assert len(figure.get_xticks()) == 0
 
 
 @pytest.fixture(scope="module")
@@ -226,11 +226,11 @@ def test_a_front_is_named_after_the_design_begun_with(front, positioner):
 
 
 def test_a_front_far_from_its_trials_has_a_logarithmic_axis(front):
-    assert optimisation.front(front).axes[0].get_xscale() == "linear"
+    assert optimisation.front(front).get_xscale() == "linear"
     history = front.history.copy(deep=True)
     history["against"][0] = 1e4
     history["feasible"][0], history["index"][0] = True, 100.0
-    assert optimisation.front(replace(front, history=history)).axes[0].get_xscale() == "log"
+    assert optimisation.front(replace(front, history=history)).get_xscale() == "log"
 
 
 def test_numbers_of_legs_stand_apart_where_they_can():

@@ -77,7 +77,7 @@ def test_a_link_pasted_into_an_open_page_resets_what_it_leaves_out(opened: Any) 
 @pytest.mark.parametrize(
     ("link", "words"),
     [
-        ("design=nope", "there is no design “nope” here; there are cubic-isolator, motion-base"),
+        ("design=nope", "there is no design “nope” here; there are cubic-isolator, dehaeze-cubic"),
         ("design=constructor", "there is no design “constructor” here"),
         ("toml=qqqq", "the design in it is damaged"),
         ("toml=", "the design in it is damaged"),

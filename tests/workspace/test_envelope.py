@@ -218,7 +218,7 @@ def test_static_leg_forces_stop_motions(machine):
     forces = fx.hold(machine, displaced(machine, rows)).leg_force
     assert forces.min() > -1e-6
     assert forces.max() < 1.3 * strong * (1 + 1e-9)
-    with pytest.raises(fx.PoseError, match=r"greatest compression of leg 1"):
+    with pytest.raises(fx.PoseError, match=r"leg 1: force at rest"):
         fx.envelope(machine.replace({"limits.leg_compression": 0.9 * strong}))
 
 

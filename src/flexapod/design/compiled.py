@@ -12,6 +12,7 @@ from flexapod.checks import one_of
 from flexapod.conventions import JOINT_MODELS, Array, JointModel
 from flexapod.errors import ArgumentError, PoseError, shown
 from flexapod.pose import Pose, PoseLike, as_pose
+from flexapod.showing import in_notebooks
 
 if TYPE_CHECKING:
     from flexapod.design.hexapod import Hexapod
@@ -27,6 +28,7 @@ _NEEDED = {
 }
 
 
+@in_notebooks
 class LinearMatrices(NamedTuple):
     """Linear dynamics M x'' + C x' + K x = H f about a pose held at rest; unpacks as `M, C, K, H`.
 

@@ -18,12 +18,14 @@ from flexapod.mechanics.inputs import ZERO, PointLike, as_point
 from flexapod.mechanics.linearisation import Linearisation
 from flexapod.mechanics.point_motion import shift
 from flexapod.pose import Pose
+from flexapod.showing import in_notebooks
 from flexapod.vibration.frequency_response import leg_forces
 from flexapod.vibration.grid import asked, grid_around
 from flexapod.vibration.harmonic import SteadyResponse
 from flexapod.vibration.source_spectrum import Density, SourceSpectrum, ready_made, tabulated
 
 
+@in_notebooks
 @dataclass(frozen=True, eq=False)
 class RandomLoad:
     """Random forces and moments on the platform: wind, sound, cables, fans.

@@ -117,7 +117,8 @@ def _beyond(
     for box in np.unique(which):
         own = np.flatnonzero(which == box)
         least, most = margins[own].min(axis=0), margins[own].max(axis=0)
-        for column in np.flatnonzero(~(least > _NEAR * (most - least))):
+        spread = np.subtract(most, least, out=np.zeros_like(most), where=np.isfinite(least))
+        for column in np.flatnonzero(~(least > _NEAR * spread)):
             starts += [(int(k), int(column)) for k in own[np.argsort(margins[own, column])[:_STARTS]]]
     if not starts:
         return which[:0], np.zeros((0, 6))

@@ -97,8 +97,8 @@ def _narrowed(limits: TravelLimits, rays: Array, kept: Array, beyond: Array) -> 
     low, high, rays = kept[met], beyond[met], rays[met]
 
     ends = limits.margins(low[:, None] * rays), limits.margins(high[:, None] * rays)
-    change = np.where(ends[1] < 0, ends[0] - ends[1], ends[0])  # margins are in the units of their limits
-    unit = np.where(change > 0, change, 1.0)
+    change = np.subtract(ends[0], ends[1], out=ends[0].copy(), where=ends[1] < 0)  # in the units of their limits
+    unit = np.where((change > 0) & np.isfinite(change), change, 1.0)
 
     speed = limits.joint_speed(Ways.along(rays)).max(axis=1)
     above, good = (ends[0] / unit).min(axis=1), np.zeros(len(met), dtype=int)
