@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any, Literal, NamedTuple
+from typing import Any, ClassVar, Literal, NamedTuple
 
 import numpy as np
 
@@ -130,43 +130,46 @@ class LegStroke(ConstraintQuantity):
 
 
 @dataclass(frozen=True)
-class JointAngles(ConstraintQuantity):
-    """Angles by which the joints of one kind turn from where they are at home."""
+class _OfJoints(ConstraintQuantity):
+    """What is found of the six joints of one kind; the core gives both kinds side by side, universal joints first."""
 
     joint: Literal["universal", "spherical"]
-    unit = "rad"
+    name: ClassVar[str]
 
     @property
     def quantities(self) -> tuple[str, ...]:  # type: ignore[override]
-        return (f"{self.joint}_angle",)
+        return (f"{self.joint}_{self.name}",)
+
+    @property
+    def mine(self) -> slice:
+        return slice(0, 6) if self.joint == "universal" else slice(6, 12)
 
     def columns(self, found: Found, numbers: Array) -> Array:
-        return found[f"{self.joint}_angle"]
+        return found[f"{self.joint}_{self.name}"]
+
+
+@dataclass(frozen=True)
+class JointAngles(_OfJoints):
+    """Angles by which the joints of one kind turn from where they are at home."""
+
+    name = "angle"
+    unit = "rad"
 
     def derivatives(self, at: DesignDerivatives) -> Values:
-        mine = slice(0, 6) if self.joint == "universal" else slice(6, 12)
-        cosine, slope = (part[:, mine] for part in at.joint_cosine)
+        cosine, slope = (part[:, self.mine] for part in at.joint_cosine)
         sine = np.sqrt(np.maximum(1 - cosine**2, 1e-12))  # a joint that is hardly bent bounds nothing
         return _flat(np.arccos(np.clip(cosine, -1, 1)), -slope / sine[..., None])
 
 
 @dataclass(frozen=True)
-class JointMoments(ConstraintQuantity):
+class JointMoments(_OfJoints):
     """Bending moments of the springs in the joints of one kind."""
 
-    joint: Literal["universal", "spherical"]
+    name = "moment"
     unit = "N m"
 
-    @property
-    def quantities(self) -> tuple[str, ...]:  # type: ignore[override]
-        return (f"{self.joint}_moment",)
-
-    def columns(self, found: Found, numbers: Array) -> Array:
-        return found[f"{self.joint}_moment"]
-
     def derivatives(self, at: DesignDerivatives) -> Values:
-        mine = slice(0, 6) if self.joint == "universal" else slice(6, 12)
-        square, slope = (part[:, mine] for part in at.joint_moment)
+        square, slope = (part[:, self.mine] for part in at.joint_moment)
         moment = np.sqrt(np.maximum(square, 1e-24))  # a joint that is hardly bent bounds nothing
         return _flat(moment, 0.5 * slope / moment[..., None])
 
