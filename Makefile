@@ -66,7 +66,7 @@ $(VENV)/.docs: $(VENV)/.built
 	touch $@
 
 # The interpreter behind the virtual environment with its packages: it does not see the editable install, but what
-# PYTHONPATH names first.
+# PYTHONPATH names first. Plugins of pytest that this interpreter may have of its own are left out.
 PACKAGES = $(shell $(BIN)/python -c 'import sys; print(*(p for p in sys.path if "site-packages" in p), sep=":")')
 BARE     = $(realpath $(BIN)/python)
 
@@ -81,7 +81,7 @@ PRELOADED   = $(shell $(CXX) -print-file-name=libasan.so) $(shell $(CXX) -print-
 
 sanitize: $(SANITIZED)/.built ## any finding ends the run
 	LD_PRELOAD="$(PRELOADED)" ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=$(SANITIZED)/site:$(PACKAGES) \
-	$(BARE) -m pytest $(AT_ONCE) -p no:cacheprovider $(CORE_TESTS) -k 'not ($(LONG))'
+	PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BARE) -m pytest -p xdist.plugin $(AT_ONCE) -p no:cacheprovider $(CORE_TESTS) -k 'not ($(LONG))'
 
 $(SANITIZED)/.built: $(VENV)/.built $(CORE)
 	rm -rf $(SANITIZED)/site
