@@ -62,13 +62,6 @@ class Workers(Protocol):
         ...
 
 
-def compute_block(job: Job, number: int, rows: Array | None = None) -> Finished:
-    """Compute a block and put it on the disk. `rows` are its poses where the job does not carry them."""
-    finished = write_block(job, number, rows)
-    flush_block(job, number)
-    return finished
-
-
 def write_block(job: Job, number: int, rows: Array | None = None) -> Finished:
     """Compute a block and write it; the operating system may still hold it in memory."""
     block = job.blocks[number]

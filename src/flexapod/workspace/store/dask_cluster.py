@@ -16,7 +16,7 @@ from flexapod.errors import ClusterError
 from flexapod.optional import needed
 from flexapod.workspace.pose_sets import GivenPoses
 from flexapod.workspace.proof import TURN, Prover, Turn, together
-from flexapod.workspace.store.block_job import Finished, Job, compute_block
+from flexapod.workspace.store.block_job import Finished, Job, flush_block, write_block
 
 LOCAL = "local"
 _POLL = 0.5  # s between looks at whether to stop
@@ -88,12 +88,12 @@ class Cluster:
         return together(prover, found, shares)
 
     def _most(self) -> int:
-        """Blocks to have under way: enough that no worker waits for its next one."""
+        """Blocks to have under way: for each thread one that is computed, one that the disk takes, and the next."""
         from distributed.comm import CommClosedError
 
         if self.client.status != "running":
             raise CommClosedError
-        return max(2, 2 * sum(self.client.nthreads().values()))
+        return max(3, 3 * sum(self.client.nthreads().values()))
 
     def _submit(self, job: Job, number: int) -> Any:
         rows = None
@@ -101,7 +101,17 @@ class Cluster:
             block = job.blocks[number]
             rows = job.points.rows(block.start, block.stop)
             job = job._replace(points=None)
-        return self.client.submit(compute_block, job, number, rows, key=f"sweep-{job.token}-{number}", retries=2)
+        return self.client.submit(_block, job, number, rows, key=f"sweep-{job.token}-{number}", retries=2)
+
+
+def _block(job: Job, number: int, rows: Array | None) -> Finished:
+    """A block computed and on the disk. While the disk takes it, the worker's thread is free for the next one."""
+    from distributed import secede
+
+    finished = write_block(job, number, rows)
+    secede()
+    flush_block(job, number)
+    return finished
 
 
 def _turn(prover: Prover, parts: Array, level: float, gap: float, seconds: float) -> Turn:

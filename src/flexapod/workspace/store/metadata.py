@@ -185,7 +185,10 @@ def _attributes(path: Path) -> dict[str, Any]:
     except (FileNotFoundError, NotADirectoryError):
         raise OutputError(f"there is no sweep at {path} to read or to resume (no {ROOT} in it).") from None
     except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
-        raise OutputError(f"{path} is no sweep of Flexapod ({type(error).__name__}: {error}).") from error
+        raise OutputError(
+            f"{path} is no sweep of Flexapod, or damaged: its {ROOT} does not say what the store holds. Give a store "
+            f"that `flexapod sweep --out` made; of a damaged one put back a copy of {ROOT}, or sweep anew."
+        ) from error
     if found != FORMAT:
         raise OutputError(f"{path} has format {found!r}; this version reads {FORMAT!r}.")
     kind = (document.get("zarr_format"), document.get("node_type"), sorted(document))
