@@ -16,14 +16,7 @@ COLUMNS, ROWS = (36, 24), 12  # elements along the notch, along the body beside 
 
 def plane(radius, thickness, poisson, *, finer=1):
     """Compliances times Young's modulus times width, in bending (1/m2) and along the notch."""
-    law = np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]]) / (1 - poisson**2)
-
-    def strain(shape, along, over, y):
-        matrix = np.zeros((3, 18))
-        matrix[0, ::2], matrix[1, 1::2] = along, over
-        matrix[2, ::2], matrix[2, 1::2] = over, along
-        return matrix
-
+    law = _plane_stress(poisson)
     depth = thickness + 2 * radius
     mesh = _Mesh(radius, thickness, finer)
     found = []
@@ -31,9 +24,24 @@ def plane(radius, thickness, poisson, *, finer=1):
         (lambda y: y, mesh.dofs(2, middle=[0], neutral=[0], pinned=[1]), 12 / depth**2, depth**3 / 12),
         (np.ones_like, mesh.dofs(2, middle=[0], neutral=[1], pinned=[]), 1.0, depth),
     ):
-        work = mesh.work(2, law, strain, lambda y: 1.0, 0, pull, held)
+        work = mesh.work(2, law, _plane_strain, lambda y: 1.0, 0, pull, held)
         found.append(2 * (2 * work / load**2 - beam))
     return tuple(found)
+
+
+def stressed(radius, thickness, poisson, *, finer=1):
+    """How many times a beam's stress there is where the notch is thinnest, in bending: Young's modulus times strain."""
+    law = _plane_stress(poisson)
+    mesh = _Mesh(radius, thickness, finer)
+    held = mesh.dofs(2, middle=[0], neutral=[0], pinned=[1])
+    moved, _ = mesh.solve(2, law, _plane_strain, lambda y: 1.0, 0, lambda y: y, held)
+    nodes = mesh.number[
+        :3, -3:
+    ].ravel()  # of the element at the free edge; nothing but the stress along it is left there
+    slopes = np.stack([np.outer(_slope(-1), _line(1)).ravel(), np.outer(_line(-1), _slope(1)).ravel()])
+    along, _ = np.linalg.solve(slopes @ np.stack([mesh.x.ravel()[nodes], mesh.y.ravel()[nodes]], 1), slopes)
+    moment = (thickness + 2 * radius) ** 3 / 12
+    return float(along @ moved[2 * nodes] / (6 * moment / thickness**2))
 
 
 def revolved(radius, diameter, poisson, *, finer=1):
@@ -76,6 +84,17 @@ def revolved(radius, diameter, poisson, *, finer=1):
     return tuple(found)
 
 
+def _plane_stress(poisson):
+    return np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]]) / (1 - poisson**2)
+
+
+def _plane_strain(shape, along, over, y):
+    matrix = np.zeros((3, 18))
+    matrix[0, ::2], matrix[1, 1::2] = along, over
+    matrix[2, ::2], matrix[2, 1::2] = over, along
+    return matrix
+
+
 class _Mesh:
     """A quarter of the notch and its body: x along, y over half the thickness, (columns, rows) of nodes."""
 
@@ -100,6 +119,11 @@ class _Mesh:
 
     def work(self, kinds, law, strain, about, of, pull, held):
         """Twice the energy under a stress on the end, in the displacement `of`."""
+        moved, load = self.solve(kinds, law, strain, about, of, pull, held)
+        return float(moved @ load)
+
+    def solve(self, kinds, law, strain, about, of, pull, held):
+        """Displacements under that stress, and its loads."""
         rows, columns, values = [], [], []
         for i, j in product(range(0, self.x.shape[0] - 2, 2), range(0, self.x.shape[1] - 2, 2)):
             nodes = self.number[i : i + 3, j : j + 3].ravel()
@@ -109,8 +133,9 @@ class _Mesh:
             values.append(_element(self.x.ravel()[nodes], self.y.ravel()[nodes], law, strain, about).ravel())
         load = self._load(kinds, about, of, pull)
         stiffness = coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))).tocsc()
-        free = ~held
-        return float(spsolve(stiffness[free][:, free], load[free]) @ load[free])
+        free, moved = ~held, np.zeros(load.size)
+        moved[free] = spsolve(stiffness[free][:, free], load[free])
+        return moved, load
 
     def _load(self, kinds, about, of, pull):
         load = np.zeros(self.x.size * kinds)

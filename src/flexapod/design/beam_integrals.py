@@ -1,4 +1,4 @@
-"""Integrals over beams whose thickness is constant or that of a notch, and Saint-Venant's torsion of rectangles."""
+"""Integrals over beams whose thickness is constant or that of a notch."""
 
 from collections.abc import Callable
 from math import comb, pi, sqrt
@@ -38,23 +38,3 @@ def notch(radius: float, thickness: float) -> Integrals:
         return scale * cosine(1, n), scale * radius**2 * (cosine(1, n) - cosine(3, n))
 
     return over
-
-
-def torsion_constant(one: float, other: float) -> float:
-    """Torsion constant of a rectangle in m4, by Saint-Venant's series."""
-    thin, wide = sorted((one, other))
-    odd = np.arange(1, 40, 2)
-    series = np.sum(np.tanh(odd * pi * wide / (2 * thin)) / odd**5.0)
-    return float(wide * thin**3 / 3 * (1 - 192 * thin / (pi**5 * wide) * series))
-
-
-def notch_torsion(radius: float, thickness: float, width: float) -> float:
-    """The integral of 1 / torsion constant along a notch, m-3; most of it comes from where the notch is thinnest."""
-    from scipy.integrate import quad  # takes longer to load than all else that a design needs
-
-    def compliance(u: float) -> float:
-        return radius * np.cos(u) / torsion_constant(thickness + 2 * radius * (1 - np.cos(u)), width)
-
-    near = min(1.0, sqrt(thickness / radius))
-    parts = [quad(compliance, *ends, epsrel=1e-10)[0] for ends in ((0.0, near), (near, pi / 2))]
-    return 2 * float(sum(parts))
