@@ -9,6 +9,7 @@ from flexapod.showing import FACE
 
 __version__ = "0.5.0"
 
-FACE[:] = ["flexapod.report.notebook"]  # how results show themselves: the one place that knows library and faces
+# How results show themselves: the one place that knows library and faces.
+FACE.update(html="flexapod.report.notebook", plot="flexapod.plots.results")
 
 __getattr__, __dir__, __all__ = attach(__name__, __file__)

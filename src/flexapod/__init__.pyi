@@ -70,6 +70,7 @@ from .paths.requirements import PathRequirements as PathRequirements
 from .paths.trajectory import Trajectory as Trajectory
 from .plots.animation import animate_mode as animate_mode
 from .plots.animation import animate_simulation as animate_simulation
+from .plots.results import plot as plot
 from .pose import Motion as Motion
 from .pose import Pose as Pose
 from .simulation.batch import simulate_many as simulate_many

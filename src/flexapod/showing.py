@@ -1,7 +1,7 @@
-"""How designs and results show themselves in notebooks.
+"""How designs and results show themselves: in notebooks, and as figures.
 
-The library knows none of its faces: the package `flexapod` names the module that knows how each type looks, and it is
-imported when something is first shown.
+The library knows none of its faces: the package `flexapod` names the modules that know how each type looks, and they
+are imported when something is first shown.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from typing import Any, TypeVar
 
 T = TypeVar("T")
 
-#: The module with `html(thing)`; `flexapod` names it.
-FACE: list[str] = []
+#: The modules with `html(thing)` and with `plot(thing, ...)`; `flexapod` names them.
+FACE: dict[str, str] = {}
 
 
 def in_notebooks(kind: type[T]) -> type[T]:
@@ -22,4 +22,9 @@ def in_notebooks(kind: type[T]) -> type[T]:
 
 
 def _html(self: Any) -> str:
-    return str(import_module(FACE[0]).html(self))
+    return str(import_module(FACE["html"]).html(self))
+
+
+def drawn(result: Any, **options: Any) -> Any:
+    """Draw the figure of a result, as the method `plot` of its type promises it."""
+    return import_module(FACE["plot"]).plot(result, **options)

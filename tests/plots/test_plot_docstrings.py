@@ -18,6 +18,7 @@ MODULES = (
     "optimisation",
     "path",
     "response",
+    "results",
     "simulation",
     "sweep",
     "sweep_surface",

@@ -21,6 +21,7 @@ SINGLE = {
     *("x", "y", "z", "roll", "pitch", "yaw"),
     *(
         "box",
+        "result",
         "model",
         "lengths",
         "characteristic_length",

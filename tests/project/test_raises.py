@@ -96,6 +96,7 @@ def without(package, call):
 
 
 PROVOKED = {
+    ("plot", "ArgumentError"): lambda: fx.plot(3.0),
     ("animate_mode", "MissingExtraError"): without(
         "imageio_ffmpeg", lambda: fx.animate_mode(MACHINE, HOME, 1, "a.mp4")
     ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,9 +20,11 @@ from flexapod.mechanics.state_space import StateSpace, state_space_of
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.optional import needed
 from flexapod.pose import Pose, PoseLike
-from flexapod.showing import in_notebooks
+from flexapod.showing import drawn, in_notebooks
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
     import control
 
 
@@ -51,6 +54,12 @@ class DampedModes(NamedTuple):
     def frequency(self) -> Array:
         """Moduli of the poles, Hz, (6,)."""
         return self.omega / TWO_PI
+
+    def plot(
+        self, *, ax: Axes | None = None, tangent: ArrayLike | None = None, labels: Sequence[str] | None = None
+    ) -> Axes:
+        """Draw the six frequencies of one pose, in Hz: `plots.frequencies`, with its options."""
+        return drawn(self, ax=ax, tangent=tangent, labels=labels)
 
 
 _ROUNDING = 1e-13  # of the largest pole: a smaller real or imaginary part is rounding, and 0

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from flexapod import _core
 from flexapod._suggestions import suggests
@@ -15,7 +17,10 @@ from flexapod.mechanics.inputs import ZERO, PointLike, as_joint, as_point, at_on
 from flexapod.mechanics.point_motion import shift
 from flexapod.mechanics.springs import law_states
 from flexapod.pose import PoseLike
-from flexapod.showing import in_notebooks
+from flexapod.showing import drawn, in_notebooks
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 #: Words for what modes have.
 MODE_WORDS = {
@@ -52,6 +57,12 @@ class NaturalModes(NamedTuple):
     def damping_ratio(self) -> Array:
         """Zeros, (..., 6): these modes are undamped. Those of `flexapod.linearise` have damping."""
         return np.zeros_like(self.omega)
+
+    def plot(
+        self, *, ax: Axes | None = None, tangent: ArrayLike | None = None, labels: Sequence[str] | None = None
+    ) -> Axes:
+        """Draw the six frequencies of one pose, in Hz: `plots.frequencies`, with its options."""
+        return drawn(self, ax=ax, tangent=tangent, labels=labels)
 
 
 def natural_modes(

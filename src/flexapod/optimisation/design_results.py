@@ -9,10 +9,11 @@ from flexapod.certificates.certificate import Certificate
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import told_apart
-from flexapod.showing import in_notebooks
+from flexapod.showing import drawn, in_notebooks
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axes import Axes
 
 
 @in_notebooks
@@ -176,6 +177,10 @@ class OptimalDesign:
         """Whether the design keeps every constraint, and has a higher index than `start` or `start` breaks one."""
         better = self.index > self.start_index or bool(self.start_breaks)
         return self.hexapod is not self.start and self.verification.holds and better
+
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw the search, trial by trial: `plots.optimisation.search`."""
+        return drawn(self, ax=ax)
 
     @property
     def gain(self) -> float:

@@ -22,10 +22,11 @@ from flexapod.optimisation.problem import Assessment, Problem
 from flexapod.optimisation.requirements import Constraint, Requirement
 from flexapod.optimisation.variables import JointCircle, Variable
 from flexapod.optimisation.verification import Beginning, begin, told, verify
-from flexapod.showing import in_notebooks
+from flexapod.showing import drawn, in_notebooks
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axes import Axes
 
 
 _INFEASIBLE = 1e12  # of what is made small, where a design has none
@@ -83,6 +84,10 @@ class ParetoFront:
     name: str
     unit: str
     history: xr.Dataset
+
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw the front among all trials: `plots.optimisation.front`."""
+        return drawn(self, ax=ax)
 
 
 def pareto_front(

@@ -21,13 +21,14 @@ from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, Uncer
 from flexapod.optimisation.worst_case import worst_case
 from flexapod.optional import needed
 from flexapod.pose import Pose
-from flexapod.showing import in_notebooks
+from flexapod.showing import drawn, in_notebooks
 from flexapod.workspace.limit_margins import none_within
 from flexapod.workspace.region import RegionLike, as_region, home_of
 from flexapod.workspace.sobol import Sobol
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.axes import Axes
 
 Progress = Callable[[float], object]
 _BLOCK = 2**20  # designs times poses computed at once
@@ -73,6 +74,10 @@ class Robustness:
     searches: int
     agreed: int
     sensitivity: xr.Dataset | None
+
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw how the index is distributed: `plots.optimisation.spread`."""
+        return drawn(self, ax=ax)
 
 
 def robustness(

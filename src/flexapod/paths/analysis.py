@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -20,7 +20,10 @@ from flexapod.mechanics.kinematics import condition_number, force_transformation
 from flexapod.mechanics.modes import natural_modes
 from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
-from flexapod.showing import in_notebooks
+from flexapod.showing import drawn, in_notebooks
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure, SubFigure
 
 _ZERO_INDEX = 1e-6  # of the largest index on the path: what a singular pose leaves of the lowest frequency
 _MOST_SAMPLES = 10**6  # instants of a path: a gigabyte
@@ -73,6 +76,10 @@ class PathIndex:
     def above(self) -> bool:
         """Say whether the index stays at or above the bound all along."""
         return not self.below and not self.crossings
+
+    def plot(self, beside: PathIndex | None = None, *, figure: Figure | SubFigure | None = None) -> Figure:
+        """Draw the index along the path: `plots.path.index_along`, with its options."""
+        return drawn(self, beside=beside, figure=figure)
 
 
 def path_index(

@@ -16,3 +16,4 @@ from .machine_3d import mode as mode
 from .natural_frequencies import frequencies as frequencies
 from .printing import for_print as for_print
 from .printing import save as save
+from .results import plot as plot

@@ -125,7 +125,7 @@ def _label_contours(ax: Axes, lines: Any) -> None:
         text.set_path_effects([withStroke(linewidth=wide(2), foreground=ink())])
 
 
-def auto(sweep: xr.Dataset, level: float | None = None, *, all_poses: bool = False) -> Axes:
+def auto(sweep: xr.Dataset, level: float | None = None, *, ax: Axes | None = None, all_poses: bool = False) -> Axes:
     """Draw the figure that fits a sweep: a line, a map, a surface, or else the scatter.
 
     Parameters
@@ -134,6 +134,8 @@ def auto(sweep: xr.Dataset, level: float | None = None, *, all_poses: bool = Fal
         The sweep.
     level : float, optional
         The value of a surface. Default: the median.
+    ax : Axes, optional
+        Axes to draw on, of three dimensions for a surface. Default: those of a new figure.
     all_poses : bool, optional
         If True, poses beyond the design's limits count as well.
 
@@ -155,10 +157,12 @@ def auto(sweep: xr.Dataset, level: float | None = None, *, all_poses: bool = Fal
     """
     dims = tuple(str(dim) for dim in sweep["omega_1"].dims) if "omega_1" in sweep else ()
     if not is_grid(dims):
-        return index_scatter(sweep, all_poses=all_poses)
+        return index_scatter(sweep, ax=ax, all_poses=all_poses)
     if len(dims) == 1:
-        return index_line(sweep)
-    return index_map(sweep, all_poses=all_poses) if len(dims) == 2 else iso_surface(sweep, level, all_poses=all_poses)
+        return index_line(sweep, ax=ax)
+    if len(dims) == 2:
+        return index_map(sweep, ax=ax, all_poses=all_poses)
+    return iso_surface(sweep, level, ax=ax, all_poses=all_poses)
 
 
 def index_line(sweep: xr.Dataset, *, ax: Axes | None = None) -> Axes:

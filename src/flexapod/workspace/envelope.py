@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import combinations, product
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,7 +15,7 @@ from flexapod.errors import ArgumentError, PoseError, told_apart
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point, single_pose
 from flexapod.mechanics.joint_limits import check_limits
 from flexapod.pose import Pose, PoseLike
-from flexapod.showing import in_notebooks
+from flexapod.showing import drawn, in_notebooks
 from flexapod.workspace.axis_speeds import Fastest, fastest
 from flexapod.workspace.box_minimum import pattern_minima
 from flexapod.workspace.largest_box import Boxes, largest_shares
@@ -23,6 +23,9 @@ from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.rays import trace
 from flexapod.workspace.sobol import Sobol
 from flexapod.workspace.travel_limits import Bounds, Displacements, TravelLimits
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure, SubFigure
 
 _ALONG = 33  # poses along an axis
 _IN_BOX, _STARTS = 2048, 16  # poses of the box, and those from which its least index is sought
@@ -129,6 +132,10 @@ class Envelope(NamedTuple):
     axes: tuple[AxisTravel, ...]
     pairs: tuple[PairTravel, ...]
     box: BoxTravel
+
+    def plot(self, name: str = "", *, figure: Figure | SubFigure | None = None) -> Figure:
+        """Draw the motions along every two axes: `plots.envelope.pairs`, with its options."""
+        return drawn(self, name=name, figure=figure)
 
 
 def envelope(
