@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from flexapod.design.schema import KEYS, POINT, POINTS, Key
+from flexapod.design.key import Key
+from flexapod.design.schema import KEYS, POINT, POINTS
 from flexapod.design.units import UNITS, printed, si_unit
 
 if TYPE_CHECKING:

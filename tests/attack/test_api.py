@@ -71,6 +71,8 @@ OWN = {
     ("gain_schedule", "samples"): 2, ("frequency_grid", "omega_min"): None, ("frequency_grid", "omega_max"): None,
     ("simulate", "times"): None, ("simulate_many", "times"): None, ("simulate", "start"): "rest", ("transmissibility", "omega"): [10.0],
     ("root_locus", "legs"): (1, 2, 3), ("gain_map", "controller"): control.PID(1.0, 1.0), ("path_index", "samples"): 16, ("plot", "result"): fx.natural_modes(H), ("payload_loads", "payloads"): [fx.paths.PayloadCase("full", 2.0)],
+    ("motor_loads", "hexapod"): H.replace({"drive": {"lead": 0.01, "efficiency": 0.9}}), ("motor_loads", "dataset"): fx.paths.path_loads(H, LINE, samples=8),
+    ("motor_loads", "hold"): 1.0,
 }  # fmt: skip
 #: What a call needs besides its required arguments, to be short.
 NEEDED = {

@@ -69,6 +69,10 @@ def _with_law(law: Any) -> object:
     return _with_legs(design.Legs(None, stiffness_law=law))
 
 
+def _driven(drive: Any) -> object:
+    return fx.paths.motor_loads(fx.Hexapod(**(WHOLE | {"drive": drive})), LOADS)
+
+
 def _of_motion(motion: Any) -> object:
     return fx.equations_of_motion(H, motion)
 
@@ -82,8 +86,9 @@ MASS = fx.Variable("platform.mass", 20.0, 30.0)
 WHOLE = {
     "base_joints": H.base_joints, "platform_joints": H.platform_joints, "platform_mass": H.platform_mass,
     "platform_mass_center": H.platform_mass_center, "platform_inertia": H.platform_inertia, "legs": H.legs, "home": HOME,
-    "name": "own", "gravity": H.gravity, "limits": H.limits, "universal_axes": H.universal_axes, "short_forms": (), "suspension": None, "points": {"vertex": [0.0, 0.0, 0.1]},
+    "name": "own", "gravity": H.gravity, "limits": H.limits, "universal_axes": H.universal_axes, "short_forms": (), "suspension": None, "drive": None, "points": {"vertex": [0.0, 0.0, 0.1]},
 }  # fmt: skip
+LOADS = fx.paths.path_loads(fx.Hexapod(**WHOLE), LINE, samples=8)
 CIRCLES = {
     "base_radius": 0.2, "platform_radius": 0.15, "height": 0.2, "platform_mass": 3.0, "platform_inertia": [0.02, 0.02, 0.03],
     "stiffness": 1e6, "base_half_angle": 0.2, "platform_half_angle": 0.3, "degrees": False, "damping": 0.1, "gravity": [0, 0, -9.81],
@@ -121,6 +126,10 @@ MADE = {
     "TableLaw": Made(design.TableLaw, {"lengths": [0.1, 0.5, 1.0], "stiffnesses": [9e7, 7e7, 6e7]}, _with_law),
     "Suspension": Made(design.Suspension, {"stiffness": 1e3 * np.eye(6), "damping": np.eye(6), "point": [0.0, 0.0, 0.01]},
                        lambda s: fx.natural_modes(fx.Hexapod(**(WHOLE | {"suspension": s})))),
+    "Motor": Made(design.Motor, {"speeds": [0.0, 100.0, 200.0], "peak_torques": [9.0, 9.0, 5.0], "continuous_torques": [3.0, 2.0, 1.0],
+                                 "max_speed": 150.0}, lambda motor: _driven(design.Drive(0.01, 0.9, motor=motor))),
+    "Drive": Made(design.Drive, {"lead": 0.01, "efficiency": 0.9, "back_efficiency": 0.8, "gear_ratio": 2.0, "gear_efficiency": 0.95,
+                                 "rotor_inertia": 1e-4, "gear_inertia": 1e-5, "screw_inertia": 1e-4, "motor": None}, _driven),
     "Limits": Made(design.Limits, {"leg_length": [0.1, 1.0], "universal_angle": 1.0, "spherical_angle": 1.0, "leg_distance": 0.001,
                                    "universal_moment": 10.0, "spherical_moment": 10.0, "leg_compression": 1e5, "leg_tension": 1e5,
                                    "leg_rate": 1.0, "leg_acceleration": 1.0, "leg_power": 1e3},

@@ -101,6 +101,13 @@ def loaded_path():
 
 
 @cache
+def driven_path():
+    curve = {"speeds_rpm": [0, 3000], "peak_torques": [9, 8], "continuous_torques": [3, 2]}
+    drive = {"lead_mm": 5, "efficiency": 0.9, "motor": curve}
+    return fx.paths.motor_loads(fx.load("mukherjee-i").replace({"drive": drive}), loaded_path())
+
+
+@cache
 def indexed_path():
     way = fx.Trajectory(fx.Pose([[0, 0, 0.89], [0.05, 0, 0.89]]), [0, 1])
     return fx.path_index(fx.load("mukherjee-i"), way, bound=100.0)
@@ -165,6 +172,7 @@ DRAW = {
     "optimisation.spread": lambda f: partial(f, uncertain()),
     "path.index_along": lambda f: partial(f, indexed_path()),
     "path.loads": lambda f: partial(f, loaded_path()),
+    "path.motors": lambda f: partial(f, driven_path()),
     "path.plan_map": lambda f: partial(f, fx.paths.plan_slice(*planned())),
     "response.frequency_response": lambda f: partial(f, transmitted(), given="x"),
     "response.random_spectra": lambda f: partial(f, random()),

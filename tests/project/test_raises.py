@@ -217,6 +217,7 @@ PROVOKED = {
     ("pareto_front", "InfeasibleError"): lambda: fx.pareto_front(
         MACHINE, [fx.Variable("platform.mass", 20, 40)], fx.optimisation.TotalMass(1.0), trials=2, samples=8
     ),
+    ("motor_loads", "ArgumentError"): lambda: fx.paths.motor_loads(MACHINE, fx.paths.path_loads(MACHINE, LINE)),
     ("path_index", "ArgumentError"): lambda: fx.path_index(MACHINE, LINE, bound=-1.0),
     ("path_index", "PoseError"): lambda: fx.path_index(
         MACHINE, fx.Trajectory(fx.Pose([MEETING.position, HOME.position]), [0, 1])

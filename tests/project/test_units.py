@@ -47,6 +47,13 @@ def _store(folder):
     return fx.open_sweep(path)
 
 
+def _motors(folder):
+    curve = {"speeds": [0.0, 100.0], "peak_torques": [9.0, 8.0], "continuous_torques": [3.0, 2.0]}
+    machine, path = _way()
+    machine = machine.replace({"drive": {"lead": 0.01, "efficiency": 0.9, "motor": curve}})
+    return fx.paths.motor_loads(machine, fx.paths.path_loads(machine, path, samples=10))
+
+
 def _front():
     heavier = fx.Variable("platform.mass", 20, 30)
     return fx.pareto_front(POSITIONER, [heavier], fx.optimisation.TotalMass(), trials=12, refine=0, samples=4)
@@ -64,6 +71,7 @@ CALLS = {
         H, HOME, kp=[1e4, 2e4], kd=[1.0, 2.0], controller=fx.control.PID(1.0, 1.0, space="task"), nearness=1e-9
     ),
     "gain_schedule": lambda folder: fx.control.gain_schedule(H, fx.pose_grid(z=[0.03, 0.035])),
+    "motor_loads": _motors,
     "open_sweep": _store,
     "path_loads": lambda folder: fx.paths.path_loads(_plan()[0], _plan()[1].path),
     "payload_loads": lambda folder: fx.paths.payload_loads(*_way(), [fx.paths.PayloadCase("full", 2.0)], samples=10),

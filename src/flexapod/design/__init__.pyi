@@ -3,6 +3,8 @@ from .compiled import CompiledHexapod as CompiledHexapod
 from .compiled import LinearMatrices as LinearMatrices
 from .design_file import packaged_designs as packaged_designs
 from .design_file import template as template
+from .drive import Drive as Drive
+from .drive import Motor as Motor
 from .flexible_joints import JointStiffness as JointStiffness
 from .flexible_joints import Suspension as Suspension
 from .hexapod import Hexapod as Hexapod

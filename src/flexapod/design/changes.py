@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.design.key import ANY
 from flexapod.design.key_names import resolve, unknown_key
-from flexapod.design.schema import ANY, KEYS, TABLES, TEXT_KEYS, is_of_each_leg, rule_of
+from flexapod.design.schema import KEYS, TABLES, TEXT_KEYS, is_of_each_leg, rule_of
 from flexapod.design.short_forms import ShortForm
 from flexapod.design.shorthands import BESIDE, MAKES, NEEDS, SETS, Values, expand, stands_in_pairs
 from flexapod.design.tables import complete, flatten, has_law, table_of

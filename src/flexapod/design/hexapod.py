@@ -19,6 +19,7 @@ from flexapod.conventions import JOINT_MODELS, Array, JointModel
 from flexapod.design import changes as design_changes
 from flexapod.design import design_file
 from flexapod.design.compiled import CompiledHexapod
+from flexapod.design.drive import Drive, values_of_drive
 from flexapod.design.flexible_joints import Suspension
 from flexapod.design.geometry_checks import joint_warnings, platform_warnings, unit_axes, warnings_of_part
 from flexapod.design.home import Home
@@ -30,7 +31,7 @@ from flexapod.design.shorthands import circle_table, expand
 from flexapod.design.spring_checks import check_springs
 from flexapod.design.tables import DEFAULT_GRAVITY, complete, flatten
 from flexapod.design.universal_axes import default_axes
-from flexapod.design.value import Value, bytes_of
+from flexapod.design.value import ADDED, Value, bytes_of
 from flexapod.design.values import parts_of, values_of_legs, values_of_suspension
 from flexapod.errors import DesignError, shown
 from flexapod.output_files import write_file
@@ -91,6 +92,8 @@ class Hexapod(Value, metaclass=Suggesting):
     points : mapping, optional
         Points of the platform by name, (3,) m each, in the platform's frame, such as the vertex of a mirror. What
         studies take as `point` may be such a name. Kept in the order of the names.
+    drive : Drive, optional
+        Screw, gear and motor of the legs, for the motors' torques along a path; no part of the machine's dynamics.
     short_forms : tuple, optional
         The circles, cube and rods of a design file that joints and bodies were made by. `replace` changes their
         numbers and `to_toml` writes them; those that do not make the other values are left out. Designs of the same
@@ -144,6 +147,7 @@ class Hexapod(Value, metaclass=Suggesting):
     home: Pose | None = None
     suspension: Suspension | None = None
     points: Mapping[str, Array] = field(default_factory=Points)
+    drive: Drive | None = field(default=None, metadata=ADDED)
     short_forms: tuple[ShortForm, ...] = field(default=(), compare=False)
     warnings: tuple[str, ...] = field(default=(), init=False)
 
@@ -160,6 +164,8 @@ class Hexapod(Value, metaclass=Suggesting):
                 raise DesignError(f"{part} is {shown(getattr(self, part))}; it must be a {kind.__name__}.")
         if self.suspension is not None and not isinstance(self.suspension, Suspension):
             raise DesignError(f"suspension is {shown(self.suspension)}; it must be a Suspension.")
+        if self.drive is not None and not isinstance(self.drive, Drive):
+            raise DesignError(f"drive is {shown(self.drive)}; it must be a Drive.")
         object.__setattr__(self, "points", Points(self.points))
         if self.home is not None:
             object.__setattr__(self, "home", Home.of(self.home))
@@ -306,7 +312,8 @@ class Hexapod(Value, metaclass=Suggesting):
                 values[f"limits.{item.name}"] = np.asarray(limit)
         if self.home is not None:
             values |= {"home.position": self.home.position, "home.orientation": self.home.rpy}
-        return values | values_of_suspension(self.suspension) | values_of_points(self.points)  # type: ignore[arg-type]
+        values |= values_of_suspension(self.suspension) | values_of_points(self.points)  # type: ignore[arg-type]
+        return values | values_of_drive(self.drive)
 
     def replace(self, changes: Mapping[str, Any] | None = None, /, **more: Any) -> Hexapod:
         """This design with changes, by the keys of a design file.
@@ -402,6 +409,8 @@ class Hexapod(Value, metaclass=Suggesting):
             content += bytes_of(springs)
         if self.points:
             content += bytes_of(self.points)
+        if self.drive is not None:
+            content += bytes_of(self.drive)
         return hashlib.sha256(content).hexdigest()[:16]
 
     @property

@@ -2,7 +2,8 @@
 
 from typing import NoReturn
 
-from flexapod.design.schema import KEYS, POINT, POINTS, TABLES, TEXT_KEYS, Key
+from flexapod.design.key import Key
+from flexapod.design.schema import KEYS, POINT, POINTS, TABLES, TEXT_KEYS
 from flexapod.design.units import ALL_UNITS, UNITS, si_unit
 from flexapod.errors import DesignError
 

@@ -17,9 +17,10 @@ from flexapod import _core
 from flexapod.conventions import LEGS, ROTATIONS, TRANSLATIONS, Array
 from flexapod.design import packing
 from flexapod.design.hexapod import SPRINGS, Hexapod
+from flexapod.design.key import Key
 from flexapod.design.key_names import resolve
 from flexapod.design.parts import MOST_IN_SERIES
-from flexapod.design.schema import KEYS, Key
+from flexapod.design.schema import KEYS
 from flexapod.design.shorthands import MAKES, SETS
 from flexapod.design.stiffness_laws import TableLaw, keys_of
 from flexapod.design.units import printed, to_si

@@ -96,6 +96,12 @@ UNITS: dict[str, dict[str, tuple[float, float]]] = {
         "in_per_s": (254, 1e4),
         "ft_per_s": (3048, 1e4),
     },
+    "angular velocity": {
+        "rad_per_s": (1, 1),
+        "mrad_per_s": (1, 1e3),
+        "deg_per_s": (math.pi, 180),
+        "rpm": (math.pi, 30),
+    },
     "power": {"W": (1, 1), "mW": (1, 1e3), "kW": (1e3, 1)},
 }
 
@@ -111,7 +117,7 @@ QUANTITIES: dict[str, dict[str, tuple[float, float]]] = {
     "velocity": {f"{unit}_per_s": factor for unit, factor in _LENGTHS.items()},
     "acceleration": {f"{unit}_per_s2": factor for unit, factor in _LENGTHS.items()}
     | {"ft_per_s2": (3048, 1e4), "g": (980665, 1e5), "mg": (980665, 1e8)},
-    "angular velocity": {f"{unit}_per_s": factor for unit, factor in _ANGLES.items()} | {"rpm": (math.pi, 30)},
+    "angular velocity": {f"{unit}_per_s": factor for unit, factor in _ANGLES.items()} | UNITS["angular velocity"],
     "angular acceleration": {f"{unit}_per_s2": factor for unit, factor in _ANGLES.items()},
 }
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from flexapod.checks import is_masked
 from flexapod.conventions import Array
-from flexapod.design.schema import SHAPES, Key
+from flexapod.design.key import SHAPES, Key
 from flexapod.design.units import printed, si_unit, to_si
 from flexapod.errors import DesignError, shown, told_apart
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from flexapod.design.drive import drive_of
 from flexapod.design.flexible_joints import JointStiffness, Suspension
 from flexapod.design.home import home_of
 from flexapod.design.parts import Damping, LegPart, Legs, Limits, more_keys
@@ -32,6 +33,7 @@ def parts_of(values: Mapping[str, Any], keys: Mapping[str, str]) -> dict[str, An
             "home": home_of(values),
             "suspension": suspension_of(values),
             "points": points_of(values),
+            "drive": drive_of(values),
         }
     except (KeyError, TypeError) as error:  # TypeError: a part of the legs without some of its numbers
         raise DesignError(f"values lacks a key ({error}); it must hold every one of Hexapod.values().") from error

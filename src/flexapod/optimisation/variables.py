@@ -12,7 +12,7 @@ from flexapod.checks import number, one_of, several
 from flexapod.conventions import TWO_PI, Array
 from flexapod.design import layout
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.schema import Key
+from flexapod.design.key import Key
 from flexapod.design.units import UNITS, si_unit, to_si
 from flexapod.design.universal_axes import keeps_tangents
 from flexapod.errors import ArgumentError, shown, told_apart

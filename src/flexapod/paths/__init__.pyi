@@ -2,6 +2,7 @@ from .analysis import PathIndex as PathIndex
 from .analysis import path_index as path_index
 from .leg_speed import LegSpeed as LegSpeed
 from .loads import path_loads as path_loads
+from .motor_loads import motor_loads as motor_loads
 from .payloads import PayloadCase as PayloadCase
 from .payloads import payload_loads as payload_loads
 from .plan import Plan as Plan

@@ -1,4 +1,4 @@
-"""What the legs do along a trajectory: forces, speeds and actuator power."""
+"""What legs and platform do along a trajectory: forces, speeds and actuator power, and the motion of a point."""
 
 from __future__ import annotations
 
@@ -8,15 +8,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from flexapod.conventions import LEGS, Array, JointModel, in_unit
+from flexapod.conventions import LEGS, TRANSLATIONS, Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
 from flexapod.mechanics.dynamics import inverse_dynamics
-from flexapod.mechanics.inputs import ZERO
+from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attributes
 from flexapod.mechanics.joint_limits import check_limits
 from flexapod.mechanics.joint_springs import joint_moments
 from flexapod.mechanics.kinematics import LegRates, leg_rates
 from flexapod.mechanics.load_limits import load_excess
+from flexapod.mechanics.point_motion import at_point
 from flexapod.paths.analysis import check_arguments, singular_times
 from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Motion
@@ -32,6 +33,7 @@ def path_loads(
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
+    point: PointLike = ZERO,
 ) -> xr.Dataset:
     """Compute leg forces, leg speeds and actuator power along a trajectory, under the full dynamics.
 
@@ -48,6 +50,8 @@ def path_loads(
         each instant.
     joint : {"universal", "spin_free"}, optional
         Model of the joint between a leg and the base.
+    point : array_like or str, optional
+        Point of the platform whose motion is told, in its frame, m, (3,), or the name of a point of the design.
 
     Returns
     -------
@@ -56,6 +60,8 @@ def path_loads(
 
         - leg_force (N, positive: compression), static_force (N, the same at rest), leg_length (m), leg_rate (m/s),
           leg_acceleration (m/s2), power (W) of each actuator, positive where it drives
+        - position (m), velocity (m/s) and acceleration (m/s2) of the point, and angular_velocity (rad/s) and
+          angular_acceleration (rad/s2) of the platform, over `time` and `axis`, in the base frame
         - universal_moment, bending_moment, torsion_moment (N m), where the joints have springs: of a base joint about
           both axes together, and of a platform joint across and about the leg
 
@@ -121,10 +127,23 @@ def path_loads(
             "within_limits": ("time", check_limits(hexapod, motion.pose, joint=joint).ok),
             "loads_within_limits": ("time", _kept(hexapod, leg_force, legs)),
         },
-        {"time": ("time", times, in_unit("s")), "leg": list(LEGS)},
+        {"time": ("time", times, in_unit("s")), "leg": list(LEGS), "axis": list(TRANSLATIONS)},
     )
-    dataset = dataset.assign(_joint_moments(hexapod, motion, joint)).assign(_extremes(dataset))
-    return dataset.assign_attrs(design=hexapod.name, digest=hexapod.digest)
+    dataset = dataset.assign(_motion(motion, as_point(hexapod, point)) | _joint_moments(hexapod, motion, joint))
+    told = {"design": hexapod.name, "digest": hexapod.digest, **point_attributes(hexapod, point)}
+    return dataset.assign(_extremes(dataset)).assign_attrs(told)
+
+
+def _motion(motion: Motion, point: Array) -> dict[str, Any]:
+    """Motion of a point of the platform, in the base frame."""
+    told, grid = at_point(motion, point), ("time", "axis")
+    return {
+        "position": (grid, told.pose.position, in_unit("m", "position of the point")),
+        "velocity": (grid, told.velocity, in_unit("m/s", "velocity of the point")),
+        "acceleration": (grid, told.acceleration, in_unit("m/s^2", "acceleration of the point")),
+        "angular_velocity": (grid, told.angular_velocity, in_unit("rad/s", "angular velocity")),
+        "angular_acceleration": (grid, told.angular_acceleration, in_unit("rad/s^2", "angular acceleration")),
+    }
 
 
 def _extremes(loads: xr.Dataset) -> dict[str, xr.DataArray]:

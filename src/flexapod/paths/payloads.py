@@ -15,7 +15,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.design.inertia import inertia_flaw
 from flexapod.design.payload import with_payload
 from flexapod.errors import ArgumentError, shown
-from flexapod.mechanics.inputs import ZERO
+from flexapod.mechanics.inputs import ZERO, PointLike, point_attributes
 from flexapod.paths.analysis import check_arguments, path_index
 from flexapod.paths.loads import path_loads
 from flexapod.paths.trajectory import Trajectory
@@ -88,6 +88,7 @@ def payload_loads(
     *,
     samples: int = 400,
     joint: JointModel = "universal",
+    point: PointLike = ZERO,
 ) -> xr.Dataset:
     """Compute the loads of a trajectory with each of several payloads on the platform.
 
@@ -103,6 +104,8 @@ def payload_loads(
         Number of instants, at least 8.
     joint : {"universal", "spin_free"}, optional
         Model of the joint between a leg and the base.
+    point : array_like or str, optional
+        Point of the platform whose motion is told, in its frame, m, (3,), or the name of a point of the design.
 
     Returns
     -------
@@ -136,17 +139,19 @@ def payload_loads(
     """
     check_arguments(hexapod, path, samples)
     cases = _checked(payloads)
+    told = point_attributes(hexapod, point)
     found, least = [], []
     for case in cases:
         loaded = with_payload(hexapod, case.mass, case.position, case.inertia)
-        loads = path_loads(loaded, path, samples=samples, force=case.force, moment=case.moment, joint=joint)
+        acting = {"force": case.force, "moment": case.moment}
+        loads = path_loads(loaded, path, samples=samples, joint=joint, point=point, **acting)
         found.append(loads)
         least.append(path_index(loaded, path, samples=samples, joint=joint).minimum)
     names = xr.DataArray([case.name for case in cases], dims="case", name="case")
     together = xr.concat(found, dim=names, combine_attrs="override")
     together["mass"] = ("case", [case.mass for case in cases], in_unit("kg", "mass of the payload"))
     together["least_index"] = ("case", least, in_unit("rad/s", "lowest natural frequency on the path"))
-    return together.assign_attrs(design=hexapod.name, digest=hexapod.digest)
+    return together.assign_attrs({"design": hexapod.name, "digest": hexapod.digest, **told})
 
 
 def _checked(payloads: Sequence[PayloadCase]) -> list[PayloadCase]:

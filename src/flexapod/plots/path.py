@@ -1,17 +1,18 @@
-"""Figures of paths: the index along them, the plan beside the straight line, leg forces and travel.
+"""Figures of paths: the index along them, the plan beside the straight line, leg forces and travel, motors.
 
 Each function draws a result of a study, on a new figure where none is given.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.ticker import EngFormatter
 
+from flexapod.conventions import TWO_PI
 from flexapod.paths.analysis import PathIndex
 from flexapod.plots.style import (
     BLUE,
@@ -35,6 +36,7 @@ from flexapod.plots.style import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+_RPM = 60.0 / TWO_PI
 STYLES = ("-", "-", "-", (0, (5, 1.5)), (0, (5, 1.5)), (0, (5, 1.5)))
 
 
@@ -199,3 +201,73 @@ def loads(dataset: xr.Dataset, *, figure: Figure | SubFigure | None = None) -> F
     legend_below(page, 6, *left.get_legend_handles_labels())
     entitle(page, f"{dataset.attrs['design']}: legs along the path")
     return page
+
+
+def motors(dataset: xr.Dataset, *, ax: Axes | None = None) -> Axes:
+    """Draw torque and speed of the motors along a path, in the plane of the motors' curve.
+
+    Parameters
+    ----------
+    dataset : xarray.Dataset
+        The result of `paths.motor_loads`, without cases.
+    ax : Axes, optional
+        Axes to draw on. Default: those of a new figure.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes; their ``figure`` can be saved.
+
+    Notes
+    -----
+    Marks are RMS torques at RMS speeds. Where speed and torque have one sign the motor drives, elsewhere it brakes.
+
+    Examples
+    --------
+    >>> hexapod = fx.load("mukherjee-i").replace({"drive": {"lead_mm": 5, "efficiency": 0.9}})
+    >>> way = fx.Trajectory(fx.Pose([[0, 0, 0.89], [0.05, 0, 0.89]]), [0, 1])
+    >>> found = fx.paths.motor_loads(hexapod, fx.paths.path_loads(hexapod, way))
+    >>> fx.plots.path.motors(found).figure.savefig("motors.png")
+    """
+    alone = ax is None
+    ax = new_axes(7.4, 5.0) if ax is None else ax
+    for i, leg in enumerate(dataset.leg.values):
+        line: dict[str, Any] = {"color": SIX[i], "ls": STYLES[i], "lw": wide(1.5), "label": f"leg {leg}"}
+        ax.plot(_RPM * dataset.motor_speed[:, i], dataset.motor_torque[:, i], **line)
+        ax.plot(
+            _RPM * dataset.rms_speed[i],
+            dataset.rms_torque[i],
+            "o",
+            ms=7,
+            color=SIX[i],
+            mec=ink(),
+            mew=wide(0.8),
+            zorder=5,
+        )
+    if "curve_speed" in dataset:
+        _curve(ax, dataset)
+    for level in (ax.axhline, ax.axvline):
+        level(0.0, color=FAINT, lw=wide(0.7), zorder=0)
+    ax.set(xlabel="motor speed, rpm", ylabel="motor torque, N m (dots: RMS)")
+    dress(ax)
+    legend_of(ax, alone, 4)
+    entitle(ax, f"{dataset.attrs['design']}: motors along the path")
+    return ax
+
+
+def _curve(ax: Axes, dataset: xr.Dataset) -> None:
+    """The motor's curve in all four quadrants as far as there are torques, and the greatest speed."""
+    least, most = (float(reduced(dataset.motor_torque)) for reduced in (np.min, np.max))
+    fastest = float(dataset.max_speed.min())
+    speeds = np.unique(np.append(np.minimum(dataset.curve_speed.values, fastest), fastest))
+    both = _RPM * np.concatenate([-speeds[::-1], speeds])
+    for name, words, style in (("peak", "peak torque", "-"), ("continuous", "continuous torque", DASHED)):
+        values = np.interp(speeds, dataset.curve_speed.values, dataset[f"{name}_curve"].values)
+        for sign, needed in ((1.0, most > 0), (-1.0, least < 0)):
+            if needed:
+                half = sign * np.concatenate([values[::-1], values])
+                ax.plot(both, half, color=ink(), lw=wide(1.6), ls=style, label=words if sign > 0 or most <= 0 else None)
+    for sign in (-1.0, 1.0):
+        ax.axvline(
+            _RPM * sign * fastest, color=ink(), lw=wide(1.0), ls=":", label="greatest speed" if sign > 0 else None
+        )

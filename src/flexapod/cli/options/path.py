@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.cli.options.points import PointGiven, point_option
 from flexapod.cli.options.quantities import FREQUENCY, LENGTH, POSITIVE_LENGTH, TIME, Quantity
 
 if TYPE_CHECKING:
@@ -29,6 +30,8 @@ class Options:
     home_time: float | None
     payload: tuple[tuple[float, ...], ...]
     payloads: Path | None
+    point: PointGiven
+    hold: float | None
     start: tuple[float, ...] | None
     goal: tuple[float, ...] | None
     bound: float | None
@@ -69,6 +72,13 @@ path_options = common.stack(
         type=click.Path(path_type=Path, dir_okay=False),
         metavar="CSV",
         help="Loads with inertia, or forces: columns mass, x, y, z, ixx, ..., force_x, ..., name, each if wanted.",
+    ),
+    point_option("Point of the platform whose motion is told"),
+    click.option(
+        "--hold",
+        type=TIME,
+        metavar="S",
+        help="Time at rest at the end of the path in every cycle, for the RMS torque of the motors of [drive].",
     ),
     click.option("--bound", type=FREQUENCY, metavar="RAD_S", help="Least natural frequency that the path should keep."),
     click.option(

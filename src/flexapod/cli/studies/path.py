@@ -14,9 +14,11 @@ from flexapod.cli.options.path import Options
 from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError, SingularPoseError
+from flexapod.mechanics.inputs import as_point
 from flexapod.paths.analysis import path_index
 from flexapod.paths.leg_speed import LegSpeed
 from flexapod.paths.loads import path_loads
+from flexapod.paths.motor_loads import motor_loads
 from flexapod.paths.payloads import PayloadCase, payload_loads
 from flexapod.paths.plan import Plan, plan_slice
 from flexapod.paths.planning import LONGEST, plan_path
@@ -30,12 +32,25 @@ from flexapod.report.study import Study
 def compute(options: Options, report: Report) -> Study:
     """The index along the path of the options, given or planned."""
     hexapod = common.load_design(options.design, options.changes)
+    if options.hold is not None and hexapod.drive is None:
+        raise click.UsageError(f"--hold is for motors, and {hexapod.name!r} has none. Add [drive] to the design.")
+    as_point(hexapod, options.point)
     cases = payloads.read(options.payload, options.payloads)
     found = _given(hexapod, options) if _is_file(options) else _planned(hexapod, options, report)
     if cases:
         asis = PayloadCase("design")
-        found = replace(found, cases=payload_loads(hexapod, found.path, [asis, *cases], joint=options.joint))
+        side = payload_loads(hexapod, found.path, [asis, *cases], joint=options.joint, point=options.point)
+        found = replace(found, cases=side)
+    if hexapod.drive is not None:
+        found = _with_motors(hexapod, found, options.hold or 0.0)
     return study(hexapod, found, None if found.plan is None else waypoints.written(found.path))
+
+
+def _with_motors(hexapod: Hexapod, found: PathFindings, hold: float) -> PathFindings:
+    """What the motors do besides, as the design is and with each payload."""
+    motors = motor_loads(hexapod, found.loads, hold=hold)
+    cases = None if found.cases is None else motor_loads(hexapod, found.cases, hold=hold)
+    return replace(found, motors=motors, case_motors=cases)
 
 
 def _is_file(options: Options) -> bool:
@@ -68,7 +83,7 @@ def _given(hexapod: Hexapod, options: Options) -> PathFindings:
         index = path_index(hexapod, path, bound=options.bound, joint=options.joint)
     except (SingularPoseError, PoseError) as error:
         raise type(error)(f"{error}{_hint(hexapod, path, options)}") from error
-    loads = path_loads(hexapod, path, joint=options.joint)
+    loads = path_loads(hexapod, path, joint=options.joint, point=options.point)
     proof = None
     if options.certify:
         proof = certify(hexapod, path, at_least=options.bound, joint=options.joint, time_limit=LONGEST)
@@ -99,7 +114,7 @@ def _planned(hexapod: Hexapod, options: Options, report: Report) -> PathFindings
         progress=lambda share: report("planning", share),
     )
     index = path_index(hexapod, plan.path, bound=options.bound, joint=options.joint)
-    loads = path_loads(hexapod, plan.path, joint=options.joint)
+    loads = path_loads(hexapod, plan.path, joint=options.joint, point=options.point)
     if plan.rough is None:
         return PathFindings(plan.path, index, loads, plan.size, plan=plan, certificate=plan.certificate)
     beside = path_index(hexapod, plan.straight, bound=options.bound, joint=options.joint, singular="keep")

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, Array
+from flexapod.design.drive import values_of_drive
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.schema import KEYS
+from flexapod.design.schema import KEYS, TEXT_KEYS, is_of_each_leg
 from flexapod.design.stiffness_laws import TableLaw
 from flexapod.design.units import printed, si_unit
 from flexapod.pose import Pose
@@ -25,7 +27,8 @@ _INERTIA = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2)
 
 def section(hexapod: Hexapod) -> Section:
     """The part of a page that lists a design."""
-    tables = [_joints(hexapod), _legs(hexapod), *_springs(hexapod), _bodies(hexapod), _further(hexapod)]
+    tables = [_joints(hexapod), _legs(hexapod), *_springs(hexapod), *_drive(hexapod), _bodies(hexapod)]
+    tables.append(_further(hexapod))
     return Section("Inputs", tables, [WORDS])
 
 
@@ -57,18 +60,40 @@ def _legs(hexapod: Hexapod) -> Table:
         for key, value in hexapod.values().items()
         if key.startswith("legs.") and not key.endswith((".mass", ".mass_center"))  # those stand with the bodies
     }
+    return _of_each_leg(values, "legs.", "Legs")
+
+
+def _of_each_leg(values: Mapping[str, Any], start: str, title: str) -> Table:
+    """A column for each number of the legs, by key without its start."""
     named: dict[str, tuple[str, Array]] = {}  # title -> its key and a number of each leg
     for key, value in values.items():
-        title = key.removeprefix("legs.").replace(".", ", ")
+        name = key.removeprefix(start).replace(".", ", ")
+        if key in TEXT_KEYS or not is_of_each_leg(key):
+            continue
         if np.shape(value) == (6,):
-            named[title] = key, value
+            named[name] = key, value
         elif np.ndim(value) == 2 and len(value) == 6:
-            named |= {f"{title} {k + 1}": (key, value[:, k]) for k in range(value.shape[1])}
+            named |= {f"{name} {k + 1}": (key, value[:, k]) for k in range(value.shape[1])}
     rows, names = _alike([value for _, value in named.values()], LEGS)
     columns = [Column("leg", names)]
-    for title, (key, _), column in zip(named, named.values(), rows, strict=True):
-        columns.append(Column(title.replace("_", " "), _texts(column), _unit(key)))
-    return Table(columns, title="Legs", style="narrow", on="page")
+    for name, (key, _), column in zip(named, named.values(), rows, strict=True):
+        columns.append(Column(name.replace("_", " "), _texts(column), _unit(key)))
+    return Table(columns, title=title, style="narrow", on="page")
+
+
+def _drive(hexapod: Hexapod) -> list[Table]:
+    """Screws and gears, and the curve of the motor."""
+    if hexapod.drive is None:
+        return []
+    values = values_of_drive(hexapod.drive)
+    found = [_of_each_leg(values, "drive.", "Drive of the legs")]
+    curve = {key: value for key, value in values.items() if not is_of_each_leg(key)}
+    if curve:
+        columns = [
+            Column(key.rpartition(".")[2].replace("_", " "), _texts(value), _unit(key)) for key, value in curve.items()
+        ]
+        found.append(Table(columns, title="Torque and speed of the motors", style="narrow", on="page"))
+    return found
 
 
 def _unit(key: str) -> str:

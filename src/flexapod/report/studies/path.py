@@ -18,16 +18,22 @@ from flexapod.paths.analysis import PathIndex
 from flexapod.paths.plan import Plan
 from flexapod.paths.trajectory import Trajectory
 from flexapod.report.numbers import DASH, pose_numbers, pose_words, shown
-from flexapod.report.studies import least_index, path_legs
+from flexapod.report.studies import least_index, path_legs, path_motors, path_point
 from flexapod.report.studies.certificate import certificate_data, one_line
 from flexapod.report.study import Drawing, Row, Section, Study
+
+#: What is said of the figure of motors.
+_PLANE = (
+    "Each line is a motor along the path, and each dot its RMS torque at its RMS speed. The motor drives where speed "
+    "and torque have one sign, and brakes where they have not. Peak torque bounds lines, continuous torque dots."
+)
 
 
 @dataclass(frozen=True)
 class PathFindings:
     """What was computed about a path. size: m that a radian counts as. beside, plan, plane: of a planned path.
 
-    cases: with each payload."""
+    cases: with each payload. motors, case_motors: of a design with a drive, as it is and with each payload."""
 
     path: Trajectory
     along: PathIndex
@@ -38,6 +44,8 @@ class PathFindings:
     plane: xr.Dataset | None = None
     certificate: Certificate | None = None
     cases: xr.Dataset | None = None
+    motors: xr.Dataset | None = None
+    case_motors: xr.Dataset | None = None
 
 
 def study(hexapod: Hexapod, f: PathFindings, waypoints: str | None = None) -> Study:
@@ -46,6 +54,8 @@ def study(hexapod: Hexapod, f: PathFindings, waypoints: str | None = None) -> St
     what = f"planned from {' to '.join(ends)}" if f.plan else "as given"
     drawings = _drawings(f)
     files: dict[str, Any] = {f"path-{one.name}.png": one.draw for one in sorted(drawings, key=_order)}
+    motors = _motors(hexapod, f)
+    files |= {f"path-{one.name}.png": one.draw for part in motors for one in part.items if isinstance(one, Drawing)}
     if waypoints is not None:
         files["waypoints.csv"] = lambda: waypoints
     return Study(
@@ -53,29 +63,47 @@ def study(hexapod: Hexapod, f: PathFindings, waypoints: str | None = None) -> St
         subject="path",
         about=f"A path of {len(f.path.times)} waypoints, {what}. One radian counts as {shown(f.size, 3)} m of length.",
         data=_data(hexapod, f),
-        rows=_rows(f),
+        rows=_rows(hexapod, f),
         sections=[
             *(Section(one.title, [one]) for one in drawings),
             Section("Legs", path_legs.tables(f.loads)),
+            Section("Motion", [path_point.table(f.loads)]),
+            *motors,
             *_cases(f),
         ],
         cautions=[
             *least_index.cautions(hexapod, f.along.minimum_pose, f.along.samples.attrs["joint"]),
             *cautions(f),
-            *load_cautions(hexapod, f.loads),
+            *leg_cautions(hexapod, f.loads, f.motors),
             *_case_cautions(hexapod, f),
         ],
         files={
             **files,
-            "path.csv": lambda: path_legs.series(f.path, f.loads if f.cases is None else f.cases),
+            "path.csv": lambda: _series(f),
             "path.html": None,
         },
     )
 
 
+def _motors(hexapod: Hexapod, f: PathFindings) -> list[Section]:
+    """The motors, of a design with a drive."""
+    if (motors := f.motors) is None:
+        return []
+    plane = Drawing("motors", "Torque and speed of the motors", lambda: plots.path.motors(motors), _PLANE)
+    return [Section("Motors", [plane, *path_motors.tables(hexapod, motors)])]
+
+
 def _cases(f: PathFindings) -> list[Section]:
     """The payloads, where there are any."""
-    return [] if f.cases is None else [Section("Payloads", path_legs.case_tables(f.cases))]
+    if f.cases is None:
+        return []
+    motors = [] if f.case_motors is None else [path_motors.case_table(f.case_motors)]
+    return [Section("Payloads", [*path_legs.case_tables(f.cases), *motors])]
+
+
+def _series(f: PathFindings) -> str:
+    loads, motors = (f.loads, f.motors) if f.cases is None else (f.cases, f.case_motors)
+    return path_legs.series(f.path, loads if motors is None else loads.merge(motors[list(path_motors.SERIES)]))
 
 
 def _drawings(f: PathFindings) -> list[Drawing]:
@@ -114,6 +142,12 @@ def cautions(f: PathFindings) -> list[Caution]:
     return found
 
 
+def leg_cautions(hexapod: Hexapod, loads: xr.Dataset, motors: xr.Dataset | None) -> list[Caution]:
+    """What legs and motors exceed."""
+    found = load_cautions(hexapod, loads)
+    return found if motors is None else [*found, *path_motors.cautions(hexapod, loads, motors)]
+
+
 def load_cautions(hexapod: Hexapod, loads: xr.Dataset) -> list[Caution]:
     """Which legs exceed limits of force, speed, acceleration and power on the way, and by how much at most."""
     found = []
@@ -138,14 +172,15 @@ def _case_cautions(hexapod: Hexapod, f: PathFindings) -> list[Caution]:
     """The same with each payload."""
     if f.cases is None:
         return []
-    return [
-        Caution(one.code, f"With the payload {name}: {one.text}", one.numbers)
-        for name in map(str, f.cases.case.values[1:])
-        for one in load_cautions(hexapod, f.cases.sel(case=name))
-    ]
+    found = []
+    for name in map(str, f.cases.case.values[1:]):
+        motors = None if f.case_motors is None else f.case_motors.sel(case=name)
+        for one in leg_cautions(hexapod, f.cases.sel(case=name), motors):
+            found.append(Caution(one.code, f"With the payload {name}: {one.text}", one.numbers))
+    return found
 
 
-def _rows(f: PathFindings) -> list[Row]:
+def _rows(hexapod: Hexapod, f: PathFindings) -> list[Row]:
     index, bound, force = f.along, f.along.bound, float(f.loads.peak_force.max())
     where = f"rad/s at {index.minimum_time:.4g} s, {pose_words(index.minimum_pose)}"
     travel = f"{1e3 * float(f.loads.stroke.max()):.4g} mm, force up to {force:.5g} N"
@@ -159,6 +194,7 @@ def _rows(f: PathFindings) -> list[Row]:
         Row("least index", f"{index.minimum:.5g}", where, on="terminal"),
         Row("weighted mean index", f"{index.weighted_mean:.5g}", "rad/s", on="terminal"),
         Row("legs: travel up to", travel, on="terminal"),
+        *([] if f.motors is None else path_motors.rows(hexapod, f.motors)),
     ]
     if bound is not None:
         words = "above it all along" if index.above else "BELOW it in places"
@@ -190,6 +226,7 @@ def _data(hexapod: Hexapod, f: PathFindings) -> dict[str, Any]:
         "within_limits": bool(loads.within_limits.all()),
         "loads_within_limits": bool(loads.loads_within_limits.all()),
         **path_legs.data(loads),
+        **path_point.data(loads),
         "waypoints_s": f.path.times,
         "waypoints_m_deg": [pose_numbers(f.path.waypoints[i]) for i in range(len(f.path.times))],
         "files": [],
@@ -201,6 +238,10 @@ def _data(hexapod: Hexapod, f: PathFindings) -> dict[str, Any]:
             "least_index_rad_s": f.cases.least_index.values,
             **path_legs.data(f.cases),
         }
+    if f.motors is not None:
+        data["motors"] = path_motors.data(f.motors)
+    if f.case_motors is not None:
+        data["payloads"]["motors"] = path_motors.data(f.case_motors)
     if f.certificate is not None:
         data["certificate"] = certificate_data(f.certificate)
     if plan is not None:

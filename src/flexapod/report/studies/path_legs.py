@@ -11,12 +11,14 @@ from flexapod.conventions import ROTATIONS, TRANSLATIONS
 from flexapod.paths.loads import EXTREMES
 from flexapod.paths.trajectory import Trajectory
 from flexapod.report.numbers import without_rounding
+from flexapod.report.studies.path_motors import SERIES
+from flexapod.report.studies.path_point import point_columns
 from flexapod.report.study import Column, Table
 from flexapod.tables import written_table
 from flexapod.workspace.quantities import titled
 
 MOMENTS = ("universal_moment", "bending_moment", "torsion_moment")
-_SERIES = ("leg_length", "leg_rate", "leg_acceleration", "leg_force", "static_force", "power", *MOMENTS)
+_SERIES = ("leg_length", "leg_rate", "leg_acceleration", "leg_force", "static_force", "power", *MOMENTS, *SERIES)
 #: Title and unit of what has extremes.
 _WORDS = {"force": ("force", "N"), "rate": ("rate", "m/s"), "power": ("power", "W")}
 
@@ -103,6 +105,7 @@ def _columns(path: Trajectory, loads: xr.Dataset) -> dict[str, Any]:
     columns: dict[str, Any] = {"time_s": loads.time.values}
     columns |= {f"{axis}_m": pose.position[:, k] for k, axis in enumerate(TRANSLATIONS)}
     columns |= {f"{axis}_rad": pose.rpy[:, k] for k, axis in enumerate(ROTATIONS)}
+    columns |= point_columns(loads)
     for name in _SERIES:
         if name in loads:
             unit = loads[name].attrs["units"]
