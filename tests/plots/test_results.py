@@ -48,6 +48,7 @@ RESULTS = {
     "sweep_surface.iso_surface": figures.volume,
     "statics.load_cases": lambda: figures.elevated()[0],
     "path.loads": figures.loaded_path,
+    "path.motors": figures.driven_path,
     "path.plan_map": lambda: fx.paths.plan_slice(*figures.planned()),
     "simulation.displacements": figures.shaken,
     "response.frequency_response": figures.transmitted,
@@ -69,7 +70,7 @@ OPTIONS = {
     "control.root_locus": {"chosen": 5.0},
     "statics.load_cases": {"elevation": np.radians(np.linspace(90, 15, 16))},
 }
-UNIT = re.compile(r"\b(1/s|rad/s²?|[munµ]?m|m/s²?|[munµ]?rad|[kM]?N|N/m|N s/m|N/\(m s\)|s|deg|Hz|kg)(\b|$|²)")
+UNIT = re.compile(r"\b(1/s|rad/s²?|[munµ]?m|m/s²?|[munµ]?rad|[kM]?N|N/m|N s/m|N/\(m s\)|s|deg|Hz|kg|rpm)(\b|$|²)")
 #: What labels name that has no unit.
 NUMBERS = re.compile(r"cond\(H\)|damping|trial|case|designs|over that|ratio|poses|relative$|^transmissibility$")
 

@@ -63,6 +63,7 @@ DATASETS = (
     _Known("omega_1", None, sweep.auto),
     _Known("spherical_force", ("case", "leg", "axis"), statics.load_cases),
     _Known("static_force", ("time", "leg"), path.loads),
+    _Known("motor_torque", ("time", "leg"), path.motors),
     _Known("path_along", ("step",), path.plan_map),
     _Known("relative_displacement", ("time", "output"), _displacements),
     _Known("absolute", ("omega", "output", "base"), response.frequency_response),
