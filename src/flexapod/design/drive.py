@@ -56,8 +56,8 @@ class Motor(Value):
     Examples
     --------
     >>> motor = fx.design.Motor([0, 300, 400], [9.0, 9.0, 6.0], [3.0, 2.5, 2.0])
-    >>> motor.peak(350.0), motor.continuous(350.0), motor.peak(500.0)
-    (7.5, 2.25, 0.0)
+    >>> motor.peak([350.0, 500.0]).tolist()
+    [7.5, 0.0]
     """
 
     speeds: Array

@@ -180,4 +180,4 @@ def _beyond_continuous(motors: xr.Dataset) -> list[Caution]:
 
 def _others(motors: xr.Dataset, name: str) -> str:
     which = [str(leg) for leg in motors.leg.values[motors[name].values < 1]]
-    return f"; so have legs {', '.join(which)}" if len(which) > 1 else ""
+    return f"; motors beyond it: those of legs {', '.join(which)}" if len(which) > 1 else ""
