@@ -25,6 +25,7 @@ PICTURES = {
     "modes.png": "draw_guides.py",
     "paper-corrections.png": "draw_paper.py",
     "paper-frequencies.png": "draw_paper.py",
+    "motors.png": "draw_motors.py",
     "plan-index.png": "draw_decisions.py",
     "plan.png": "draw_decisions.py",
     "response.png": "draw_guides.py",

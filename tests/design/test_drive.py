@@ -3,6 +3,7 @@
 import json
 import math
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -167,3 +168,10 @@ def test_a_table_of_six_stiffnesses_is_no_number_of_each_leg():
                 word in column.title for column in table.columns for word in ("lengths", "speeds", "torques")
             )
     assert fx.Hexapod.from_toml(law.to_toml()) == law
+
+
+def test_the_example_with_screws_is_the_motion_base_with_a_drive():
+    machine = fx.load(Path(__file__).parents[2] / "examples" / "machines" / "motion-base-screws.toml")
+    assert machine.replace({"drive": None}).digest == MACHINE.digest
+    steel, diameter, length = 7850.0, 0.05, 1.5
+    np.testing.assert_allclose(machine.drive.screw_inertia, math.pi / 32 * steel * diameter**4 * length, rtol=0.01)

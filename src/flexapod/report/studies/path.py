@@ -97,7 +97,7 @@ def _cases(f: PathFindings) -> list[Section]:
     """The payloads, where there are any."""
     if f.cases is None:
         return []
-    motors = [] if f.case_motors is None else [path_motors.case_table(f.case_motors)]
+    motors = [] if f.case_motors is None else path_motors.case_tables(f.case_motors)
     return [Section("Payloads", [*path_legs.case_tables(f.cases), *motors])]
 
 

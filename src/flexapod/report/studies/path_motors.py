@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from flexapod.conventions import TWO_PI
 from flexapod.design.drive import Drive
@@ -43,9 +45,9 @@ def tables(hexapod: Hexapod, motors: xr.Dataset) -> list[Table]:
     assert hexapod.drive is not None
     legs = Column("leg", [str(leg) for leg in motors.leg.values])
     columns = [
-        Column("greatest speed", _RPM * without_rounding(motors.peak_speed.values), "rpm"),
+        Column("peak speed", _RPM * without_rounding(motors.peak_speed.values), "rpm"),
         Column("RMS speed", _RPM * without_rounding(motors.rms_speed.values), "rpm"),
-        Column("greatest torque", motors.peak_torque.values, "N m"),
+        Column("peak torque", motors.peak_torque.values, "N m"),
         Column("RMS torque", motors.rms_torque.values, "N m"),
         Column("drives with", motors.driving_energy.values, "J"),
         Column("gets back", without_rounding(motors.returned_energy.values), "J"),
@@ -53,31 +55,35 @@ def tables(hexapod: Hexapod, motors: xr.Dataset) -> list[Table]:
     found = [Table([legs, *columns], words(hexapod, motors), title="Motors")]
     if "peak_factor" in motors:
         room = [
-            Column(f"{title} can / must", motors[name].values, digits=3, marked=motors[name].values < 1)
+            Column(title, motors[name].values, digits=3, marked=motors[name].values < 1)
             for name, title in _FACTORS.items()
         ]
-        room.insert(1, Column("least at", motors.peak_time.values, "s"))
+        room.insert(1, Column("at", motors.peak_time.values, "s"))
         note = "What the motor can, divided by what it must: at least 1. Continuous torque is that at the RMS speed."
-        found.append(Table([legs, *room], note, title="Motors beside their curve"))
+        found.append(Table([legs, *room], note, title="Motors beside their curve: can / must"))
     return found
 
 
-def case_table(motors: xr.Dataset) -> Table:
+def case_tables(motors: xr.Dataset) -> list[Table]:
     """The motor that has most to do with each payload; the worst is marked."""
-    columns = [Column("case", [str(name) for name in motors.case.values])]
-    worst: dict[str, tuple[xr.DataArray, str, float, Any]] = {
-        "greatest speed": (motors.peak_speed.max("leg"), "rpm", _RPM, np.argmax),
-        "greatest torque": (motors.peak_torque.max("leg"), "N m", 1.0, np.argmax),
-        "RMS torque": (motors.rms_torque.max("leg"), "N m", 1.0, np.argmax),
+    most: dict[str, tuple[NDArray[np.float64], str]] = {
+        "peak speed": (_RPM * motors.peak_speed.max("leg").values, "rpm"),
+        "peak torque": (motors.peak_torque.max("leg").values, "N m"),
+        "RMS torque": (motors.rms_torque.max("leg").values, "N m"),
     }
+    cases = Column("case", [str(name) for name in motors.case.values])
+    columns = [Column(title, values, unit, marked=_is(values, np.argmax)) for title, (values, unit) in most.items()]
+    found = [Table([cases, *columns], "Of the motor that has most to do.", title="Motors with the payloads")]
     if "peak_factor" in motors:
-        worst |= {
-            f"{title} can / must": (motors[name].min("leg"), "", 1.0, np.argmin) for name, title in _FACTORS.items()
-        }
-    for title, (found, unit, scale, pick) in worst.items():
-        values = scale * found.values
-        columns.append(Column(title, values, unit, marked=np.arange(values.size) == pick(values)))
-    return Table(columns, "Of the six motors the one that has most to do.", title="Motors with the payloads")
+        least = {title: motors[name].min("leg").values for name, title in _FACTORS.items()}
+        room = [Column(title, values, digits=3, marked=_is(values, np.argmin)) for title, values in least.items()]
+        found.append(Table([cases, *room], title="Motors with the payloads beside their curve: can / must"))
+    return found
+
+
+def _is(values: NDArray[np.float64], pick: Callable[[NDArray[np.float64]], Any]) -> NDArray[np.bool_]:
+    """Which of the values is the one that is picked."""
+    return np.arange(values.size) == pick(values)
 
 
 def words(hexapod: Hexapod, motors: xr.Dataset) -> str:
