@@ -17,6 +17,7 @@ ORDER = [
     "errors",
     "citation",
     "conventions",
+    "progress",
     "checks",
     "optional",
     "tables",

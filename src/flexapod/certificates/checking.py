@@ -15,6 +15,7 @@ from flexapod.certificates.known import without_springs
 from flexapod.certificates.question import Question
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.joint_limits import check_limits
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.workspace.proof import Boxes, Place, Prover, Standing, run
 from flexapod.workspace.quantities import evaluate
 
@@ -22,12 +23,13 @@ CUT = 0.382  # where boxes are cut: elsewhere than in the proof
 _ROUNDING = 1e-9  # relative, of a value at a pose computed anew
 
 
+@with_progress("check of a certificate")
 def check_certificate(
     certificate: Certificate | str | PathLike[str],
     *,
     time_limit: float | None = None,
     threads: int | None = None,
-    progress: Callable[[float], object] | None = None,
+    progress: ProgressLike = None,
     stop: Callable[[], bool] | None = None,
 ) -> Certificate:
     """Prove what a certificate says anew, by boxes that are cut elsewhere.
@@ -40,8 +42,9 @@ def check_certificate(
         How long to try, s.
     threads : int, optional
         Number of threads, default one for each core.
-    progress : callable, optional
+    progress : callable or False, optional
         Called with the share of the volume that is decided, from 0 to 1.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
     stop : callable, optional
         Called often; when it returns True, the check ends with what it has.
 
@@ -75,7 +78,7 @@ def check_certificate(
     'proved'
     """
     given = certificate if isinstance(certificate, Certificate) else read_certificate(certificate)
-    setup = proving.Setup.of(time_limit=time_limit, threads=threads, progress=progress, stop=stop)
+    setup = proving.Setup.of(time_limit=time_limit, threads=threads, progress=progress or None, stop=stop)
     _check_pose(given)
     if given.status == "refuted":
         return given

@@ -11,10 +11,12 @@ from flexapod.certificates.proving import Setup, prove
 from flexapod.certificates.question import Asked, checked_gap, checked_level, limited, question
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.workspace.limit_margins import refuse_force_limits
 from flexapod.workspace.store.dask_cluster import Cluster
 
 
+@with_progress("certificate")
 def certify_regular(
     hexapod: Hexapod,
     region: Asked = None,
@@ -25,7 +27,7 @@ def certify_regular(
     cluster: Cluster | None = None,
     path: str | PathLike[str] | None = None,
     resume: bool = False,
-    progress: Callable[[float], object] | None = None,
+    progress: ProgressLike = None,
     stop: Callable[[], bool] | None = None,
 ) -> Certificate:
     """Prove that no pose of a region is singular, or find one that is.
@@ -77,7 +79,7 @@ def certify_regular(
     setup = Setup.of(
         time_limit=time_limit,
         threads=threads,
-        progress=progress,
+        progress=progress or None,
         stop=stop,
         cluster=cluster,
         path=path,
@@ -86,6 +88,7 @@ def certify_regular(
     return prove(asked, "regular", None, 0.0, setup, lambda: least_index(legs_alone(asked), setup.threads))
 
 
+@with_progress("certificate")
 def certify_limits(
     hexapod: Hexapod,
     region: Asked = None,
@@ -95,7 +98,7 @@ def certify_limits(
     cluster: Cluster | None = None,
     path: str | PathLike[str] | None = None,
     resume: bool = False,
-    progress: Callable[[float], object] | None = None,
+    progress: ProgressLike = None,
     stop: Callable[[], bool] | None = None,
 ) -> Certificate:
     """Prove that every pose of a region is within the design's limits, or find one that is not.
@@ -148,7 +151,7 @@ def certify_limits(
     setup = Setup.of(
         time_limit=time_limit,
         threads=threads,
-        progress=progress,
+        progress=progress or None,
         stop=stop,
         cluster=cluster,
         path=path,
@@ -157,6 +160,7 @@ def certify_limits(
     return prove(asked, "limits", None, 0.0, setup)
 
 
+@with_progress("certificate")
 def certify_condition_number(
     hexapod: Hexapod,
     region: Asked = None,
@@ -169,7 +173,7 @@ def certify_condition_number(
     cluster: Cluster | None = None,
     path: str | PathLike[str] | None = None,
     resume: bool = False,
-    progress: Callable[[float], object] | None = None,
+    progress: ProgressLike = None,
     stop: Callable[[], bool] | None = None,
 ) -> Certificate:
     """Prove that the condition number of H is at most a bound at every pose of a region.
@@ -227,7 +231,7 @@ def certify_condition_number(
     setup = Setup.of(
         time_limit=time_limit,
         threads=threads,
-        progress=progress,
+        progress=progress or None,
         stop=stop,
         cluster=cluster,
         path=path,

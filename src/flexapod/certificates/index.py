@@ -11,9 +11,11 @@ from flexapod.certificates.proving import Setup, prove
 from flexapod.certificates.question import Asked, Uncertainty, checked_gap, checked_level, question
 from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.workspace.store.dask_cluster import Cluster
 
 
+@with_progress("certificate")
 def certify(
     hexapod: Hexapod,
     region: Asked = None,
@@ -28,7 +30,7 @@ def certify(
     cluster: Cluster | None = None,
     path: str | PathLike[str] | None = None,
     resume: bool = False,
-    progress: Callable[[float], object] | None = None,
+    progress: ProgressLike = None,
     stop: Callable[[], bool] | None = None,
 ) -> Certificate:
     """Prove that the stability index is at least a bound at every pose of a region, or find a pose where it is less.
@@ -61,8 +63,9 @@ def certify(
         File in which the certificate is kept: written every minute, and at the end.
     resume : bool, optional
         Whether to go on with what is in the file.
-    progress : callable, optional
+    progress : callable or False, optional
         Called with the share of the volume that is decided, from 0 to 1.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
     stop : callable, optional
         Called often; when it returns True, the proof ends with what it has.
 
@@ -117,7 +120,7 @@ def certify(
     setup = Setup.of(
         time_limit=time_limit,
         threads=threads,
-        progress=progress,
+        progress=progress or None,
         stop=stop,
         cluster=cluster,
         path=path,

@@ -22,6 +22,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.mechanics.inputs import as_hexapod, as_joint
 from flexapod.output_files import check_file, output_path
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.showing import in_notebooks
 from flexapod.workspace.box import Box, Workspace
 from flexapod.workspace.region import as_region, home_of
@@ -55,6 +56,7 @@ class CertifiedBox(NamedTuple):
     pose: Array | None
 
 
+@with_progress("largest certified box")
 def certified_box(
     hexapod: Hexapod,
     box: Box | Workspace,
@@ -68,7 +70,7 @@ def certified_box(
     threads: int | None = None,
     path: str | PathLike[str] | None = None,
     resume: bool = False,
-    progress: Callable[[float], object] | None = None,
+    progress: ProgressLike = None,
     stop: Callable[[], bool] | None = None,
 ) -> CertifiedBox:
     """Find the largest box of a shape for which a bound on the stability index is proved.
@@ -95,8 +97,9 @@ def certified_box(
         File that keeps how far the search is; beside it, the certificate in hand is written every minute.
     resume : bool, optional
         Whether to go on with what is in the file.
-    progress : callable, optional
+    progress : callable or False, optional
         Called with the share of the volume of the box in hand that is decided, from 0 to 1.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
     stop : callable, optional
         Called often; when it returns True, the search ends with what it has.
 
@@ -140,7 +143,7 @@ def certified_box(
     given = {"joint": joint, "uncertain": uncertain, "within_limits": within_limits}
     search = _Search(hexapod, box, positive(at_least, "at_least", "rad/s"), given, thread_count(threads))
     keeper = _Keeper.of(search, tolerance, path, resume)
-    watch = {"threads": threads, "progress": progress, "stop": stop}
+    watch = {"threads": threads, "progress": progress or None, "stop": stop}
     at = keeper.at
     high = min(at.refuted, search.greatest)
     while at.low < high * (1 - tolerance) and time.monotonic() < until and not (stop and stop()):

@@ -18,6 +18,7 @@ from flexapod import output_files
 from flexapod.cli import commands
 from flexapod.cli.output import failures, interrupt, streams
 from flexapod.errors import FlexapodError
+from flexapod.progress import silent
 
 #: Names of the commands: the modules of `commands`.
 COMMANDS = tuple(sorted(module.name for module in iter_modules(commands.__path__)))
@@ -60,7 +61,7 @@ def main(arguments: list[str] | None = None) -> int:
     if any("\0" in text for text in given):
         return _fail("an argument holds a null character, which no name has. Leave it out.", given, "UsageError")
     try:
-        with interrupt.terminable():
+        with interrupt.terminable(), silent():  # commands show their own progress
             code = group.main(given, prog_name="flexapod", standalone_mode=False)
             sys.stdout.flush()
     except click.ClickException as error:

@@ -24,6 +24,7 @@ from flexapod.excitation.excitation import Excitation
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attributes, single_base, single_pose
 from flexapod.mechanics.linearisation import linearise
 from flexapod.pose import Motion, Pose, PoseLike
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.simulation.integrator import prepare
 from flexapod.simulation.run import SimulationRun
 
@@ -35,6 +36,7 @@ _TURN_A_STEP = 0.5  # rad of the fastest mode: the method of order 8 then errs b
 IDEAL_HARDWARE = Hardware()
 
 
+@with_progress("sampled simulation")
 def simulate_control(
     hexapod: Hexapod,
     pose: PoseLike | None = None,
@@ -49,7 +51,7 @@ def simulate_control(
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
-    progress: Callable[[float], Any] | None = None,
+    progress: ProgressLike = None,
 ) -> xr.Dataset:
     """Simulate the non-linear hexapod on a moving base with a sampled controller and without control.
 
@@ -78,8 +80,9 @@ def simulate_control(
         Static force (N) and moment (N m) on the platform at its reference point, in its frame.
     joint : {"universal", "spin_free"}, optional
         Model of the joints between base and legs.
-    progress : callable, optional
+    progress : callable or False, optional
         Called with the share done, from 0 to 1.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
 
     Returns
     -------
@@ -136,7 +139,7 @@ def simulate_control(
     found, predicted = {}, {}
     still, moved = Motion.fixed(base).pose, base_motion.motion(clock.times, base)
     for number_, (case, law) in enumerate(zip(CASES, (controller, idle), strict=True)):
-        report = None if progress is None else _part(progress, 0.5 * number_, 0.5)
+        report = _part(progress, 0.5 * number_, 0.5) if progress else None
         record = simulate_sampled(run, law, clock, joint, limits, noise=noise, progress=report)
         found[case] = recording_at(record, where, still, moved, place)
         predicted[case] = prediction_at(predict(plant, law, base_motion, clock, noise), where, place)

@@ -22,6 +22,7 @@ from flexapod.errors import ArgumentError, PoseError, SingularPoseError
 from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, single_base, wrench
 from flexapod.mechanics.linearisation import linearise
 from flexapod.pose import Pose, PoseLike
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.rotations import rpy_matrix
 from flexapod.workspace.pose_sets import PoseSet, six_numbers
 from flexapod.workspace.region import RegionLike, poses_of
@@ -30,6 +31,7 @@ from flexapod.workspace.sweeping import coordinates
 Law = Callable[[float], ControlLaw]
 
 
+@with_progress("gain schedule")
 def gain_schedule(
     hexapod: Hexapod,
     region: RegionLike = None,
@@ -44,7 +46,7 @@ def gain_schedule(
     force: ArrayLike = ZERO,
     moment: ArrayLike = ZERO,
     joint: JointModel = "universal",
-    progress: Callable[[float], Any] | None = None,
+    progress: ProgressLike = None,
 ) -> xr.Dataset:
     """Find the gain of a feedback at every pose of a region.
 
@@ -75,8 +77,9 @@ def gain_schedule(
         Static force (N) and moment (N m) on the platform at its reference point, in its frame.
     joint : {"universal", "spin_free"}, optional
         Model of the joints between base and legs.
-    progress : callable, optional
+    progress : callable or False, optional
         Called with the share done, from 0 to 1.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
 
     Returns
     -------
@@ -134,7 +137,7 @@ def gain_schedule(
             gain[i], achieved[i] = _choose(plant, law, row, damping)
             if not np.isfinite(gain[i]):
                 status[i] = "no_gain"
-        if progress is not None:
+        if progress:
             progress((i + 1) / len(rows))
     fixed = float(np.nanmedian(gain)) if np.isfinite(gain).any() else np.nan
     if np.isfinite(fixed):

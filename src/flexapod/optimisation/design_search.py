@@ -15,7 +15,7 @@ from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, InfeasibleError
 from flexapod.optimisation.design_results import OptimalDesign
-from flexapod.optimisation.global_search import OnTrial, Progress, Stop, Study, Trial
+from flexapod.optimisation.global_search import OnTrial, Stop, Study, Trial
 from flexapod.optimisation.local_search import finish
 from flexapod.optimisation.objectives import LeastIndex, Objective
 from flexapod.optimisation.problem import Assessment, Problem
@@ -24,6 +24,7 @@ from flexapod.optimisation.requirements import Constraint
 from flexapod.optimisation.variables import JointCircle, Variable
 from flexapod.optimisation.verification import Beginning, begin, told, verified
 from flexapod.pose import Pose
+from flexapod.progress import ProgressLike, with_progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,6 +49,7 @@ class Settings:
         return self.stop is not None and self.stop()
 
 
+@with_progress("search")
 def optimise(
     hexapod: Hexapod,
     variables: Sequence[Variable | JointCircle],
@@ -64,7 +66,7 @@ def optimise(
     certify: bool = False,
     seed: int = 0,
     threads: int | None = None,
-    progress: Progress | None = None,
+    progress: ProgressLike = None,
     on_trial: OnTrial | None = None,
     stop: Stop | None = None,
 ) -> OptimalDesign:
@@ -103,8 +105,9 @@ def optimise(
         Seed of the search.
     threads : int, optional
         Number of threads. All cores by default.
-    progress : callable, optional
+    progress : callable or False, optional
         Called with the share of the trials done, from 0 to 1.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
     on_trial : callable, optional
         Called before each trial with the number of trials finished, the number wanted and the best objective so far
         (NaN without one).
@@ -166,7 +169,7 @@ def optimise(
     first = _start(problem, start, settings)
     found: list[Trial] = []
     if search is not None:
-        search.run(trials, lambda x: _one(problem, x, settings), progress, on_trial, stop)
+        search.run(trials, lambda x: _one(problem, x, settings), progress or None, on_trial, stop)
         found = search.finished()
     best = _finish_best(problem, first, found, settings)
     if not best.assessment.feasible and not begun.keeps:

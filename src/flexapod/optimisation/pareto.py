@@ -15,13 +15,14 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, InfeasibleError, shown
 from flexapod.optimisation.design_results import VariableRange
 from flexapod.optimisation.design_search import Settings, history
-from flexapod.optimisation.global_search import OnTrial, Progress, Stop, Study, Trial
+from flexapod.optimisation.global_search import OnTrial, Stop, Study, Trial
 from flexapod.optimisation.local_search import finish
 from flexapod.optimisation.objectives import LeastIndex, Objective
 from flexapod.optimisation.problem import Assessment, Problem
 from flexapod.optimisation.requirements import Constraint, Requirement
 from flexapod.optimisation.variables import JointCircle, Variable
 from flexapod.optimisation.verification import Beginning, begin, told, verify
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.showing import drawn, in_notebooks
 
 if TYPE_CHECKING:
@@ -90,6 +91,7 @@ class ParetoFront:
         return drawn(self, ax=ax)
 
 
+@with_progress("Pareto front")
 def pareto_front(
     hexapod: Hexapod,
     variables: Sequence[Variable | JointCircle],
@@ -104,7 +106,7 @@ def pareto_front(
     samples: int = 2**12,
     seed: int = 0,
     threads: int | None = None,
-    progress: Progress | None = None,
+    progress: ProgressLike = None,
     on_trial: OnTrial | None = None,
     stop: Stop | None = None,
 ) -> ParetoFront:
@@ -140,8 +142,9 @@ def pareto_front(
         Seed of the search.
     threads : int, optional
         Number of threads. All cores by default.
-    progress : callable, optional
+    progress : callable or False, optional
         Called with the share of the trials done, from 0 to 1.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
     on_trial : callable, optional
         Called before each trial with the number of trials finished, the number wanted and the best objective so far
         (NaN without one).
@@ -206,7 +209,7 @@ def pareto_front(
     begun = begin(problem, 4 * settings.samples, always=[last])
     if traded.name in begun.unmoved:
         raise ArgumentError(f"no variable moves the {traded.name}, so that nothing can be traded for it. Vary another.")
-    search.run(trials, lambda x: _both(problem, x, settings), progress, on_trial, stop)
+    search.run(trials, lambda x: _both(problem, x, settings), progress or None, on_trial, stop)
     found = search.finished()
     feasible = [t for t in found if t.feasible]
     front = _nondominated([t.values for t in feasible])

@@ -21,6 +21,7 @@ from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, Uncer
 from flexapod.optimisation.worst_case import worst_case
 from flexapod.optional import needed
 from flexapod.pose import Pose
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.showing import drawn, in_notebooks
 from flexapod.workspace.limit_margins import none_within
 from flexapod.workspace.region import RegionLike, as_region, home_of
@@ -80,6 +81,7 @@ class Robustness:
         return drawn(self, ax=ax)
 
 
+@with_progress("robustness")
 def robustness(
     hexapod: Hexapod,
     uncertain: Sequence[Uncertain | Payload],
@@ -92,7 +94,7 @@ def robustness(
     joint: JointModel = "universal",
     seed: int = 0,
     threads: int | None = None,
-    progress: Progress | None = None,
+    progress: ProgressLike = None,
 ) -> Robustness:
     """Find the distribution and the worst case of the stability index of an uncertain design.
 
@@ -120,8 +122,9 @@ def robustness(
         Seed of the samples.
     threads : int, optional
         Number of threads. All cores by default.
-    progress : callable, optional
+    progress : callable or False, optional
         Called with the share done, from 0 to 1.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
 
     Returns
     -------
@@ -172,11 +175,11 @@ def robustness(
     nominal = index.nominal(hexapod.name)
     u = Sobol(len(ensemble.names), seed).points(0, samples)
     share = samples / (samples + sensitivity * (len(ensemble.names) + 2))
-    values = index(u, None if progress is None else lambda done: progress(share * done))
+    values = index(u, (lambda done: progress(share * done)) if progress else None)
     worst = worst_case(index, u, values, seed)
     analysis = None
     if sensitivity:
-        rest = None if progress is None else lambda done: progress(share + (1 - share) * done)
+        rest = (lambda done: progress(share + (1 - share) * done)) if progress else None
         analysis = _sensitivity(ensemble, index, sensitivity, seed, rest)
     return Robustness(
         samples=_samples(

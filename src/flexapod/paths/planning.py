@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,10 +14,12 @@ from flexapod.paths.planning_task import WAYPOINTS, Objective, PlanningTask
 from flexapod.paths.requirements import PathRequirements
 from flexapod.paths.smoothing import resampled
 from flexapod.pose import PoseLike
+from flexapod.progress import ProgressLike, with_progress
 
 LONGEST = 60.0  # s that a proof may take: mostly it takes milliseconds
 
 
+@with_progress("plan")
 def plan_path(
     hexapod: Hexapod,
     start: PoseLike,
@@ -29,7 +30,7 @@ def plan_path(
     timing: LegSpeed | float = 1.0,
     certify: bool = False,
     seed: int = 0,
-    progress: Callable[[float], object] | None = None,
+    progress: ProgressLike = None,
 ) -> Plan:
     """Plan a path between two poses on which the stability index and other requirements are kept.
 
@@ -50,8 +51,9 @@ def plan_path(
         keeps it by less than 1e-6 of it may stay undecided.
     seed : int, optional
         Seed of the search. The same seed gives the same path.
-    progress : callable, optional
+    progress : callable or False, optional
         Called with the share done, 0 to 1: the search is the first half of it, smoothing the second.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
 
     Returns
     -------

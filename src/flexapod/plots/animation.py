@@ -26,6 +26,7 @@ from flexapod.optional import needed
 from flexapod.output_files import check_file, completed
 from flexapod.plots.style import BASE, FAINT, LEG, PLATFORM, VIEW, entitle, ink, letters, wide
 from flexapod.pose import Pose, PoseLike
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.rotations import rotation_from_vector
 
 if TYPE_CHECKING:
@@ -115,6 +116,7 @@ def animate_mode(
     return film.write(path, title, [note] * phase.size, exaggeration)
 
 
+@with_progress("frames")
 def animate_simulation(
     dataset: xr.Dataset,
     hexapod: Hexapod,
@@ -124,7 +126,7 @@ def animate_simulation(
     exaggeration: float | None = None,
     window: tuple[float, float] | None = None,
     frames: int = 96,
-    progress: Callable[[float], object] | None = None,
+    progress: ProgressLike = None,
 ) -> float:
     """Write a simulation to a file that moves.
 
@@ -145,8 +147,9 @@ def animate_simulation(
         First and last time, s. Left out, the last part in which the main oscillation has 16 frames a period.
     frames : int
         How many pictures.
-    progress : callable, optional
+    progress : callable or False, optional
         Is told the share done, 0 to 1.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
 
     Returns
     -------
@@ -192,7 +195,7 @@ def animate_simulation(
     speed = f"slowed {slowed:.3g} times" if slowed > 1 else f"{1 / slowed:.3g} times as fast"
     notes = [f"t = {t:.5g} s, {speed}" for t in at]
     shown = film._replace(platform=moves, base=feet)
-    return shown.write(path, f"{hexapod.name}: simulation", notes, exaggeration, progress)
+    return shown.write(path, f"{hexapod.name}: simulation", notes, exaggeration, progress or None)
 
 
 class _Film(NamedTuple):

@@ -132,9 +132,11 @@ def _room(width: float, height: float) -> tuple[float, float]:
 
 
 def new_figure(width: float, height: float, layout: Any = "constrained") -> Figure:
-    """A figure of a size in inches, without pyplot."""
+    """A figure of a size in inches, without pyplot; with it notebooks know how to show one that is a cell's result."""
     from matplotlib.figure import Figure
 
+    if "ipykernel" in sys.modules:
+        import matplotlib.pyplot  # noqa: F401
     return Figure(figsize=_room(width, height), layout=layout, dpi=changed("figure.dpi") or 130)
 
 

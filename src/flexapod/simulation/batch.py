@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +16,7 @@ from flexapod.conventions import Array, JointModel
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point
 from flexapod.mechanics.modes import advised_sampling_time, natural_modes
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.simulation.datasets import Told, one_run
 from flexapod.simulation.integrator import IntegratorOptions, integrate
 from flexapod.simulation.notes import of_recordings, of_results
@@ -25,6 +26,7 @@ MOST_SAMPLES = 20_000
 MOST_ASKED = 10_000_000
 
 
+@with_progress("simulations")
 def simulate_many(
     runs: Sequence[SimulationRun],
     duration: float | None = None,
@@ -41,7 +43,7 @@ def simulate_many(
     energies: bool = True,
     reactions: bool = False,
     threads: int | None = None,
-    progress: Callable[[float], object] | None = None,
+    progress: ProgressLike = None,
 ) -> xr.Dataset:
     """Simulate many machines at once, on all threads.
 
@@ -67,8 +69,9 @@ def simulate_many(
         Whether the energy balance and the joints' forces are computed.
     threads : int, optional
         Threads to use; all by default.
-    progress : callable, optional
+    progress : callable or False, optional
         Called with the share done, 0 to 1.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
 
     Returns
     -------
@@ -117,7 +120,7 @@ def simulate_many(
     end = _end(runs, duration) if times is None else duration
     at = _sample_times(times, end, samples, max(highest, default=0.0))
     notes = [note for run, omega in zip(runs, highest, strict=True) for note in of_recordings(run, omega)]
-    found = integrate(runs, at, joint=joint, options=options, works=energies, progress=progress)
+    found = integrate(runs, at, joint=joint, options=options, works=energies, progress=progress or None)
     each = [one_run(run, found, i, at, told) for i, run in enumerate(runs)]
     notes = list(dict.fromkeys([*notes, *_of_results(runs, each, joint)]))
     for note in notes:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
@@ -14,6 +12,7 @@ from flexapod.errors import SimulationError
 from flexapod.excitation.excitation import Excitation
 from flexapod.mechanics.inputs import ZERO, PointLike
 from flexapod.pose import Pose, unpack
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.simulation.batch import simulate_many
 from flexapod.simulation.run import Load, SimulationRun, Start
 
@@ -33,6 +32,7 @@ REASONS = {
 }
 
 
+@with_progress("simulation")
 def simulate(
     hexapod: Hexapod,
     pose: Pose | ArrayLike | None = None,
@@ -58,7 +58,7 @@ def simulate(
     energies: bool = True,
     reactions: bool = False,
     threads: int | None = None,
-    progress: Callable[[float], object] | None = None,
+    progress: ProgressLike = None,
 ) -> xr.Dataset:
     """Simulate the complete machine in time, from rest at a pose.
 
@@ -117,8 +117,9 @@ def simulate(
         Whether forces and moments in all joints are computed, as by `joint_reactions`.
     threads : int, optional
         Threads to use; all by default.
-    progress : callable, optional
+    progress : callable or False, optional
         Called with the share done, 0 to 1.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
 
     Returns
     -------
@@ -210,7 +211,7 @@ def simulate(
         energies=energies,
         reactions=reactions,
         threads=threads,
-        progress=progress,
+        progress=progress or None,
     )
     if loss_frequency is not None:
         dataset.attrs["loss_frequency_rad_s"] = float(loss_frequency)

@@ -22,6 +22,7 @@ from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attribute
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.point_motion import displacement_at, shift
 from flexapod.pose import Motion, Pose, PoseLike, unpack
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.rotations import rotation_from_vector
 from flexapod.simulation.integrator import IntegratorOptions, integrate
 from flexapod.simulation.run import SimulationRun
@@ -38,6 +39,7 @@ _LARGEST = 0.1  # of a leg's length: the largest motion of a joint, by the tange
 STATUS = ("found", "not_found", "too_large")
 
 
+@with_progress("stepped sine")
 def stepped_sine(
     hexapod: Hexapod,
     pose: PoseLike | None = None,
@@ -49,7 +51,7 @@ def stepped_sine(
     point: PointLike = ZERO,
     joint: JointModel = "universal",
     tolerance: float = 1e-7,
-    progress: Callable[[float], object] | None = None,
+    progress: ProgressLike = None,
 ) -> xr.Dataset:
     """Compute the steady response of the non-linear machine to a base shaken at one frequency after the other.
 
@@ -75,8 +77,9 @@ def stepped_sine(
         Model of the joint between a leg and the base.
     tolerance : float, optional
         Largest last correction of a periodic motion, relative to the motion.
-    progress : callable, optional
+    progress : callable or False, optional
         Called with the share done, 0 to 1.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
 
     Returns
     -------
@@ -142,7 +145,7 @@ def stepped_sine(
     shaker = _Shaker(hexapod, pose, tangent, eta, float(amplitude), axis, joint)
     linear = shaker.linear_response(w)
     positive(tolerance, "tolerance")
-    found = _shoot(shaker, w, linear, tolerance, progress)
+    found = _shoot(shaker, w, linear, tolerance, progress or None)
     arm = pose.matrix @ as_point(hexapod, point)
     told = _dataset(shaker, w, linear @ shift(pose, as_point(hexapod, point)).T, _at_point(found, arm))
     return told.assign_attrs(response_attributes(tangent) | point_attributes(hexapod, point))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.mechanics.inputs import as_hexapod
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.showing import in_notebooks
 from flexapod.workspace.box import Box
 from flexapod.workspace.descents import BoxSearch, SquaredFrequency, starts_of
@@ -70,6 +72,7 @@ class WorstPose(NamedTuple):
     proved: float = float("nan")
 
 
+@with_progress("worst pose")
 def worst_pose(
     hexapod: Hexapod,
     region: RegionLike = None,
@@ -81,6 +84,7 @@ def worst_pose(
     threads: int | None = None,
     all_poses: bool = False,
     certified: bool = False,
+    progress: ProgressLike = None,
 ) -> WorstPose:
     """Search for the pose of a region with the least stability index.
 
@@ -108,6 +112,9 @@ def worst_pose(
     certified : bool, optional
         If True, it is also proved that no pose of a box has an index more than 1 % lower, which takes from parts of a
         second to hours (`certify` can limit the time). If the proof meets a lower pose, the search goes on from there.
+    progress : callable or False, optional
+        Called with the share done, from 0 to 1: of the descents, or with `certified` of the box that is decided.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
 
     Returns
     -------
@@ -163,11 +170,15 @@ def worst_pose(
     count = whole(starts, "starts")
     search = BoxSearch(index, box, limits, whole(samples, "samples"), whole(seed, "seed", 0), threads)
     poses = search.sample()
-    ends = [search.descend(start) for start in starts_of(poses, box, count)]
+    starts_at, ends = starts_of(poses, box, count), []
+    for start in starts_at:
+        ends.append(search.descend(start))
+        if progress and not certified:
+            progress(len(ends) / len(starts_at))
     found = sorted(((index.root(end), end) for end in ends), key=lambda one: one[0])
     proved = float("nan")
     if certified:
-        proved, found = _proved(search, found)
+        proved, found = _proved(search, found, progress or None)
     minima = _distinct(found, box)
     least, pose = minima[0]
     touches = _TOUCHES * (box.high - box.low)
@@ -188,7 +199,9 @@ def worst_pose(
     )
 
 
-def _proved(search: BoxSearch, found: list[tuple[float, Array]]) -> tuple[float, list[tuple[float, Array]]]:
+def _proved(
+    search: BoxSearch, found: list[tuple[float, Array]], progress: Callable[[float], object] | None
+) -> tuple[float, list[tuple[float, Array]]]:
     """What no pose of the box falls below, and the minima, with another one where the proof meets a lower pose."""
     index = search.index
     least, pose = found[0]
@@ -205,7 +218,7 @@ def _proved(search: BoxSearch, found: list[tuple[float, Array]]) -> tuple[float,
         only_law=limits is not None and limits.only_law,
         threads=search.threads,
     )
-    standing = run(prover, Standing("undecided", np.nan, least, place.parts, at=pose), GAP, Watch())
+    standing = run(prover, Standing("undecided", np.nan, least, place.parts, at=pose), GAP, Watch(progress))
     if standing.value < least:
         end = search.descend(six_of(standing.at, place.parts))
         found = sorted([*found, (index.root(end), end)], key=lambda one: one[0])

@@ -23,6 +23,7 @@ from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import OutputError
 from flexapod.mechanics.inputs import as_joint
+from flexapod.progress import ProgressLike, with_progress
 from flexapod.showing import in_notebooks
 from flexapod.workspace.pose_sets import GivenPoses, GridPoses, PoseSet
 from flexapod.workspace.quantities import chosen
@@ -273,11 +274,12 @@ class SweepStore:
         """Whether every pose has been computed."""
         return len(self.done) == self.job.blocks.count
 
+    @with_progress("sweep")
     def run(
         self,
         workers: Workers | int | None = None,
         *,
-        progress: Callable[[float], object] | None = None,
+        progress: ProgressLike = None,
         stop: Callable[[], bool] | None = None,
     ) -> Progress:
         """Compute what is missing, until all is done.
@@ -286,8 +288,9 @@ class SweepStore:
         ----------
         workers : int or Cluster, optional
             How many threads of this process, default one for each core; or a `flexapod.workspace.cluster`.
-        progress : callable, optional
+        progress : callable or False, optional
             Called with the share of the poses that is done, from 0 to 1, after each block; `state` then says more.
+            By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
         stop : callable, optional
             Called often; when it returns True, the blocks that are begun are finished, and no other is begun.
 
@@ -319,7 +322,7 @@ class SweepStore:
                     if time.monotonic() - marked > every:
                         self._mark()
                         marked = time.monotonic()
-                    if progress is not None:
+                    if progress:
                         progress(self.state.done / self.state.total)
                 self._mark()
             except OSError as error:
