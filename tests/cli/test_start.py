@@ -80,3 +80,13 @@ def test_a_command_loads_no_more_than_it_needs(tmp_path):
     assert {name: code for name, (code, _) in found.items() if code} == {}
     more = {name: sorted(loaded - MAY[name]) for name, (_, loaded) in found.items() if loaded - MAY[name]}
     assert more == {}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="forks")
+def test_a_store_without_a_cluster_does_without_dask(tmp_path):
+    line = ["sweep", "motion-base", "--around", "0.1", "5", "--points", "64", "--out", "map.zarr"]
+    given = json.dumps([[line, [*line, "--resume", "--worst"]], ["dask", "zarr"]])
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED], input=given, capture_output=True, text=True, check=True, cwd=tmp_path
+    )
+    assert [json.loads(line) for line in done.stdout.splitlines()] == [["sweep", 0, ["zarr"]]] * 2
