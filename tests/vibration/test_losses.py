@@ -208,3 +208,19 @@ def test_a_joint_gets_a_mean_of_the_stiffnesses_it_has():
     found = fx.mechanics.viscous_equivalent(rest, 40.0).legs.damping
     assert (found.spherical == 0).all()
     assert ((found.universal >= 0.1 * 1.0 / 40.0) & (found.universal <= 0.1 * 3.0 / 40.0)).all()
+
+
+def test_in_time_friction_stands_for_losses_in_the_joint_model_of_the_run():
+    """The modes, by which the stiffnesses of a joint are weighted, are those of the model."""
+    hexapod = LOSSY.replace({"legs.joint_stiffness.universal": [30.0, 5.0], "legs.joint_stiffness.torsion": 90.0})
+    pushed = {"base_motion": fx.half_sine_shock("x", 1e-4, 0.02), "duration": 0.1, "samples": 5}
+    by_model = {}
+    for joint in ("universal", "spin_free"):
+        viscous = fx.mechanics.viscous_equivalent(hexapod, 59.3, joint=joint)
+        by_hand = fx.simulate(viscous, joint=joint, **pushed).displacement.values
+        by_model[joint] = fx.simulate(hexapod, loss_frequency=59.3, joint=joint, **pushed).displacement.values
+        assert (by_model[joint] == by_hand).all()
+    frictions = [
+        fx.mechanics.viscous_equivalent(hexapod, 59.3, joint=joint).legs.damping.spherical for joint in by_model
+    ]
+    assert not np.allclose(*frictions, rtol=1e-3)

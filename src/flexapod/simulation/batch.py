@@ -115,6 +115,7 @@ def simulate_many(
     for i, run in enumerate(runs):
         if not isinstance(run, SimulationRun):
             raise ArgumentError(f"runs[{i}] is {shown(run)}; it must be a flexapod.simulation.SimulationRun.")
+    runs = [run.with_friction(joint) for run in runs]
     told = Told(_one_point(runs, point), joint, energies, reactions)
     highest = [natural_modes(run.hexapod, run.pose, joint=joint, base=run.base).omega[-1] for run in runs]
     end = _end(runs, duration) if times is None else duration

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, replace
 from typing import Literal
 
 from numpy.typing import ArrayLike
 
+from flexapod.checks import positive
+from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, shown
 from flexapod.excitation.excitation import Excitation
@@ -90,14 +92,20 @@ class SimulationRun:
             )
         object.__setattr__(self, "base", single_base(self.hexapod, self.base))
         if self.loss_frequency is not None:
-            machine = viscous_equivalent(self.hexapod, self.loss_frequency, self.pose, base=self.base)
-            object.__setattr__(self, "hexapod", machine)
+            positive(self.loss_frequency, "loss_frequency", "rad/s")
         for name in ("base_motion", "leg_command"):
             value = getattr(self, name)
             if not (value is None or isinstance(value, Excitation)):
                 raise ArgumentError(
                     f"{name} is {shown(value)}; it must be an Excitation, such as flexapod.harmonic makes one."
                 )
+
+    def with_friction(self, joint: JointModel) -> SimulationRun:
+        """Give the run of the machine with friction in place of its loss factors, where `loss_frequency` is given."""
+        if self.loss_frequency is None:
+            return self
+        machine = viscous_equivalent(self.hexapod, self.loss_frequency, self.pose, base=self.base, joint=joint)
+        return replace(self, hexapod=machine, loss_frequency=None)
 
     def histories(self) -> dict[str, Excitation]:
         """Give what drives the machine in time, by name."""
