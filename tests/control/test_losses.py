@@ -1,5 +1,7 @@
 """Loss factors of a design under control: exact in responses by frequency, viscous or left out, and said, elsewhere."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -88,3 +90,25 @@ def test_assumptions_say_what_became_of_losses():
     assert "at 40 rad/s" in assumptions(LOSSY, 40.0)
     assert "left out" in assumptions(LOSSY)
     assert "no structural loss" in assumptions(fx.load("motion-base"), 40.0)
+
+
+@pytest.mark.parametrize("function", ["closed_loop", "gain_map", "gain_schedule", "simulate_control"])
+def test_what_leaves_losses_out_warns_of_it(function):
+    machine = LOSSY.replace({"legs.joint_stiffness.loss_factor": 0.0})
+    law = fx.control.VelocityFeedback(100.0)
+    sampled = law.on(fx.linearise(machine)).sampled(2e-3)
+    call = {
+        "closed_loop": lambda of: fx.control.closed_loop(of, None, law),
+        "gain_map": lambda of: fx.control.gain_map(of, kp=[2e3, 4e3], kd=[300.0, 400.0]),
+        "gain_schedule": lambda of: fx.control.gain_schedule(of, of.home, "velocity", gains=[50.0, 100.0, 200.0]),
+        "simulate_control": lambda of: fx.control.simulate_control(
+            of, controller=sampled, base_motion=fx.half_sine_shock("z", 1e-4, 0.02), duration=0.02
+        ),
+    }[function]
+    with pytest.warns(UserWarning, match="loss factors of the design are left out") as told:
+        call(machine)
+    assert told[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", UserWarning)
+        warnings.simplefilter("ignore", fx.control.GainWarning)
+        call(fx.mechanics.viscous_equivalent(machine, 40.0))

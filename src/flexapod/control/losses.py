@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import warnings
+
 from numpy.typing import ArrayLike
 
 from flexapod.control.plant import Plant
@@ -21,6 +23,10 @@ _LOSS = (
     "machine have viscous friction only. mechanics.viscous_equivalent, or --loss-frequency of the command, gives the "
     "friction that takes as much at one frequency."
 )
+_LEFT_OUT = (
+    "The loss factors of the design are left out here: poles and motions in time have viscous friction only. "
+    "mechanics.viscous_equivalent gives the machine with friction that takes as much at one frequency."
+)
 _NO_JOINTS = (
     "Its joints have no stiffness; with joints that resist turning the zeros of force feedback lie above 0 and damping "
     "ends below 1: a damping ratio of 1 and zeros at 0 are limits of the model."
@@ -39,6 +45,12 @@ def assumptions(hexapod: Hexapod, loss_frequency: float | None = None) -> str:
     else:
         losses = f"Viscous friction takes what the loss factors of the design take at {loss_frequency:.5g} rad/s."
     return losses if hexapod.legs.joint_stiffness.any else f"{losses} {_NO_JOINTS}"
+
+
+def warn_of_losses(hexapod: Hexapod) -> None:
+    """Warn the caller of a function of control where loss factors of the design are left out."""
+    if has_losses(hexapod):
+        warnings.warn(_LEFT_OUT, UserWarning, stacklevel=3)
 
 
 def plant_with_losses(

@@ -15,6 +15,7 @@ from flexapod.checks import not_negative, numbers, one_of
 from flexapod.control.closed_loop_poles import ClosedLoop, assess, distances, instability_message, nearest, pole_text
 from flexapod.control.controllers import PID, pid_units
 from flexapod.control.linear_controller import ControlLaw, controller_for
+from flexapod.control.losses import warn_of_losses
 from flexapod.control.plant import Plant, damping_ratios, is_stable, poles
 from flexapod.conventions import Array, Complex, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
@@ -103,7 +104,7 @@ def closed_loop(
     The paper's conclusion 2 demands gains that keep the poles away from the natural frequencies. The hexapod is
     linearised with exact derivatives (see `flexapod.linearise`); poles of a sampled loop are log(z)/dt.
 
-    Loss factors of the design are left out, for poles and motions in time have viscous friction only:
+    Loss factors of the design are left out, with a warning, for poles and motions in time have viscous friction only:
     `mechanics.viscous_equivalent` makes friction of them.
 
     Examples
@@ -116,6 +117,7 @@ def closed_loop(
     not_negative(nearness, "nearness")
     one_of(unstable, "unstable", ("raise", "keep"))
     plant = Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint))
+    warn_of_losses(hexapod)
     law = controller_for(plant.linear, controller)
     found = assess(plant, law, nearness)
     if not found.stable and unstable == "raise":
@@ -193,7 +195,7 @@ def gain_map(
     -----
     See `closed_loop`, and the paper's conclusion 2.
 
-    Loss factors of the design are left out, for poles and motions in time have viscous friction only:
+    Loss factors of the design are left out, with a warning, for poles and motions in time have viscous friction only:
     `mechanics.viscous_equivalent` makes friction of them.
 
     Examples
@@ -206,6 +208,7 @@ def gain_map(
     rows = {"kp": _different(kp, "kp"), "kd": _different(kd, "kd")}
     not_negative(nearness, "nearness")
     plant = Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint))
+    warn_of_losses(hexapod)
     shape = (rows["kp"].size, rows["kd"].size)
     laws = [replace(controller, kp=p, kd=d).on(plant.linear) for p, d in product(*rows.values())]
     pole = np.stack([poles(plant, law) for law in laws]).reshape(*shape, -1)

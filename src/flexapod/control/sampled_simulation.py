@@ -14,6 +14,7 @@ from flexapod.checks import instance, not_negative, number
 from flexapod.control.actuators_and_sensors import Hardware
 from flexapod.control.closed_loop_poles import assess, instability_message
 from flexapod.control.linear_controller import MEASUREMENTS, Controller, signals, static
+from flexapod.control.losses import warn_of_losses
 from flexapod.control.plant import Plant
 from flexapod.control.point_recording import prediction_at, recording_at
 from flexapod.control.sampled_prediction import Clock, Recording, predict
@@ -113,7 +114,7 @@ def simulate_control(
     Both cases integrate the full equations of motion (Eq. 35) with the Runge-Kutta method of order 8 of Dormand and
     Prince at a fixed step.
 
-    Loss factors of the design are left out, for poles and motions in time have viscous friction only:
+    Loss factors of the design are left out, with a warning, for poles and motions in time have viscous friction only:
     `mechanics.viscous_equivalent` makes friction of them.
 
     Examples
@@ -129,6 +130,7 @@ def simulate_control(
     where, place = single_pose(hexapod, pose), as_point(hexapod, point)
     base = single_base(hexapod, base)
     plant = Plant(linearise(hexapod, where, base=base, force=force, moment=moment, joint=joint))
+    warn_of_losses(hexapod)
     clock = _clock(plant, controller, duration, after)
     if not isinstance(base_motion, Excitation):
         raise ArgumentError(f"base_motion is {shown(base_motion)}; it must be an Excitation, such as fx.harmonic(...)")

@@ -15,6 +15,7 @@ from flexapod.control.closed_loop_poles import least_damping
 from flexapod.control.controllers import GAIN_UNIT, Feedback, damping_law
 from flexapod.control.gain_search import ascending_gains, best_gain, default_gains
 from flexapod.control.linear_controller import ControlLaw, controller_for
+from flexapod.control.losses import warn_of_losses
 from flexapod.control.plant import Plant, poles
 from flexapod.conventions import Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
@@ -101,7 +102,7 @@ def gain_schedule(
     At each pose the damping of the linearised closed loop is evaluated over the gains and refined between them; active
     damping after A. Preumont, Vibration Control of Active Structures (2011).
 
-    Loss factors of the design are left out, for poles and motions in time have viscous friction only:
+    Loss factors of the design are left out, with a warning, for poles and motions in time have viscous friction only:
     `mechanics.viscous_equivalent` makes friction of them.
 
     Examples
@@ -112,6 +113,7 @@ def gain_schedule(
     array([0.3, 0.3])
     """
     base = _checked(hexapod, base, force, moment, joint)
+    warn_of_losses(hexapod)
     poses = poses_of(hexapod, region, samples, seed)
     if damping is not None and not positive(damping, "damping") < 1:
         raise ArgumentError(f"damping is {damping}; a damping ratio between 0 and 1 is needed")
