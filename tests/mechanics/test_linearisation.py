@@ -331,3 +331,13 @@ def test_a_leg_command_moves_the_platform_as_kinematics_does(name):
     stiffness = hexapod.legs.stiffness.max()
     np.testing.assert_allclose(still[12:18, 18:], 0, atol=1e-9 * stiffness)  # no load, no leg force
     assert EPS * np.linalg.cond(H) ** 2 < 1e-9
+
+
+def test_a_motion_is_no_pose_at_rest():
+    """Its velocities and accelerations would be in the forces that hold it."""
+    hexapod = fx.load("motion-base")
+    falling = fx.Motion(hexapod.home, acceleration=hexapod.gravity)
+    with pytest.raises(fx.PoseError, match="pose is Motion"):
+        fx.linearise(hexapod, falling)
+    with pytest.raises(fx.PoseError, match="base is Motion"):
+        fx.linearise(hexapod, base=fx.Motion.fixed())

@@ -19,7 +19,7 @@ from flexapod.mechanics.modes import MODE_WORDS
 from flexapod.mechanics.state_space import StateSpace, state_space_of
 from flexapod.mechanics.statics import Equilibrium, hold
 from flexapod.optional import needed
-from flexapod.pose import Pose, PoseLike
+from flexapod.pose import Motion, Pose, PoseLike
 from flexapod.showing import drawn, in_notebooks
 
 if TYPE_CHECKING:
@@ -263,7 +263,8 @@ def linearise(
     >>> tangent.modes().frequency.round(2).tolist()  # Hz
     [4.6, 4.6, 4.8, 4.94, 4.94, 8.06]
     """
-    found = at_once("linearise", hexapod, pose, base, joint, force, moment)
+    moving = isinstance(pose, Motion) or isinstance(base, Motion)  # refused below
+    found = None if moving else at_once("linearise", hexapod, pose, base, joint, force, moment)
     if found is None:
         pose, base = single_pose(hexapod, pose), single_base(hexapod, base)
         hold(hexapod, pose, base=base, force=force, moment=moment, joint=joint)
