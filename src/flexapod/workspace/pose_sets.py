@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import prod
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,10 +19,9 @@ from flexapod.errors import ArgumentError, PoseError
 from flexapod.pose import Pose
 from flexapod.rotations import rpy_of_matrices
 from flexapod.workspace.box import BITS, Box
+from flexapod.workspace.quantities import PoseNumbers
 from flexapod.workspace.sobol import PIECE, Sobol
 
-#: Poses as the sweep's kernel takes them: rows of 6 or 12 numbers, or positions (n, 3) and rotations, (n, 4) or (n, 9).
-PoseNumbers: TypeAlias = "Array | tuple[Array, Array]"
 MOST = 2**40  # poses of a set: a year of a computer's work
 
 

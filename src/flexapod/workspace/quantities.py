@@ -21,7 +21,7 @@ from flexapod.mechanics.inputs import as_joint
 from flexapod.mechanics.joint_limits import neutral_directions
 from flexapod.mechanics.load_limits import force_bounds
 from flexapod.pose import Pose
-from flexapod.rotations import matrices_of_quaternions
+from flexapod.rotations import matrices_of_quaternions, rpy_matrix
 from flexapod.tables import normal_unit
 
 
@@ -51,7 +51,7 @@ QUANTITIES: dict[str, Quantity] = {
     "within_limits": Quantity("1", "whether legs and joints at rest are within the design's limits", dtype="bool"),
 }
 #: Poses as the kernel takes them: rows (n, 6) or (n, 12), or positions (n, 3) and rotations (n, 4) or (n, 9).
-Rows: TypeAlias = "Array | tuple[Array, Array]"
+PoseNumbers: TypeAlias = "Array | tuple[Array, Array]"
 _DEFAULT = ("omega_1", "cond_H")
 SIGNED_FORCES = ("leg_compression", "leg_tension")  #: found one pose after the other, where the rest is by lanes
 #: What else a quantity is called -> its name here.
@@ -109,7 +109,7 @@ def chosen(quantities: str | Iterable[str] | None, hexapod: Hexapod) -> tuple[st
 
 def evaluate(
     hexapod: Hexapod,
-    poses: Rows,
+    poses: PoseNumbers,
     quantities: tuple[str, ...],
     joint: JointModel,
     threads: int,
@@ -138,7 +138,7 @@ def evaluate(
 
 
 def _forces_kept(
-    hexapod: Hexapod, poses: Rows, joint: JointModel, found: dict[str, Any], bounds: tuple[float, float]
+    hexapod: Hexapod, poses: PoseNumbers, joint: JointModel, found: dict[str, Any], bounds: tuple[float, float]
 ) -> NDArray[np.bool_]:
     """Whether the forces of rest are within their bounds, (n,); false where no forces hold the pose.
 
@@ -153,11 +153,11 @@ def _forces_kept(
     return kept
 
 
-def _as_pose(poses: Rows) -> Pose:
+def _as_pose(poses: PoseNumbers) -> Pose:
     """The poses that the kernel takes as rows."""
     if not isinstance(poses, tuple):
-        angles = poses.shape[1] == 6
-        return Pose.from_rpy(*poses.T) if angles else Pose.trusted(poses[:, :3], poses[:, 3:].reshape(-1, 3, 3))
+        matrix = rpy_matrix(poses[:, 3:]) if poses.shape[1] == 6 else poses[:, 3:].reshape(-1, 3, 3)
+        return Pose.trusted(poses[:, :3], matrix)  # of a pose that is none the forces are NaN
     position, turned = poses
     if turned.shape[1] == 4:
         return Pose.trusted(position, matrices_of_quaternions(turned))

@@ -14,9 +14,10 @@ from flexapod.conventions import AXES, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.mechanics.inputs import as_joint
-from flexapod.workspace.pose_sets import GridPoses, PoseNumbers, PoseSet
+from flexapod.workspace.pose_sets import GridPoses, PoseSet
 from flexapod.workspace.quantities import (
     QUANTITIES,
+    PoseNumbers,
     attributes,
     chosen,
     evaluate,
