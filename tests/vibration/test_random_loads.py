@@ -123,7 +123,7 @@ FORCE = fx.excitation.flat_spectrum(1.0, 1.0, 100.0, quantity="force")
         (fx.vibration.RandomLoad(fx.vc_curve("VC-A"), axis="force_y"), "is a spectrum of velocity; it must be one of force"),
         (fx.vibration.RandomLoad([1.0, 1.0], axis="force_y"), "omega is missing"),
         (fx.vibration.RandomLoad([1.0, -1.0], omega=[1.0, 2.0], axis="force_y"), "negative"),
-        (fx.vibration.RandomLoad(FORCE, axis="force_y", name="base"), "psd and loads|two sources"),
+        (fx.vibration.RandomLoad(FORCE, axis="force_y", name="base"), "psd and loads|called 'base', as the moving base"),
     ],
 )  # fmt: skip
 def test_wrong_loads_are_told(loads, words):

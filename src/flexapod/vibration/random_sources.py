@@ -165,7 +165,9 @@ def _names(loads: Sequence[RandomLoad]) -> list[str]:
     """Of each load a name of its own: those that share one are numbered."""
     given = [load.name for load in loads]
     names = [f"{name} {k}" if given.count(name) > 1 else name for k, name in enumerate(given, 1)]
-    twice = [name for name in names if names.count(name) > 1 or name == "base"]
+    if "base" in names:
+        raise ArgumentError("a load is called 'base', as the moving base is in the results. Give it another name.")
+    twice = [name for name in names if names.count(name) > 1]
     if twice:
-        raise ArgumentError(f"{twice[0]!r} is the name of two sources; each must have a name of its own.")
+        raise ArgumentError(f"two loads are called {twice[0]!r}; each must have a name of its own.")
     return names
