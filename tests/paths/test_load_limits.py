@@ -79,3 +79,19 @@ def test_limits_of_loads_are_written_and_read():
     assert (again.limits.leg_compression, again.limits.leg_rate) == (20e3, 0.3)
     assert "leg_rate" in again.limits.of_motions
     assert fx.check_limits(machine).ok  # its weight is less than that
+
+
+def test_a_load_on_the_way_counts_in_the_limits_of_loads_alone():
+    """A rope carries 90 % of the weight: the legs do not bear what they would bear alone at rest."""
+    free = plain_machine("motion-base")
+    machine = free.replace({"limits.leg_compression": 0.5 * float(fx.hold(free).leg_force.max())})
+    rope = -0.9 * machine.platform_mass * machine.gravity
+    centre = machine.platform_mass_center
+    path = fx.Trajectory([[0, 0, 2.39, 0, 0, 0], [0.01, 0, 2.39, 0, 0, 0]], [0.0, 10.0])
+    assert not fx.check_limits(machine).ok
+    carried = fx.paths.path_loads(machine, path, force=rope, moment=np.cross(centre, rope))
+    assert carried.within_limits.all()
+    assert carried.loads_within_limits.all()
+    alone = fx.paths.path_loads(machine, path)
+    assert alone.within_limits.all()
+    assert not alone.loads_within_limits.any()

@@ -126,6 +126,18 @@ def test_moments_that_are_the_rounding_of_angles_are_not_shown():
         {"legs.joint_stiffness.spherical": 15.0, "legs.joint_stiffness.universal": 15.0}
     )
     for pose, zero in ((flexible.home, True), (fx.Pose.from_rpy(1e-3, 0, flexible.home.position[2], 0, 0, 0), False)):
-        (table,) = springs.moments(flexible, pose, {})
+        (table,) = springs.moments(flexible, pose, "universal", {})
         assert (not np.any(table.columns[1].values)) == zero
         assert (not np.any(table.columns[2].values)) == zero
+
+
+def test_moments_are_those_of_the_joint_model():
+    flexible = plain_machine("cubic-isolator").replace(
+        {"legs.joint_stiffness.spherical": 15.0, "legs.joint_stiffness.universal": [15.0, 2.0]}
+    )
+    pose = fx.Pose.from_rpy(1e-3, 2e-3, flexible.home.position[2], 0.02, 0.01, 0.1)
+    tables = {joint: springs.moments(flexible, pose, joint, {})[0] for joint in ("universal", "spin_free")}
+    for joint, table in tables.items():
+        found = fx.joint_moments(flexible, pose, joint=joint)
+        np.testing.assert_allclose(table.columns[1].values, np.linalg.norm(found.universal_moment, axis=-1))
+    assert not np.allclose(*([column.values for column in table.columns[1:]] for table in tables.values()), rtol=1e-6)

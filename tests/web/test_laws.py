@@ -9,10 +9,12 @@ from tests.web.acts import turn_to, type_in, wait_for_index
 import flexapod as fx
 
 pytest.importorskip("starlette")
+from flexapod.web import requests
 from flexapod.web.description import described, fields
 from flexapod.web.designs import Source
 from flexapod.web.laws import law_choices
 from flexapod.web.response import response, shake
+from flexapod.web.state import snapshot
 
 MACHINES = {
     "limits": fx.load("precision-positioner"),
@@ -146,3 +148,34 @@ def test_the_box_of_losses_tells_that_they_act(opened: Any) -> None:
     turn_to(page, "Response")
     type_in(page, "Loss factor", "0")
     page.locator("#losses", has_text="Loss factors that act: 0.02 in the legs, of the design.").wait_for()
+
+
+@pytest.mark.parametrize("kind", ["constant", "screw", "hydraulic", "table"])
+def test_energies_of_legs_are_those_of_all_that_yields_along_them(kind: str) -> None:
+    """Together with what the springs in series take, and by a law's stiffness, they are the machine's elastic energy."""
+    machine = MACHINES["six stiffnesses, in series"]
+    changes = law_choices(machine)[kind]
+    asked = {"design": machine.to_toml(), "changes": changes, "pose": [0, 0, 2.42, 0, 0, 2.0]}
+    question = requests.question(asked)
+    found = snapshot(question)["legs"]
+    rest = fx.hold(question.hexapod, question.pose)
+    whole = fx.mechanics.energy(question.hexapod, question.pose, unstretched_length=rest.unstretched_length)
+    assert np.sum(found["energy"]) == pytest.approx(float(whole.elastic), rel=1e-9)
+
+
+def test_limits_are_those_of_the_joint_model() -> None:
+    springs = {"legs.joint_stiffness.universal": [400.0, 10.0], "legs.joint_stiffness.spherical": 300.0}
+    machine = fx.load("motion-base").replace(springs)
+    pose = [0.2, 0.1, 2.42, 5.0, 0, 8.0]
+    where = fx.Pose.from_rpy(*pose, degrees=True)
+    moments = {
+        joint: np.linalg.norm(fx.joint_moments(machine, where, joint=joint).universal_moment, axis=-1).max()
+        for joint in ("universal", "spin_free")
+    }
+    low, high = sorted(moments, key=lambda joint: float(moments[joint]))
+    assert moments[high] > 1.001 * moments[low]
+    limited = machine.replace({"limits.universal_moment": float(0.5 * (moments[low] + moments[high]))})
+    for joint in (low, high):
+        asked = {"design": limited.to_toml(), "changes": {}, "pose": pose, "joint": joint}
+        limits = snapshot(requests.question(asked))["limits"]
+        assert any("moment" in words for words in limits["exceeded"]) == (joint == high)

@@ -242,3 +242,37 @@ def test_what_only_motions_exceed_is_said():
     words = motion_limits_words(machine.limits)
     assert "limits.leg_rate, limits.leg_power: of a motion, and not judged at poses at rest" in words
     assert bool(fx.check_limits(machine).ok)
+
+
+@pytest.mark.parametrize("form", ["angles", "matrices"])
+def test_a_row_that_is_no_pose_does_not_end_a_sweep_of_forces(form):
+    """The others are as they are alone; at home six equal legs carry the weight by their vertical parts."""
+    machine = fx.load("motion-base").replace(FORCES)
+    rows = drawn(3, 0.1)
+    rows[0] = HOME
+    turned = rows if form == "angles" else fx.Pose.from_rpy(*rows.T).packed
+    given = turned.copy()
+    given[1, 2] = np.nan
+    given[2, 4] = np.inf
+    names = ("leg_compression", "leg_tension", "within_limits")
+    found, alone = (evaluate(machine, some, names, "universal", 1) for some in (given, turned[:1]))
+    for name in names:
+        assert found[name][0] == alone[name][0]
+    assert np.isnan(found["leg_compression"][1:]).all()
+    assert np.isnan(found["leg_tension"][1:]).all()
+    assert found["within_limits"].tolist() == [True, False, False]
+    length = fx.inverse_kinematics(machine)
+    weight = machine.platform_mass * 9.81
+    upright = np.abs(fx.force_transformation(machine)[2])
+    assert found["leg_compression"][0] * upright.sum() > weight  # and the legs' own
+    assert np.ptp(length) < 1e-12
+
+
+def test_where_no_forces_hold_a_pose_a_limit_of_them_is_told():
+    machine = fx.load("motion-base").replace({**FORCES, "limits.leg_length": None})
+    singular = fx.Pose.from_rpy(*HOME[:3], 0, 0, np.pi / 2)  # hexagon over hexagon, turned
+    found = fx.check_limits(machine, singular)
+    assert not found.ok
+    assert any("no force at rest holds the pose" in words for words in found.exceeded)
+    both = fx.Pose(np.stack([singular.position] * 2), np.stack([singular.matrix, machine.home.matrix]))
+    assert fx.check_limits(machine, both).ok.tolist() == [False, True]

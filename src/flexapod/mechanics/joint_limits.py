@@ -9,7 +9,7 @@ import numpy as np
 from flexapod import _core
 from flexapod.conventions import LEG_PAIRS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import PoseError, told_apart
+from flexapod.errors import PoseError
 from flexapod.mechanics.inputs import States, as_joint, pose_or_home, states
 from flexapod.mechanics.joint_springs import joint_moments
 from flexapod.mechanics.kinematics import force_transformation, home_pose, inverse_kinematics
@@ -210,11 +210,10 @@ def check_limits(
     ok = np.ones(shape, dtype=bool)
     words: list[str] = []
     for quantity in limit_excess(hexapod, pose, base=base, joint=joint):
-        _, _, value, least, most = quantity
-        kept = np.asarray((value >= least) & (value <= most))
+        kept = quantity.kept
         ok &= kept.all(axis=-1) if kept.ndim > len(shape) else kept  # of each leg, or of all of them
         if not shape:
-            words += in_words(quantity)
+            words += quantity.in_words()
     return LimitsCheck(ok, tuple(words))
 
 
@@ -272,20 +271,3 @@ def moment_excess(
         for name, bound in most.items()
         if bound is not None
     ]
-
-
-def in_words(quantity: LimitedQuantity) -> list[str]:
-    """What a quantity of one pose exceeds, leg by leg."""
-    value = np.atleast_1d(quantity.value)
-    if ((value >= quantity.least) & (value <= quantity.most)).all():
-        return []
-    name, unit = quantity.name, quantity.unit
-    low, high = np.broadcast_to(quantity.least, value.shape), np.broadcast_to(quantity.most, value.shape)
-    words = []
-    for i, v in enumerate(value):
-        leg = f"leg {i + 1}: " if value.size == 6 else ""
-        if v < low[i] or v > high[i]:
-            where, bound = ("below", low[i]) if v < low[i] else ("above", high[i])
-            told, limit = told_apart(float(v), float(bound))
-            words.append(f"{leg}{name} {told} {unit} is {where} {limit} {unit}")
-    return words

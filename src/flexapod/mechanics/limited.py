@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
 from flexapod.conventions import Array
+from flexapod.errors import told_apart
 
 
 class LimitedQuantity(NamedTuple):
@@ -15,3 +19,25 @@ class LimitedQuantity(NamedTuple):
     value: Array
     least: Array | float
     most: Array | float
+
+    @property
+    def kept(self) -> NDArray[np.bool_]:
+        """Whether each value is within its bounds; one that is not known is not."""
+        return np.asarray((self.value >= self.least) & (self.value <= self.most))
+
+    def in_words(self) -> list[str]:
+        """What the values of one pose exceed, leg by leg."""
+        if self.kept.all():
+            return []
+        value = np.atleast_1d(self.value)
+        if np.isnan(value).any():  # as leg forces are at a singular pose
+            return [f"no {self.name} holds the pose, so that its limit is not kept"]
+        low, high = np.broadcast_to(self.least, value.shape), np.broadcast_to(self.most, value.shape)
+        words = []
+        for i, v in enumerate(value):
+            leg = f"leg {i + 1}: " if value.size == 6 else ""
+            if v < low[i] or v > high[i]:
+                where, bound = ("below", low[i]) if v < low[i] else ("above", high[i])
+                told, limit = told_apart(float(v), float(bound))
+                words.append(f"{leg}{self.name} {told} {self.unit} is {where} {limit} {self.unit}")
+        return words

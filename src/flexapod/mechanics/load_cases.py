@@ -250,7 +250,7 @@ def _dataset(hexapod: Hexapod, given: _Given, answers: list[Answer]) -> xr.Datas
     force = stacked("leg_force")
     within = np.isfinite(force).all(axis=1)
     for limited in load_excess(hexapod, force):
-        within &= ((force >= limited.least) & (force <= limited.most)).all(axis=1)
+        within &= limited.kept.all(axis=1)
     found["force_within_limits"] = ("case", within, in_unit("1", "whether leg forces keep the design's limits"))
     found["status"] = ("case", np.array([one.status for one in answers]), {})
     moves, loads = np.array(["m"] * 3 + ["rad"] * 3), np.array(["N"] * 3 + ["N m"] * 3)

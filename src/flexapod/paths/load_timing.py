@@ -18,11 +18,8 @@ def exceeded(hexapod: Hexapod, path: Trajectory, joint: JointModel) -> list[str]
     """What the legs exceed on the way, "rate" or "force", at many instants and at waypoints."""
     motion = path(path.grid(_SAMPLES))
     legs, force = leg_rates(hexapod, motion), inverse_dynamics(hexapod, motion, joint=joint)
-    kept = {
-        limited.name: bool(((limited.value >= limited.least) & (limited.value <= limited.most)).all())
-        for limited in load_excess(hexapod, force, legs.rate, legs.acceleration)
-    }
-    return [name for name, ok in kept.items() if not ok]
+    limited = load_excess(hexapod, force, legs.rate, legs.acceleration)
+    return [quantity.name for quantity in limited if not quantity.kept.all()]
 
 
 def least_duration(hexapod: Hexapod, path: Trajectory, joint: JointModel) -> float | None:

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from flexapod.conventions import LEGS, TRANSLATIONS, Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SingularPoseError
 from flexapod.mechanics.dynamics import inverse_dynamics
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attributes
-from flexapod.mechanics.joint_limits import check_limits
+from flexapod.mechanics.joint_limits import limit_excess
 from flexapod.mechanics.joint_springs import joint_moments
-from flexapod.mechanics.kinematics import LegRates, leg_rates
+from flexapod.mechanics.kinematics import leg_rates
+from flexapod.mechanics.limited import LimitedQuantity
 from flexapod.mechanics.load_limits import load_excess
 from flexapod.mechanics.point_motion import at_point
 from flexapod.paths.analysis import check_arguments, singular_times
@@ -67,8 +69,8 @@ def path_loads(
 
         Over `leg`: stroke (m), peak_force (N, without its sign), and the least and greatest value and the root mean
         square over the time of leg_force, leg_rate and power: least_force, greatest_force, rms_force, least_rate, and
-        so on. Over `time`: within_limits, of lengths, angles and distances, and loads_within_limits, of forces, speeds,
-        accelerations and power.
+        so on. Over `time`: within_limits, of lengths, angles, distances and moments, and loads_within_limits, of the
+        forces, speeds, accelerations and power of this motion.
 
     Raises
     ------
@@ -113,6 +115,8 @@ def path_loads(
         )
     static = inverse_dynamics(hexapod, motion.pose, base=None, force=force, moment=moment, joint=joint)
     legs = leg_rates(hexapod, motion)
+    of_poses = limit_excess(hexapod, motion.pose, joint=joint, forces=False)
+    of_loads = load_excess(hexapod, leg_force, legs.rate, legs.acceleration)
     grid = ("time", "leg")
     dataset = xr.Dataset(
         {
@@ -124,8 +128,8 @@ def path_loads(
             "power": (grid, leg_force * legs.rate, in_unit("W", "actuator power")),
             "stroke": ("leg", np.ptp(legs.length, axis=0), in_unit("m", "leg travel")),
             "peak_force": ("leg", np.abs(leg_force).max(axis=0), in_unit("N", "peak leg force")),
-            "within_limits": ("time", check_limits(hexapod, motion.pose, joint=joint).ok),
-            "loads_within_limits": ("time", _kept(hexapod, leg_force, legs)),
+            "within_limits": ("time", _kept(of_poses, times.size)),
+            "loads_within_limits": ("time", _kept(of_loads, times.size)),
         },
         {"time": ("time", times, in_unit("s")), "leg": list(LEGS), "axis": list(TRANSLATIONS)},
     )
@@ -182,9 +186,9 @@ def _joint_moments(hexapod: Hexapod, motion: Motion, joint: JointModel) -> dict[
     }
 
 
-def _kept(hexapod: Hexapod, force: Array, legs: LegRates) -> np.ndarray:
-    """Whether the legs keep the limits of loads at each instant, (n,)."""
-    ok = np.ones(len(force), dtype=bool)
-    for quantity in load_excess(hexapod, force, legs.rate, legs.acceleration):
-        ok &= ((quantity.value >= quantity.least) & (quantity.value <= quantity.most)).all(axis=-1)
+def _kept(limited: Iterable[LimitedQuantity], count: int) -> NDArray[np.bool_]:
+    """Whether quantities keep their limits at each of `count` instants."""
+    ok = np.ones(count, dtype=bool)
+    for quantity in limited:
+        ok &= quantity.kept.reshape(count, -1).all(axis=1)
     return ok

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from flexapod.conventions import LEGS, Array
+from flexapod.conventions import LEGS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.joint_springs import joint_moments
 from flexapod.mechanics.springs import axial_stiffness
@@ -63,11 +63,11 @@ def spread(values: Array, scale: float = 1.0, unit: str = "") -> str:
     return f"{low if low == high else f'{low} to {high}'} {unit}".rstrip()
 
 
-def moments(hexapod: Hexapod, pose: Pose, beyond: dict[str, NDArray[np.bool_]]) -> list[Table]:
+def moments(hexapod: Hexapod, pose: Pose, joint: JointModel, beyond: dict[str, NDArray[np.bool_]]) -> list[Table]:
     """The moments of the joints' springs, leg by leg; beyond: which are above a limit, by quantity."""
     if not hexapod.legs.joint_stiffness.any:
         return []
-    found, joints = joint_moments(hexapod, pose), hexapod.legs.joint_stiffness
+    found, joints = joint_moments(hexapod, pose, joint=joint), hexapod.legs.joint_stiffness
     universal = np.hypot(*np.moveaxis(found.universal_moment, -1, 0))
     told = [_without_rounding(universal, joints.universal.max(axis=1))]
     told += [_without_rounding(found.bending_moment, joints.spherical)]

@@ -9,7 +9,7 @@ from flexapod.conventions import LEGS, TWO_PI
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.at_rest import PoseState, pose_state
 from flexapod.mechanics.cautions import GRAVE, Tangent
-from flexapod.mechanics.joint_limits import in_words, joint_angles, leg_distance, limit_excess
+from flexapod.mechanics.joint_limits import joint_angles, leg_distance, limit_excess
 from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
 from flexapod.mechanics.mode_shapes import energy_shares
 from flexapod.mechanics.modes import near_repeated
@@ -44,7 +44,7 @@ def snapshot(question: Question) -> Snapshot:
             **_static(question, state),
         },
         "leg_distance": float(leg_distance(hexapod, pose)),
-        "limits": _limits(hexapod, pose),
+        "limits": _limits(question),
         "grave": [one.text for one in state.cautions if one.code in GRAVE],
         "warnings": [one.text for one in state.cautions if one.code not in (*GRAVE, "limit", "design")],
         "near_repeated": near_repeated(modes.omega),
@@ -71,7 +71,7 @@ def _static(question: Question, state: PoseState) -> StaticLegs:
         why = next(one.text for one in state.cautions if one.code in ("singular", "unsupported"))
         return {"length": length, "force": None, "energy": None, "why": why}
     rest = state.linear.rest
-    energy = 0.5 * rest.leg_force**2 / hexapod.legs.stiffness
+    energy = 0.5 * rest.leg_force**2 / state.linear.leg_stiffness
     return {"length": rest.leg_length, "force": rest.leg_force, "energy": energy, "why": ""}
 
 
@@ -92,9 +92,9 @@ def _damped(tangent: Tangent) -> DampedModes:
     }
 
 
-def _limits(hexapod: Hexapod, pose: Pose) -> Limits:
+def _limits(question: Question) -> Limits:
     """The limits exceeded, in words, all and by leg, and whether the design has limits."""
-    quantities = limit_excess(hexapod, pose)
-    words = [word for quantity in quantities for word in in_words(quantity)]
+    quantities = limit_excess(question.hexapod, question.pose, joint=question.joint)
+    words = [word for quantity in quantities for word in quantity.in_words()]
     by_leg = [[word.split(": ", 1)[1] for word in words if word.startswith(f"leg {leg}: ")] for leg in LEGS]
     return {"any": bool(quantities), "ok": not words, "exceeded": words, "by_leg": by_leg}

@@ -239,9 +239,7 @@ def _legs(f: Findings) -> Section:
     beyond: dict[str, NDArray[np.bool_]] = {}
     for quantity in limit_excess(f.hexapod, f.pose, joint=f.joint):
         if np.size(quantity.value) == 6:
-            beyond[f"{quantity.name} {quantity.unit}"] = (quantity.value < quantity.least) | (
-                quantity.value > quantity.most
-            )
+            beyond[f"{quantity.name} {quantity.unit}"] = ~quantity.kept
     columns = [Column("leg", LEGS), Column("length", 1e3 * f.leg_length, "mm", 6, beyond.get("length m"))]
     if f.rest is not None:
         columns += [
@@ -256,7 +254,7 @@ def _legs(f: Findings) -> Section:
         f"Forces hold the machine at rest under its weight; positive is compression. Angles are from {neutral}. "
         f"{_limits(f)}"
     )
-    return Section("Legs", [Table(columns, note), *springs.moments(f.hexapod, f.pose, beyond)])
+    return Section("Legs", [Table(columns, note), *springs.moments(f.hexapod, f.pose, f.joint, beyond)])
 
 
 def _limits(f: Findings) -> str:
