@@ -312,7 +312,7 @@ class Hexapod(Value, metaclass=Suggesting):
                 values[f"limits.{item.name}"] = np.asarray(limit)
         if self.home is not None:
             values |= {"home.position": self.home.position, "home.orientation": self.home.rpy}
-        values |= values_of_suspension(self.suspension) | values_of_points(self.points)  # type: ignore[arg-type]
+        values |= values_of_suspension(self.suspension) | values_of_points(self.points)
         return values | values_of_drive(self.drive)
 
     def replace(self, changes: Mapping[str, Any] | None = None, /, **more: Any) -> Hexapod:

@@ -70,6 +70,6 @@ def points_of(values: Mapping[str, Any]) -> Points:
     return Points({key[len(start) :]: value for key, value in values.items() if key.startswith(start)})
 
 
-def values_of_points(points: Points) -> dict[str, Array]:
+def values_of_points(points: Mapping[str, Array]) -> dict[str, Array]:
     """Points by dotted file key."""
     return {f"{POINTS}.{name}": place for name, place in points.items()}

@@ -89,7 +89,7 @@ def as_point(hexapod: Hexapod, point: PointLike, name: str = "point") -> Array:
     )
 
 
-def point_attributes(hexapod: Hexapod, point: PointLike) -> dict[str, object]:
+def point_attributes(hexapod: Hexapod, point: PointLike) -> dict[str, Any]:
     """Attributes of a Dataset that say at which point it is: its place, and its name, "" without one."""
     return {"point_m": as_point(hexapod, point).tolist(), "point": point if isinstance(point, str) else ""}
 

@@ -36,10 +36,7 @@ REQUESTS, REQUESTS_A_SECOND = 200, 100  #: those beyond wait
 LATE_SECONDS = 3.0  #: for which they wait at most; then they are refused
 LONG_BYTES, LONG_BYTES_A_SECOND = 16 * MIB, 4 * MIB  #: of bodies beyond the small ones; what comes faster waits
 # What each address may.
-OPENINGS, OPENINGS_A_SECOND = (
-    100,
-    5,
-)  #: GET requests of browsers without a cookie yet, as new pages send, that do not wait
+OPENINGS, OPENINGS_A_SECOND = 100, 5  #: GET requests without a cookie, as of new pages, that do not wait
 NEW_CONNECTIONS, NEW_CONNECTIONS_A_SECOND = 400, 200  #: those beyond are refused
 NEW_CLIENTS, NEW_CLIENTS_A_SECOND = 50, 0.2  #: that get a cookie; those beyond are one client together
 IPV6_NETWORK = 64  #: bits that are the same in all addresses of one network

@@ -76,7 +76,7 @@ def command(
         )
         return
     _show(f"{hexapod.name} at {where!r}, joint model {joint}: {state.stability}", omega, descriptions)
-    _show_point(point_words(attributes["point_m"], attributes["point"]), moved)  # type: ignore[arg-type]
+    _show_point(point_words(attributes["point_m"], attributes["point"]), moved)
     scaled = f" (moments over {characteristic_length:g} m)" if characteristic_length else " (in metres)"
     click.echo(f"Condition number of H: {condition:.6g}{scaled}")
     click.echo("Leg lengths: " + "  ".join(f"{length:.6g}" for length in lengths) + " m")
