@@ -150,19 +150,6 @@ def test_the_box_of_losses_tells_that_they_act(opened: Any) -> None:
     page.locator("#losses", has_text="Loss factors that act: 0.02 in the legs, of the design.").wait_for()
 
 
-@pytest.mark.parametrize("kind", ["constant", "screw", "hydraulic", "table"])
-def test_energies_of_legs_are_those_of_all_that_yields_along_them(kind: str) -> None:
-    """Together with what the springs in series take, and by a law's stiffness, they are the machine's elastic energy."""
-    machine = MACHINES["six stiffnesses, in series"]
-    changes = law_choices(machine)[kind]
-    asked = {"design": machine.to_toml(), "changes": changes, "pose": [0, 0, 2.42, 0, 0, 2.0]}
-    question = requests.question(asked)
-    found = snapshot(question)["legs"]
-    rest = fx.hold(question.hexapod, question.pose)
-    whole = fx.mechanics.energy(question.hexapod, question.pose, unstretched_length=rest.unstretched_length)
-    assert np.sum(found["energy"]) == pytest.approx(float(whole.elastic), rel=1e-9)
-
-
 def test_limits_are_those_of_the_joint_model() -> None:
     springs = {"legs.joint_stiffness.universal": [400.0, 10.0], "legs.joint_stiffness.spherical": 300.0}
     machine = fx.load("motion-base").replace(springs)

@@ -177,7 +177,8 @@ class Trajectory:
         Returns
         -------
         Trajectory
-            Through all waypoints; only its pieces next to the first and the last one differ from those of this path.
+            Through all waypoints. It is one spline, so that between them it is not exactly this path: least so in the
+            middle, and most next to the first and the last waypoint, at which it does not stop.
 
         Raises
         ------

@@ -71,7 +71,7 @@ def _static(question: Question, state: PoseState) -> StaticLegs:
         why = next(one.text for one in state.cautions if one.code in ("singular", "unsupported"))
         return {"length": length, "force": None, "energy": None, "why": why}
     rest = state.linear.rest
-    energy = 0.5 * rest.leg_force**2 / state.linear.leg_stiffness
+    energy = 0.5 * rest.leg_force**2 / hexapod.legs.stiffness
     return {"length": rest.leg_length, "force": rest.leg_force, "energy": energy, "why": ""}
 
 
