@@ -84,6 +84,20 @@ def test_wrong_shapes_are_told(call, words):
         call(fx.load("motion-base").compiled())
 
 
+@pytest.mark.parametrize("kind", [float, np.float64, np.float32, int, np.int64])
+def test_lists_of_numbers_of_any_kind_are_numbers(kind):
+    handle = fx.load("motion-base").compiled()
+    pose, twist, force = np.array([0, 0, 2, 0, 0, 0]), np.arange(6), np.array([9, 8, 7, 6, 5, 4])
+    numbers = [[kind(x) for x in given] for given in (pose, twist, force)]
+    known = handle.forward_dynamics(*(given.astype(np.float64) for given in (pose, twist, force)))
+    assert (handle.forward_dynamics(*numbers) == known).all()
+    assert (handle.linearised(tuple(numbers[0])).K == handle.linearised(pose.astype(np.float64)).K).all()
+    with pytest.raises(fx.errors.ArgumentError, match="twist is"):
+        handle.forward_dynamics(numbers[0], [*numbers[1][:5], "0"], numbers[2])
+    with pytest.raises(fx.errors.ArgumentError, match="leg_force is"):
+        handle.forward_dynamics(numbers[0], numbers[1], [*numbers[2][:5], 10**400])
+
+
 def test_what_it_cannot_be_made_of_is_told():
     hexapod = fx.load("motion-base")
     with pytest.raises(fx.errors.ArgumentError, match="joint is 'rigid'"):

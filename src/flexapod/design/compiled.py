@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, NoReturn
+from contextlib import suppress
+from numbers import Real
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
 
 _ZERO = (0.0,) * 6
 _POSE = "a float64 array (6,) of x, y, z (m), roll, pitch, yaw (rad), or (12,) of a position and a matrix by rows"
+_SHAPES = {"pose": ((6,), (12,))}
 _NEEDED = {
     "pose": _POSE,
     "twist": "a float64 array (6,) of a velocity (m/s) and an angular velocity (rad/s)",
@@ -104,55 +107,53 @@ class CompiledHexapod:
     def stability_index(self, pose: ArrayLike) -> float:
         """Compute the dynamic stability index, the lowest natural frequency, rad/s."""
         found = self._core.stability_index(pose)
-        if found is None:
-            _refuse(pose=pose)
-        return found
+        return self._again("stability_index", pose=pose) if found is None else found
 
     def natural_frequencies(self, pose: ArrayLike) -> Array:
         """Compute the six undamped natural frequencies, rad/s, (6,), ascending."""
         found = self._core.natural_frequencies(pose)
-        if found is None:
-            _refuse(pose=pose)
-        return found
+        return self._again("natural_frequencies", pose=pose) if found is None else found
 
     def leg_lengths(self, pose: ArrayLike) -> Array:
         """Compute the leg lengths, m, (6,)."""
         found = self._core.leg_lengths(pose)
-        if found is None:
-            _refuse(pose=pose)
-        return found
+        return self._again("leg_lengths", pose=pose) if found is None else found
 
     def jacobian(self, pose: ArrayLike) -> Array:
         """Compute the matrix that takes a twist to the rates of the leg lengths, m/s, (6, 6); H is its transpose."""
         found = self._core.jacobian(pose)
-        if found is None:
-            _refuse(pose=pose)
-        return found
+        return self._again("jacobian", pose=pose) if found is None else found
 
     def forward_dynamics(
         self, pose: ArrayLike, twist: ArrayLike, leg_force: ArrayLike, wrench: ArrayLike = _ZERO
     ) -> Array:
         """Compute the platform's acceleration (m/s^2) and angular acceleration (rad/s^2), inertial axes, (6,)."""
         found = self._core.forward_dynamics(pose, twist, leg_force, wrench)
-        if found is None:
-            _refuse(pose=pose, twist=twist, leg_force=leg_force, wrench=wrench)
-        return found
+        return (
+            self._again("forward_dynamics", pose=pose, twist=twist, leg_force=leg_force, wrench=wrench)
+            if found is None
+            else found
+        )
 
     def inverse_dynamics(
         self, pose: ArrayLike, twist: ArrayLike = _ZERO, acceleration: ArrayLike = _ZERO, wrench: ArrayLike = _ZERO
     ) -> Array:
         """Compute the leg forces for a motion, N, (6,); NaN where H is singular."""
         found = self._core.inverse_dynamics(pose, twist, acceleration, wrench)
-        if found is None:
-            _refuse(pose=pose, twist=twist, acceleration=acceleration, wrench=wrench)
-        return found
+        return (
+            self._again("inverse_dynamics", pose=pose, twist=twist, acceleration=acceleration, wrench=wrench)
+            if found is None
+            else found
+        )
 
     def linearised(self, pose: ArrayLike, wrench: ArrayLike = _ZERO) -> LinearMatrices:
         """Compute M, C, K and H, (6, 6) each, about the pose held at rest under gravity and a wrench."""
         found = self._core.linearised(pose, wrench)
-        if found is None:
-            _refuse(pose=pose, wrench=wrench)
-        return LinearMatrices(*found)
+        return LinearMatrices(*(self._again("linearised", pose=pose, wrench=wrench) if found is None else found))
+
+    def _again(self, method: str, **given: ArrayLike) -> Any:
+        """The answer to what the core does not read at once. Raises ArgumentError for the first that is wrong."""
+        return getattr(self._core, method)(*(_plain(name, value) for name, value in given.items()))
 
     def __repr__(self) -> str:
         return f"<CompiledHexapod {self._hexapod.name!r}, joint={self.joint!r}, base={self.base!r}>"
@@ -161,15 +162,15 @@ class CompiledHexapod:
         return CompiledHexapod, (self._hexapod, self.base, self.joint)
 
 
-def _refuse(**given: ArrayLike) -> NoReturn:
-    """Raises ArgumentError for the first argument that is not what it must be."""
-    for name, value in given.items():
-        sizes = (6, 12) if name == "pose" else (6,)
-        try:
-            right = np.asarray(value).dtype == np.float64 and np.shape(value) in [(size,) for size in sizes]
-        except (TypeError, ValueError):
-            right = False
-        if not right:
-            told = f"an array of {value.dtype} {value.shape}" if isinstance(value, np.ndarray) else shown(value)
-            raise ArgumentError(f"{name} is {told}; it must be {_NEEDED[name]}.")
-    raise ArgumentError(f"{', '.join(given)} must be plain arrays of float64, or lists of numbers.")
+def _plain(name: str, value: ArrayLike) -> Array:
+    """An argument as a plain array, from a list of numbers of any kind too. Raises ArgumentError for what is none."""
+    array = np.empty(0)
+    if type(value) is np.ndarray and value.dtype == np.float64:
+        array = value
+    elif isinstance(value, list | tuple) and all(isinstance(one, Real) for one in value):
+        with suppress(OverflowError):
+            array = np.array(value, dtype=np.float64)
+    if array.shape not in _SHAPES.get(name, ((6,),)):
+        told = f"an array of {value.dtype} {value.shape}" if isinstance(value, np.ndarray) else shown(value)
+        raise ArgumentError(f"{name} is {told}; it must be {_NEEDED[name]}.")
+    return array
