@@ -140,6 +140,7 @@ class Prepared(NamedTuple):
 
 def prepare(run: SimulationRun, until: float, joint: JointModel) -> Prepared:
     """One run to the time `until`, s, as the core takes it."""
+    run = run.with_friction(joint)
     pose = single_pose(run.hexapod, run.pose)
     base = single_base(run.hexapod, run.base)
     force, force_history = _split(run.force, "force")

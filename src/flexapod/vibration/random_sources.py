@@ -158,7 +158,8 @@ def load_sources(
             spectrum = spectrum_of(load.psd, load.axis, grid, load.frequency is not None, poles, "force")
         except ArgumentError as error:
             raise ArgumentError(f"the load {name!r}: {error}") from error
-        yield Source(name, spectrum, shift(pose, as_point(hexapod, load.point)).T)
+        place = as_point(hexapod, load.point, f"point of the load {name!r}")
+        yield Source(name, spectrum, shift(pose, place).T)
 
 
 def _names(loads: Sequence[RandomLoad]) -> list[str]:
