@@ -256,3 +256,9 @@ def test_the_worst_of_poses_is_one_of_them():
     assert worst.omega_1 == pytest.approx(float(found.omega_1.min()), rel=1e-12)
     fixed, moving = fx.Box.about(home, 0.1, 0.1), fx.Workspace.about_home(0.1, 0.1)
     assert fx.worst_pose(BASE, moving, samples=64).omega_1 == fx.worst_pose(BASE, fixed, samples=64).omega_1
+
+
+@pytest.mark.parametrize("given", [fx.Pose((0.0, 0.0, 0.5)), np.arange(3), None, {"omega_1": [1.0]}])
+def test_what_is_no_sweep_is_told(given):
+    with pytest.raises(fx.errors.ArgumentError, match=r"sweep is .*; it must be a Dataset, as flexapod.sweep"):
+        fx.summarise(given)

@@ -141,6 +141,9 @@ def summarise(sweep: xr.Dataset, at_least: float | None = None, *, all_poses: bo
     >>> round(summary.quantiles[0.5], 1), round(summary.above.fraction, 2)
     (27.9, 0.0)
     """
+    import xarray as xr
+
+    checks.instance(sweep, xr.Dataset, "sweep", "as flexapod.sweep and flexapod.open_sweep give it")
     if "omega_1" not in sweep:
         raise ArgumentError("sweep does not hold omega_1, which a summary needs. Sweep it.")
     counted = Counted(sweep, all_poses)
