@@ -208,6 +208,7 @@ class SimulationOptions:
         stop_at_singular: bool,
         motions: bool,
         works: bool,
+        exponential: bool,
         threads: int,
     ) -> None: ...
     rtol: float
@@ -217,6 +218,7 @@ class SimulationOptions:
     stop_at_singular: bool
     motions: bool
     works: bool
+    exponential: bool
     threads: int
 
 class SimulationSetup:

@@ -56,6 +56,7 @@ SINGLE = {
     *("coefficients", "values", "recorded", "rms", "quantity", "spectrum", "response", "height", "period", "gamma"),
     *("waypoints", "at_least", "sweep", "starts", "address", "timeout", "timestep", "hardware", "after", "runs"),
     *(
+        "method",
         "rtol",
         "atol",
         "max_step",

@@ -43,11 +43,11 @@ void bind_options(nb::module_& m) {
       .def(
           "__init__",
           [](Options* self, double rtol, double atol, double max_step, double max_steps, bool stop_at_singular,
-             bool motions, bool works, int threads) {
-            new (self) Options{rtol, atol, max_step, max_steps, stop_at_singular, motions, works, threads};
+             bool motions, bool works, bool exponential, int threads) {
+            new (self) Options{rtol, atol, max_step, max_steps, stop_at_singular, motions, works, exponential, threads};
           },
           nb::kw_only(), "rtol"_a, "atol"_a, "max_step"_a, "max_steps"_a, "stop_at_singular"_a, "motions"_a, "works"_a,
-          "threads"_a)
+          "exponential"_a, "threads"_a)
       .def_rw("rtol", &Options::rtol)
       .def_rw("atol", &Options::atol)
       .def_rw("max_step", &Options::max_step)
@@ -55,6 +55,7 @@ void bind_options(nb::module_& m) {
       .def_rw("stop_at_singular", &Options::stop_at_singular)
       .def_rw("motions", &Options::motions)
       .def_rw("works", &Options::works)
+      .def_rw("exponential", &Options::exponential)
       .def_rw("threads", &Options::threads);
 }
 

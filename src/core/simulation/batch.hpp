@@ -61,7 +61,7 @@ struct SimulationResult {
   Array<double> displacement, relative, work, platform, base, leg_force;
   std::vector<Outcome> outcome;
   Array<double> time, last;   // reached, and the platform's motion then
-  Array<std::int64_t> steps;  // (n, 3) accepted, rejected, evaluations
+  Array<std::int64_t> steps;  // (n, 4) accepted, rejected, evaluations; exponential ones accepted
 
   SimulationResult(size_t n, size_t m, size_t kept)
       : displacement({n, m, 6}, nan),
@@ -73,7 +73,7 @@ struct SimulationResult {
         outcome(n),
         time({n}, nan),
         last({n, motion_size}, nan),
-        steps({n, 3}, 0) {}
+        steps({n, 4}, 0) {}
 
  private:
   static constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -108,8 +108,8 @@ class SimulationBatch {
     done_[i] = 1.0;
     result.outcome[i] = end.outcome, result.time.data()[i] = end.time;
     std::copy_n(end.last, motion_size, result.last.data() + i * motion_size);
-    std::int64_t* steps = result.steps.data() + 3 * i;
-    for (const double count : {end.accepted, end.rejected, end.evaluations})
+    std::int64_t* steps = result.steps.data() + 4 * i;
+    for (const double count : {end.accepted, end.rejected, end.evaluations, end.exponential})
       *steps++ = static_cast<std::int64_t>(count);
   }
   /// The share of the work that is done.

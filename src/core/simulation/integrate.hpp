@@ -35,6 +35,7 @@ template <int N> class RungeKutta8 {
   }
   /// Closes the step tried last with the rates at its end; it can be looked into until `advance`.
   template <class F> void accept(F&& f) { f(dop853::stages, t + h, y1, k_[dop853::stages]); }
+  const State& rate() const { return k_[0]; }  // where the step starts
   void advance() { t += h, y0 = y1, k_[0] = k_[dop853::stages]; }
 
   /// Root mean square over the first `count` numbers of the error, each over its scale (Hairer's mean of orders 5 and 3).

@@ -33,11 +33,12 @@ End simulate(const Run& run) {
   const auto& m = run.machine;
   Simulation simulation(input_of(m, run.options.works), excitation(m.base_motion), excitation(m.load),
                         excitation(m.command), run.options);
-  End end{simulation.run(run.samples, *run.stop, *run.progress), simulation.time(), {}, 0, 0, 0};
+  End end{simulation.run(run.samples, *run.stop, *run.progress), simulation.time(), {}, 0, 0, 0, 0};
   const Motion<double> last = simulation.last();
   std::memcpy(end.last, &last, sizeof(end.last));
   const Counts& counts = simulation.counts();
   end.accepted = counts.accepted, end.rejected = counts.rejected, end.evaluations = counts.evaluations;
+  end.exponential = counts.exponential;
   return end;
 }
 

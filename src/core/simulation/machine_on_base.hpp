@@ -75,15 +75,20 @@ class MachineOnBase {
 
   FLEXAPOD_FLAT void rates(double t, const State& y, State& rate, bool powers) {
     const Instant now = instant(t, y);
-    const Motion<double>&frame = now.frame, &p = now.platform;
-    const Vec3<double>&v = now.v, &w = now.w, &r = p.pose.t;
-    const Vec3<double> frame_a = frame.a + cross(frame.alpha, r) + cross(frame.w, cross(frame.w, r) + 2.0 * v);
-    put(rate, 0, v);
-    put(rate, 3, rotation_vector_rate(get(y, 3), w));
-    put(rate, 6, p.a - frame_a);
-    put(rate, 9, p.alpha - frame.alpha - cross(frame.w, w));
+    put(rate, 0, now.v);
+    put(rate, 3, rotation_vector_rate(get(y, 3), now.w));
+    put(rate, 6, now.platform.a - now.carried_a());
+    put(rate, 9, now.platform.alpha - now.carried_alpha());
     for (int i = mechanical; i < 16; ++i) rate[i] = 0.0;
     if (powers && in_.works) add_powers(now, rate);
+  }
+
+  /// Rates of the works alone, from those of the motion.
+  FLEXAPOD_FLAT void powers(double t, const State& y, State& rate) {
+    Instant now = placed(t, y);
+    now.platform.a = get(rate, 6) + now.carried_a(), now.platform.alpha = get(rate, 9) + now.carried_alpha();
+    for (int i = mechanical; i < 16; ++i) rate[i] = 0.0;
+    add_powers(now, rate);
   }
 
   /// Moves the chart to the present orientation when that has turned by more than `limit` from it. True if it did.
@@ -169,6 +174,13 @@ class MachineOnBase {
     Vec6<double> wrench;  // platform axes
     Jet command[6];
     Vec6<double> stiffening;  // energy in a leg by its commanded length at the same compression, N
+
+    /// Accelerations of what has the platform's velocities as seen from the base, and keeps them.
+    Vec3<double> carried_a() const {
+      const Vec3<double>& r = platform.pose.t;
+      return frame.a + cross(frame.alpha, r) + cross(frame.w, cross(frame.w, r) + 2.0 * v);
+    }
+    Vec3<double> carried_alpha() const { return frame.alpha + cross(frame.w, w); }
   };
 
   static Design<double> without_gravity(Design<double> d) {
@@ -201,7 +213,8 @@ class MachineOnBase {
   }
   Pose<double> pose(const State& y) const { return {rest_.t + get(y, 0), rotation(get(y, 3)) * R_chart_}; }
 
-  Instant instant(double t, const State& y) {
+  /// Without the platform's accelerations.
+  FLEXAPOD_INLINE Instant placed(double t, const State& y) {
     Instant now{base_at(t), {}, {}, get(y, 6), get(y, 9), places_, {}, in_.wrench, {}, {}};
     const Motion<double>& b = now.base.motion;
     now.frame.a = transposed(b.pose.R, b.a - in_.design.gravity);
@@ -215,6 +228,10 @@ class MachineOnBase {
       wrench_.at(t, inside, channel);
       for (int i = 0; i < 6; ++i) now.wrench[i] += channel[i].x;
     }
+    return now;
+  }
+  Instant instant(double t, const State& y) {
+    Instant now = placed(t, y);
     const Vec6<double> wrench = external_wrench(now.platform.pose.R, now.wrench);
     const Vec6<double> acceleration = forward_dynamics(legs_, now.at, now.platform, now.frame, now.leg_force, wrench);
     now.platform.a = acceleration.top(), now.platform.alpha = acceleration.bottom();

@@ -4,38 +4,21 @@
 #include <atomic>
 
 #include "model/modes.hpp"
+#include "simulation/allowance.hpp"
+#include "simulation/exponential_start.hpp"
+#include "simulation/gauss.hpp"
 #include "simulation/machine_on_base.hpp"
+#include "simulation/pose_watch.hpp"
 #include "simulation/task.hpp"
 
 namespace flexapod {
 
 using simulation_task::Options;
-using simulation_task::Outcome;
 using simulation_task::Samples;
 
 struct Counts {
-  double accepted = 0, rejected = 0, evaluations = 0;
+  double accepted = 0, rejected = 0, evaluations = 0, exponential = 0;
 };
-
-/// Determinant of H with moments taken per length, by elimination with pivoting.
-inline double scaled_determinant(Mat6<double> m, double length) {
-  for (int i = 3; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) m[i][j] /= length;
-  double product = 1.0;
-  for (int k = 0; k < 6; ++k) {
-    int pivot = k;
-    for (int i = k + 1; i < 6; ++i)
-      if (std::abs(m[i][k]) > std::abs(m[pivot][k])) pivot = i;
-    if (m[pivot][k] == 0.0) return 0.0;
-    if (pivot != k) std::swap(m.a[k], m.a[pivot]), product = -product;
-    product *= m[k][k];
-    for (int i = k + 1; i < 6; ++i) {
-      const double factor = m[i][k] / m[k][k];
-      for (int j = k + 1; j < 6; ++j) m[i][j] -= factor * m[k][j];
-    }
-  }
-  return product;
-}
 
 class Simulation {
  public:
@@ -43,7 +26,10 @@ class Simulation {
 
   Simulation(const MachineOnBaseInput& input, const Excitation& base, const Excitation& wrench,
              const Excitation& command, const Options& options)
-      : machine_(input, base, wrench, command), options_(options), size_(largest_radius(input.design)) {
+      : machine_(input, base, wrench, command),
+        options_(options),
+        size_(largest_radius(input.design)),
+        watch_(size_, options.stop_at_singular) {
     const Modes modes =
         natural_modes(machine_.machine(), machine_.geometry(State{}), machine_.rest().R, Mat3<double>::identity());
     slowest_ = modes.omega[0], fastest_ = modes.omega[5];
@@ -51,7 +37,11 @@ class Simulation {
     for (const Excitation* e : {&base, &wrench, &command}) e->notes(corners_, spacing);
     // A step of 6 / omega is where the method stops being stable, and twelve stages see every piece of eight.
     max_step_ = std::min({options_.max_step, 6.0 / fastest_, 8.0 * spacing});
+    // Beyond 1.5 / omega a polynomial through values one step apart may take an overtone for something slow.
+    longest_exponential_ = std::min({options_.max_step, 1.5 / fastest_, 0.7 * spacing});
+    if (!(fastest_ > 0)) options_.exponential = false;
     if (!(options_.atol > 0)) options_.atol = 1e-16 * size_;
+    allowance_ = Allowance(options_.rtol, options_.atol, size_, slowest_, fastest_);
   }
 
   Outcome run(const Samples& samples, const std::atomic<bool>& stop, std::atomic<double>& progress) {
@@ -62,14 +52,14 @@ class Simulation {
     std::sort(corners_.begin(), corners_.end());
     State y = machine_.start();
     machine_.inside = 0.5 * corners_.front();
-    watch_from(y);
+    watch_.begin(machine_, y), last_ = y, time_ = 0.0;
     double t = 0.0;
     next_step_ = first_step(end);
     sample_until(0.0, [&](double) { return y; });
     for (const double corner : corners_) {
       if (!(corner > t)) continue;
       machine_.inside = 0.5 * (t + corner);
-      const Outcome outcome = go(t, corner, y, stop, progress);
+      const Outcome outcome = go(t, corner, y, {stop, progress});
       if (outcome != Outcome::complete) return outcome;
       t = corner, y = rk_.y0;
     }
@@ -89,7 +79,13 @@ class Simulation {
 
  private:
   using Method = RungeKutta8<16>;
-  static constexpr double collapsed = 1e-3;  // length of a leg over the platform's size at which its joints meet
+  // What steps cost, in evaluations: one of the Runge-Kutta method; an exponential one beside its evaluations, to begin with
+  // them, and the works in one.
+  static constexpr double runge_kutta_cost = 12.0, algebra = 0.3, beginning = 200.0, works_cost = 3.5;
+  struct Reports {
+    const std::atomic<bool>& stop;
+    std::atomic<double>& progress;
+  };
 
   auto rates() {
     return [this](int stage, double t, const State& y, State& rate) {
@@ -103,42 +99,136 @@ class Simulation {
     return std::min({step, 1e-3 * end, max_step_});
   }
 
-  /// From t to the next corner.
-  Outcome go(double t, double corner, const State& start, const std::atomic<bool>& stop,
-             std::atomic<double>& progress) {
+  /// From t to the next corner: Runge-Kutta steps, and exponential ones where they are worth it.
+  Outcome go(double t, double corner, const State& start, const Reports& reports) {
     const auto f = rates();
     rk_.begin(t, start, f);
-    peaks_ = peaks_with(start, 0.0);
-    bool rejected = false;
-    const double end = corners_.back();
+    peaks_ = allowance_.after(peaks_, start, 0.0);
+    start_.restart(), rejected_ = false;
     while (rk_.t < corner) {
-      if (stop.load(std::memory_order_relaxed)) return Outcome::stopped;
-      if (counts_.accepted + counts_.rejected >= options_.max_steps) return ended(Outcome::max_steps);
-      const double left = corner - rk_.t;
-      const bool last = next_step_ >= left * (1.0 - 1e-12);
-      const double h = last ? left : next_step_ > 0.5 * left ? 0.5 * left : next_step_;
-      if (h < 1e-14 * std::max(rk_.t, 1e-3 * end)) return ended(collapse());
-      rk_.attempt(h, f);
-      const double error = rk_.error(scales(peaks_with(rk_.y1, h)), MachineOnBase::mechanical);
-      if (!(error <= 1.0)) {
-        counts_.rejected += 1, rejected = true;
-        next_step_ = h * (error > 1.0 ? std::max(0.2, 0.9 * std::pow(error, -0.125)) : 0.2);  // 0.2 too for NaN
-        continue;
-      }
-      counts_.accepted += 1;
-      rk_.accept(f);
-      const Outcome outcome = look(f);
+      if (reports.stop.load(std::memory_order_relaxed)) return Outcome::stopped;
+      if (no_more_steps()) return ended(Outcome::max_steps);
+      if (options_.exponential) start_.gather(rk_.y0, rk_.rate(), next_step_, longest_exponential_, corner - rk_.t);
+      const Outcome outcome = start_.ready() ? exponential(corner, reports) : runge_kutta(corner);
       if (outcome != Outcome::complete) return outcome;
-      // Proportional-integral control (Hairer and Wanner II, IV.2): a fast mode's phase makes the error go up and down.
-      const double growth = std::clamp(0.93 * std::pow(error, -0.7 / 8) * std::pow(last_error_, 0.4 / 8), 0.3, 6.0);
-      last_error_ = std::max(error, 1e-4);
-      const double proposed = h * (rejected ? std::min(1.0, growth) : growth);
-      next_step_ = std::min(h < next_step_ ? std::max(proposed, next_step_) : proposed, max_step_);
-      rejected = false;
-      step_on(last ? corner : rk_.t + h, f);
-      progress.store(rk_.t / end, std::memory_order_relaxed);
+      reports.progress.store(rk_.t / corners_.back(), std::memory_order_relaxed);
     }
     return Outcome::complete;
+  }
+
+  /// One step of the Runge-Kutta method, if its error allows it.
+  Outcome runge_kutta(double corner) {
+    const auto f = rates();
+    const double left = corner - rk_.t, end = corners_.back();
+    const bool last = next_step_ >= left * (1.0 - 1e-12);
+    double h = last ? left : next_step_ > 0.5 * left ? 0.5 * left : next_step_;
+    if (start_.gathering()) h = start_.spacing;
+    if (h < 1e-14 * std::max(rk_.t, 1e-3 * end)) return ended(collapse());
+    rk_.attempt(h, f);
+    const double error = rk_.error(allowance_.at(allowance_.after(peaks_, rk_.y1, h)), MachineOnBase::mechanical);
+    if (!(error <= 1.0)) {
+      counts_.rejected += 1, rejected_ = true;
+      start_.restart();
+      next_step_ = h * (error > 1.0 ? std::max(0.2, 0.9 * std::pow(error, -0.125)) : 0.2);  // 0.2 too for NaN
+      return Outcome::complete;
+    }
+    counts_.accepted += 1;
+    rk_.accept(f);
+    const double step_end = rk_.t + h;
+    const auto inside = [&](double t) { return t == step_end ? rk_.y1 : rk_.inside(t, f); };
+    const Outcome outcome = look(rk_.t, step_end, rk_.y1, inside, inside);
+    if (outcome != Outcome::complete) return outcome;
+    // Proportional-integral control (Hairer and Wanner II, IV.2): a fast mode's phase makes the error go up and down.
+    const double growth = std::clamp(0.93 * std::pow(error, -0.7 / 8) * std::pow(last_error_, 0.4 / 8), 0.3, 6.0);
+    last_error_ = std::max(error, 1e-4);
+    const double proposed = h * (rejected_ ? std::min(1.0, growth) : growth);
+    next_step_ = std::min(h < next_step_ ? std::max(proposed, next_step_) : proposed, max_step_);
+    rejected_ = false;
+    step_on(last && !start_.gathering() ? corner : rk_.t + h, f);
+    return Outcome::complete;
+  }
+
+  /// Exponential steps until less than one is left to the corner, or they are no longer worth it.
+  Outcome exponential(double corner, const Reports& reports) {
+    const auto f = [this](double t, const State& y, State& rate) {
+      counts_.evaluations += 1;
+      machine_.rates(t, y, rate, false);
+    };
+    const Counts before = counts_;
+    const double began = rk_.t;
+    double unit[16];
+    for (int i = 0; i < 16; ++i) unit[i] = 1e-5 * (i % 6 < 3 ? size_ : 1.0) * (i < 6 ? 1.0 : fastest_);
+    adams_.linearise(rk_.t, rk_.y0, unit, f);
+    Works works{rk_.t, rk_.y0};
+    double shrinkage = 1.0;
+    bool able = adams_.begin(rk_.t, start_.y, start_.rate, start_.spacing), recentred = false;
+    while (able && !recentred && adams_.t + adams_.h * (1.0 + 1e-9) < corner && !no_more_steps()) {
+      if (reports.stop.load(std::memory_order_relaxed)) return Outcome::stopped;
+      adams_.attempt(f);
+      const Peaks peaks = allowance_.after(peaks_, adams_.y1, adams_.h);
+      const State allowed = allowance_.at(peaks);
+      const double error = adams_.error(allowed);
+      if (!(error <= 1.0)) {
+        counts_.rejected += 1;
+        shrinkage = adams_.shrinkage(error);
+        able = adams_.shorten(error) && worth(2.0);
+        continue;
+      }
+      counts_.accepted += 1, counts_.exponential += 1;
+      const Outcome outcome = look_exponentially(works);
+      if (outcome != Outcome::complete) return outcome;
+      adams_.watch(error, allowed);
+      adams_.advance();
+      recentred = machine_.recentre(adams_.y0);
+      time_ = adams_.t, last_ = adams_.y0, peaks_ = peaks;
+      reports.progress.store(time_ / corners_.back(), std::memory_order_relaxed);
+      able = adams_.adapt(longest_exponential_) && !adams_.stale() &&
+             worth(counts_.exponential - before.exponential < 40 ? 2.0 : 1.0);
+    }
+    start_.restart();
+    if (!able) {
+      const double cost = beginning + (1.0 + algebra) * (counts_.evaluations - before.evaluations) +
+                          (options_.works ? works_cost : 0.0) * (counts_.exponential - before.exponential);
+      const bool paid = cost < runge_kutta_cost * (adams_.t - began) / next_step_;
+      start_.give_up(paid, shrinkage * adams_.h / next_step_);
+    }
+    rk_.begin(adams_.t, with_works(works, adams_.t, adams_.y0), rates());
+    if (recentred) watch_.begin(machine_, rk_.y0);
+    return Outcome::complete;
+  }
+
+  /// Whether exponential steps of the present length are a good deal quicker, give or take `patience`.
+  bool worth(double patience) const {
+    const double cost = (adams_.twice() ? 2.0 : 1.0) + algebra + (options_.works ? works_cost : 0.0);
+    return adams_.h * 0.75 * runge_kutta_cost * patience > next_step_ * cost;
+  }
+
+  /// The last instant to which works are known, and a state with them.
+  struct Works {
+    double t;
+    State y;
+  };
+  /// The state at t, in the present exponential step, with the works until then.
+  State with_works(Works& works, double t, State y) {
+    if (options_.works && t > works.t) {
+      gauss::each(gauss::points(2.0 * fastest_ * (t - works.t)), works.t, t, [&](double weight, double at) {
+        State rate;
+        const State between = adams_.inside(at, rate);
+        machine_.powers(at, between, rate);
+        for (int i = MachineOnBase::mechanical; i < 16; ++i) works.y[i] += weight * rate[i];
+      });
+      works.t = t;
+    }
+    std::copy(works.y.begin() + MachineOnBase::mechanical, works.y.end(), y.begin() + MachineOnBase::mechanical);
+    return y;
+  }
+  Outcome look_exponentially(Works& works) {
+    const double end = adams_.t + adams_.h;
+    const auto inside = [&](double t) { return t == end ? adams_.y1 : adams_.inside(t); };
+    const auto sampled = [&](double t) { return with_works(works, t, inside(t)); };
+    const Outcome outcome = look(adams_.t, end, adams_.y1, inside, sampled);
+    if (outcome == Outcome::complete) with_works(works, end, adams_.y1);
+    return outcome;
   }
 
   /// Goes to the next step, with the error's scales and the chart brought up to date.
@@ -146,88 +236,24 @@ class Simulation {
     const double h = rk_.h;
     rk_.advance();
     rk_.t = t;  // exactly at a corner
+    peaks_ = allowance_.after(peaks_, rk_.y0, h);
+    const bool recentred = machine_.recentre(rk_.y0);
     time_ = t, last_ = rk_.y0;
-    peaks_ = peaks_with(rk_.y0, h);
-    if (machine_.recentre(rk_.y0)) rk_.begin(t, State(rk_.y0), f);
+    if (!recentred) return;
+    rk_.begin(t, State(rk_.y0), f), watch_.begin(machine_, rk_.y0), start_.restart();
   }
 
-  /// Largest displacement and speed of the last few periods of the slowest mode, rotations counted at the platform's
-  /// size. Errors are measured against them, so that a vibration's passage through zero asks for nothing special.
-  struct Peaks {
-    double displacement = 0, speed = 0;
-  };
-  Peaks peaks_with(const State& y, double h) const {
-    const auto length = [&](int i) { return std::sqrt(y[i] * y[i] + y[i + 1] * y[i + 1] + y[i + 2] * y[i + 2]); };
-    const double kept = std::exp(-0.2 * slowest_ * h);
-    return {std::max({kept * peaks_.displacement, length(0), size_ * length(3)}),
-            std::max({kept * peaks_.speed, length(6), size_ * length(9)})};
-  }
-  State scales(const Peaks& peaks) const {
-    const double d = options_.atol + options_.rtol * peaks.displacement;
-    const double v = options_.atol * std::max(fastest_, 1.0) + options_.rtol * peaks.speed;
-    State scale{};
-    for (int i = 0; i < 3; ++i) scale[i] = d, scale[3 + i] = d / size_, scale[6 + i] = v, scale[9 + i] = v / size_;
-    return scale;
-  }
-
-  /// Takes the samples of the step just accepted, up to where something in it ends the run.
-  template <class F> Outcome look(F&& f) {
-    const double end = rk_.t + rk_.h;
-    const auto inside = [&](double t) { return t == end ? rk_.y1 : rk_.inside(t, f); };
-    const Geometry<double> g = machine_.geometry(rk_.y1);
-    const double side = determinant(g);
-    Outcome outcome = Outcome::complete;
+  /// Takes the samples of the step just accepted, up to where something in it ends the run. `inside` gives the motion at an
+  /// instant of it, `sampled` the works as well, at ascending instants.
+  template <class F, class G> Outcome look(double from, double end, const State& y1, F&& inside, G&& sampled) {
     double until = end;
-    for (int i = 0; i < 6; ++i) {
-      if (dot(g.S[i], S_[i]) > 0) continue;
-      const auto length = [&](double t) { return norm(machine_.geometry(inside(t)).S[i]); };
-      const double nearest = where_least(length, rk_.t, end);
-      if (length(nearest) < collapsed * size_) outcome = Outcome::leg_collapsed, until = std::min(until, nearest);
-    }
-    if (outcome == Outcome::complete && options_.stop_at_singular && side * side_ <= 0) {
-      outcome = Outcome::singular;
-      until = last_of_side(inside);
-    }
-    sample_until(until, inside);
-    side_ = side;
-    std::copy(g.S, g.S + 6, S_);
+    const Outcome outcome = watch_.look(machine_, from, end, y1, inside, until);
+    sample_until(until, sampled);
     if (outcome != Outcome::complete) time_ = until, last_ = inside(until);
     return outcome;
   }
 
-  /// The last instant of the step on the side of the singular poses where it began.
-  template <class G> double last_of_side(G&& inside) const {
-    double low = rk_.t, high = rk_.t + rk_.h;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = 0.5 * (low + high);
-      (determinant(machine_.geometry(inside(middle))) * side_ > 0 ? low : high) = middle;
-    }
-    return low;
-  }
-  /// Where a function is least between two instants: a scan, then thirds.
-  template <class G> static double where_least(G&& value, double low, double high) {
-    constexpr int parts = 32;
-    const double width = (high - low) / parts;
-    int best = 0;
-    for (int i = 1; i <= parts; ++i)
-      if (value(low + i * width) < value(low + best * width)) best = i;
-    double a = low + std::max(best - 1, 0) * width, b = low + std::min(best + 1, parts) * width;
-    for (int i = 0; i < 80; ++i) {
-      const double third = (b - a) / 3.0;
-      if (value(a + third) < value(b - third)) b -= third;
-      else a += third;
-    }
-    return 0.5 * (a + b);
-  }
-
-  double determinant(const Geometry<double>& g) const { return scaled_determinant(force_transformation(g), size_); }
-
-  void watch_from(const State& y) {
-    const Geometry<double> g = machine_.geometry(y);
-    side_ = determinant(g), last_ = y, time_ = 0.0;
-    std::copy(g.S, g.S + 6, S_);
-  }
-
+  bool no_more_steps() const { return counts_.accepted + counts_.rejected >= options_.max_steps; }
   Outcome ended(Outcome why) {
     time_ = rk_.t, last_ = rk_.y0;
     return why;
@@ -239,7 +265,7 @@ class Simulation {
     const Geometry<double> g = machine_.geometry(rk_.y0);
     for (int i = 0; i < 6; ++i) {
       const double L = norm(g.S[i]);
-      if (L < 10.0 * collapsed * size_) return Outcome::leg_collapsed;
+      if (L < 10.0 * PoseWatch::collapsed * size_) return Outcome::leg_collapsed;
       if (norm(cross(g.k[i], g.S[i])) < 1e-2 * L) return Outcome::joint_locked;
     }
     if (machine_.outside_law(rk_.t + 100.0 * next_step_)) return Outcome::outside_stiffness_law;
@@ -266,15 +292,20 @@ class Simulation {
   MachineOnBase machine_;
   Options options_;
   Method rk_;
+  ExponentialAdams adams_;
+  ExponentialStart start_;
+  bool rejected_ = false;
   Samples samples_{};
   Counts counts_;
   List<double> corners_;
   State last_{};
-  double size_, slowest_, fastest_, max_step_, next_step_ = 0, time_ = 0;
+  double size_;
+  PoseWatch watch_;
+  double slowest_, fastest_;
+  Allowance allowance_;
+  double max_step_, longest_exponential_, next_step_ = 0, time_ = 0;
   Peaks peaks_;
   double last_error_ = 1.0;
-  double side_ = 0;    // sign of det H
-  Vec3<double> S_[6];  // legs at the end of the last step
   size_t next_sample_ = 0;
 };
 

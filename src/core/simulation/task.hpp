@@ -54,6 +54,7 @@ struct Options {
   bool stop_at_singular;       // end where det H changes sign
   bool motions;                // keep motions of platform and base, and leg forces
   bool works;                  // integrate works beside the motion
+  bool exponential;            // take exponential steps where they are worth it
   int threads;
 };
 
@@ -77,6 +78,7 @@ struct End {
   double time;                             // reached
   double last[motion_size];                // the platform's motion then, inertial axes
   double accepted, rejected, evaluations;  // steps, and calls of the equations of motion
+  double exponential;                      // steps among those accepted
 };
 
 /// x[k+1] = A x + B (y + noise), f = C x + D (y + noise), clipped to +-limit.

@@ -18,7 +18,7 @@ from flexapod.mechanics.inputs import ZERO, PointLike, as_point
 from flexapod.mechanics.modes import advised_sampling_time, natural_modes
 from flexapod.progress import ProgressLike, with_progress
 from flexapod.simulation.datasets import Told, one_run
-from flexapod.simulation.integrator import IntegratorOptions, integrate
+from flexapod.simulation.integrator import IntegratorOptions, Method, Trajectories, integrate
 from flexapod.simulation.notes import of_recordings, of_results
 from flexapod.simulation.run import SimulationRun
 
@@ -35,6 +35,7 @@ def simulate_many(
     samples: int | None = None,
     point: PointLike = ZERO,
     joint: JointModel = "universal",
+    method: Method = "automatic",
     rtol: float = 1e-9,
     atol: float | None = None,
     max_step: float = np.inf,
@@ -63,8 +64,8 @@ def simulate_many(
         whose place there must be the same.
     joint : {"universal", "spin_free"}, optional
         Model of the joint between a leg and the base.
-    rtol, atol, max_step, max_steps, stop_at_singular : optional
-        Accuracy and limits of the integrator, as in `simulate`.
+    method, rtol, atol, max_step, max_steps, stop_at_singular : optional
+        Integrator, its accuracy and its limits, as in `simulate`.
     energies, reactions : bool, optional
         Whether the energy balance and the joints' forces are computed.
     threads : int, optional
@@ -77,7 +78,8 @@ def simulate_many(
     -------
     xarray.Dataset
         The variables of `simulate` with a first dimension `run`, and over `run`: status ("complete", or why it ended),
-        end_time (s), steps, evaluations, energy_error_relative. A run that ends early is NaN from there on.
+        end_time (s), steps, exponential_steps (of them), evaluations, energy_error_relative. A run that ends early is
+        NaN from there on.
 
     Raises
     ------
@@ -111,7 +113,7 @@ def simulate_many(
     >>> result.status.values.tolist()
     ['complete', 'complete']
     """
-    options = IntegratorOptions(rtol, atol, max_step, max_steps, stop_at_singular, threads)
+    options = IntegratorOptions(rtol, atol, max_step, max_steps, stop_at_singular, threads, method)
     for i, run in enumerate(runs):
         if not isinstance(run, SimulationRun):
             raise ArgumentError(f"runs[{i}] is {shown(run)}; it must be a flexapod.simulation.SimulationRun.")
@@ -130,7 +132,7 @@ def simulate_many(
     dataset.attrs = {
         "design": ", ".join(sorted({run.hexapod.name for run in runs})),
         "joint": joint,
-        "method": "Runge-Kutta 8(5,3), Dormand and Prince; orientation on SO(3)",
+        "method": _told_method(found),
         "rtol": rtol,
         "warnings": notes,
         "point_m": told.point.tolist(),
@@ -138,6 +140,11 @@ def simulate_many(
         "last": found.last,
     }
     return dataset
+
+
+def _told_method(found: Trajectories) -> str:
+    exponential = "exponential Adams of orders up to 11 and " if found.steps[:, 3].any() else ""
+    return f"{exponential}Runge-Kutta 8(5,3), Dormand and Prince; orientation on SO(3)"
 
 
 def _one_point(runs: Sequence[SimulationRun], point: PointLike) -> Array:
@@ -159,10 +166,10 @@ def _of_results(runs: Sequence[SimulationRun], each: Sequence[xr.Dataset], joint
 
 def _outside() -> int:
     """Stack level of the first caller outside this package, for warnings."""
-    here = Path(__file__).parent
+    package = Path(__file__).parents[1]
     level = 1
     frame = inspect.currentframe()
-    while frame is not None and Path(frame.f_code.co_filename).parent == here:
+    while frame is not None and Path(frame.f_code.co_filename).is_relative_to(package):
         level, frame = level + 1, frame.f_back
     return level - 1
 

@@ -55,6 +55,7 @@ def one_run(run: SimulationRun, found: Trajectories, i: int, times: Array, told:
         "end_time": ((), found.end_time[i], in_unit("s")),
         "steps": ((), int(found.steps[i, 0]), {}),
         "evaluations": ((), int(found.steps[i, 2]), {}),
+        "exponential_steps": ((), int(found.steps[i, 3]), {}),
     }
     coordinates = {
         "time": ("time", times, in_unit("s")),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,6 +21,9 @@ from flexapod.mechanics.statics import hold
 from flexapod.pose import Motion, Pose, as_pose
 from flexapod.simulation.run import Load, SimulationRun, Start
 
+Method = Literal["automatic", "runge_kutta"]
+METHODS: tuple[str, ...] = get_args(Method)
+
 
 class Trajectories(NamedTuple):
     """n simulations at m instants; rows after the end of one that was stopped are NaN.
@@ -30,8 +33,8 @@ class Trajectories(NamedTuple):
     where the platform rides with the base rigidly. work: (n, m, 4) done by base, external wrench, leg commands and
     friction since t = 0, J (zero unless asked for). platform, base: (n, m, k) motions as `Motion.packed`, and
     leg_force: (n, m, 6) N (m = 0 unless asked for). status: (n,) names of `_core.Outcome`. end_time: (n,) s. last:
-    (n, k), the platform's motion then. steps: (n, 3) accepted, rejected, evaluations of the equations of motion.
-    unstretched_length: (n, 6) m, without commands.
+    (n, k), the platform's motion then. steps: (n, 4) accepted, rejected, evaluations of the equations of motion,
+    exponential steps among those accepted. unstretched_length: (n, 6) m, without commands.
     """
 
     displacement: Array
@@ -57,6 +60,7 @@ class IntegratorOptions:
     max_steps: float = 1e8
     stop_at_singular: bool = True
     threads: int | None = None
+    method: Method = "automatic"
 
     def __post_init__(self) -> None:
         if not 1e-15 <= number(self.rtol, "rtol") <= 1e-2:
@@ -70,6 +74,7 @@ class IntegratorOptions:
             if not holds:
                 raise ArgumentError(f"{name} is {shown(value)}; it must be > 0.")
         thread_count(self.threads)
+        one_of(self.method, "method", METHODS)
 
 
 def integrate(
@@ -84,9 +89,9 @@ def integrate(
 ) -> Trajectories:
     """Integrate all runs from t = 0 to the last of `times`, (m,) or (n, m) s, ascending, >= 0; on all threads.
 
-    Runge-Kutta of order 8 (Dormand and Prince) with an interpolant of order 7, orientation on SO(3). A run that cannot
-    go on is data (`status`), not an error. An interrupt stops it. `progress` is called with the fraction done, about 20
-    times a second.
+    Exponential Adams steps where they are quicker, else Runge-Kutta of order 8 (Dormand and Prince) with an interpolant
+    of order 7; orientation on SO(3). A run that cannot go on is data (`status`), not an error. An interrupt stops it.
+    `progress` is called with the fraction done, about 20 times a second.
     """
     if len(runs) == 0:
         raise ArgumentError("there is nothing to simulate: `runs` is empty.")
@@ -103,6 +108,7 @@ def integrate(
             stop_at_singular=options.stop_at_singular,
             motions=motions,
             works=works,
+            exponential=options.method == "automatic",
             threads=thread_count(options.threads),
         ),
         progress,
