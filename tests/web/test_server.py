@@ -56,6 +56,19 @@ def test_changes_and_the_joint_model_reach_the_library(client: TestClient) -> No
     np.testing.assert_array_equal(state["omega"], fx.natural_modes(changed, POSE, joint="spin_free").omega)
 
 
+@pytest.mark.parametrize("name", ["mukherjee-ii", "precision-positioner"])
+def test_the_legs_energies_are_all_that_their_springs_hold(client: TestClient, name: str) -> None:
+    """Screws and joints in series too; what the joints hold by bending is no energy of a leg's."""
+    machine = fx.load(name)
+    x, y, z = machine.home.position
+    pose = [x, y, z + 0.001, 0.0, 0.1, 0.0]  # m and degrees
+    state = client.post("/api/state", json={"design": machine.to_toml(), "changes": {}, "pose": pose}).json()
+    pose[4] = np.radians(pose[4])
+    held = fx.hold(machine, pose)
+    whole = fx.energy(machine, pose, unstretched_length=held.unstretched_length)
+    assert sum(state["legs"]["energy"]) == pytest.approx(float(whole.elastic - whole.joints), rel=1e-9)
+
+
 def test_a_singular_pose_is_told_not_failed(client: TestClient) -> None:
     flat = {"platform.joints": MACHINE.platform_joints.tolist(), "base.joints": MACHINE.base_joints.tolist()}
     state = client.post("/api/state", json={"design": TEXT, "changes": flat, "pose": [0, 0, 0, 0, 0, 0]}).json()

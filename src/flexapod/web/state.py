@@ -13,6 +13,7 @@ from flexapod.mechanics.joint_limits import joint_angles, leg_distance, limit_ex
 from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
 from flexapod.mechanics.mode_shapes import energy_shares
 from flexapod.mechanics.modes import near_repeated
+from flexapod.mechanics.springs import axial_stiffness
 from flexapod.pose import Pose
 from flexapod.web.answers import DampedModes, Geometry, Limits, LoneMode, Snapshot, StaticLegs
 from flexapod.web.requests import Question
@@ -71,7 +72,8 @@ def _static(question: Question, state: PoseState) -> StaticLegs:
         why = next(one.text for one in state.cautions if one.code in ("singular", "unsupported"))
         return {"length": length, "force": None, "energy": None, "why": why}
     rest = state.linear.rest
-    energy = 0.5 * rest.leg_force**2 / hexapod.legs.stiffness
+    stiffness, _ = axial_stiffness(hexapod, rest.unstretched_length)
+    energy = 0.5 * rest.leg_force**2 / stiffness
     return {"length": rest.leg_length, "force": rest.leg_force, "energy": energy, "why": ""}
 
 
