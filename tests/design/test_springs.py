@@ -9,6 +9,7 @@ from tests.helpers.plain import file, plain_machine
 import flexapod as fx
 from flexapod import _core
 from flexapod.design.design_file import template
+from flexapod.design.layout import unit_name
 from flexapod.design.packing import PLACES, compliance_slope
 from flexapod.optimisation.design_map import DesignMap
 from flexapod.optimisation.ensemble import Ensemble
@@ -389,3 +390,19 @@ def test_the_command_line_sets_and_varies_springs(result, run):
     code, _, err = run("modes", file("precision-positioner"), "--set", "legs.joint_stiffness.torsion=-1")
     assert code == 2
     assert "legs.joint_stiffness.torsion is -1 N m/rad; it must be >= 0" in " ".join(err.split())
+
+
+def test_entries_of_a_suspension_have_units_of_their_own():
+    """A force or a moment by a displacement or a turn; a matrix or a row of it has several."""
+    found = {
+        "suspension.stiffness[2][2]": "N/m",
+        "suspension.stiffness[0][4]": "N",
+        "suspension.stiffness[4][0]": "N",
+        "suspension.stiffness[5][3]": "N m/rad",
+        "suspension.damping[0][1]": "N s/m",
+        "suspension.damping[1][3]": "N s",
+        "suspension.damping[5][5]": "N m s/rad",
+        "suspension.stiffness": "",
+        "suspension.damping[0]": "",
+    }
+    assert {key: unit_name(key) for key in found} == found

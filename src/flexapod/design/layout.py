@@ -185,9 +185,22 @@ def entries(key: str) -> tuple[NDArray[np.int64], Key, float]:
     return np.unique(chosen), rule, scale
 
 
+#: Units of entries of the suspension's matrices: of no, one or two rotations.
+_SUSPENDED = {
+    "suspension.stiffness": ("N/m", "N", "N m/rad"),
+    "suspension.damping": ("N s/m", "N s", "N m s/rad"),
+}
+
+
 def unit_name(key: str) -> str:
     """The unit of a key that `entries` takes, as people write it: "mm" of platform.joints_mm[0]; "" if it has none."""
-    table, _, last = key.partition("[")[0].rpartition(".")
+    stem = key.partition("[")[0]
+    if stem in _SUSPENDED:
+        at = [int(i) for i in re.findall(r"\[(\d+)\]", key)]
+        return (
+            _SUSPENDED[stem][sum(i >= len(TRANSLATIONS) for i in at)] if len(at) == 2 else ""
+        )  # else of several units
+    table, _, last = stem.rpartition(".")
     return printed(resolve(table, last)[1])
 
 

@@ -17,8 +17,9 @@ SAME = 1e-3  # relative: modes as near as this count as one, whose shapes are an
 
 #: What is said where a design's losses are left out.
 LEFT_OUT = (
-    "The loss factors of the design are left out here: in time only viscous friction acts. Give loss_frequency, rad/s, "
-    "at which a viscous friction shall take as much, or use the responses by frequency, where loss factors are exact."
+    "The loss factors of the design are left out here: in time only viscous friction acts. Give loss_frequency "
+    "(--loss-frequency of the command), rad/s, at which a viscous friction shall take as much, or use the responses by "
+    "frequency, where loss factors are exact."
 )
 
 
