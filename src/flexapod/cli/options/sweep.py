@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from flexapod.conventions import JointModel
 
 DEFAULT_POINTS = 100_000
+MOST_POINTS = 2**40  # workspace.pose_sets.MOST, which takes long to import
 
 
 @dataclass(frozen=True)
@@ -96,7 +97,7 @@ poses_options = common.stack(
     ),
     click.option(
         "--points",
-        type=click.IntRange(min=1),
+        type=common.count(most=MOST_POINTS),
         default=None,
         metavar="N",
         help=f"Number of poses in the box.  [default: {DEFAULT_POINTS}]",

@@ -24,7 +24,7 @@ from flexapod.plots import sweep as plots
 from flexapod.plots import sweep_axes
 from flexapod.report.studies.sweep import study
 from flexapod.report.study import Study
-from flexapod.workspace.box import Box
+from flexapod.workspace.box import BITS, Box
 from flexapod.workspace.pose_sets import PoseSet, given_poses
 from flexapod.workspace.quantities import QUANTITIES, chosen
 from flexapod.workspace.sampling import low_discrepancy, random_poses
@@ -102,8 +102,10 @@ def _points(hexapod: Hexapod, options: Options) -> tuple[PoseSet, Box | None]:
         found = grid_of(hexapod, options.grid) if ways[1] else given_poses(read_poses(options.poses))  # type: ignore[arg-type]
         return found, None
     box = box_of(hexapod, options.box, options.around)
-    make = low_discrepancy if options.even else random_poses
-    return make(box, options.points or DEFAULT_POINTS, seed=options.seed), box
+    make, count = low_discrepancy if options.even else random_poses, options.points or DEFAULT_POINTS
+    if options.even and count > 2**BITS:
+        raise click.UsageError(f"--points is {count}; --low-discrepancy has {2**BITS} points. Leave it out for more.")
+    return make(box, count, seed=options.seed), box
 
 
 def _quantities(hexapod: Hexapod, text: str) -> tuple[str, ...]:
