@@ -32,6 +32,8 @@ def rows(hexapod: Hexapod, motors: xr.Dataset) -> list[Row]:
     if "peak_factor" in motors:
         told = "; ".join(f"{title} {_least(motors[name])}" for name, title in _FACTORS.items())
         found.append(Row("motors can, of what they must:", told, on="terminal"))
+        for name, title in _FACTORS.items():
+            found.append(Row(f"Motors' {title}, can / must", float(motors[name].min()), digits=3, on="page"))
     return found
 
 
