@@ -1,5 +1,6 @@
 """A study that declares what it has is shown in the terminal, as a page, in a notebook and as JSON, with no more code."""
 
+import dataclasses
 import io
 import json
 
@@ -60,6 +61,11 @@ def test_the_page_has_all_that_is_declared(study):
     assert text.count("<svg") == 1
     assert "only here" not in text
     assert "+0.500 %" in text
+
+
+def test_a_page_without_main_numbers_has_no_room_for_them(study):
+    assert '<dl class="key">' in page(study)
+    assert '<dl class="key">' not in page(dataclasses.replace(study, rows=[]))
 
 
 def test_the_terminal_has_its_part(study):

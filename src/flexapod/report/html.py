@@ -69,10 +69,8 @@ def _head(study: Study) -> str:
         kind = "" if number else ' class="first"'
         words = escape(" ".join(filter(None, (row.unit, row.note))))
         boxes += f"<div{kind}><dt>{escape(row.label)}</dt><dd>{escape(value)} <span>{words}</span></dd></div>"
-    return (
-        f'<header>\n<h1>{escape(study.hexapod.name)}</h1>\n<p class="quiet">{escape(study.about)}</p>\n</header>\n'
-        f'<dl class="key">{boxes}</dl>'
-    )
+    about = f'<h1>{escape(study.hexapod.name)}</h1>\n<p class="quiet">{escape(study.about)}</p>'
+    return f"<header>\n{about}\n</header>\n" + (f'<dl class="key">{boxes}</dl>' if boxes else "")
 
 
 def _beware(study: Study) -> str:
