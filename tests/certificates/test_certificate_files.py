@@ -257,8 +257,9 @@ def test_a_search_for_the_largest_box_is_gone_on_with(tmp_path):
         fx.certified_box(BASE, shape, 26.0, tolerance=0.02, path=path, resume=True)
 
 
-def test_the_box_in_hand_is_gone_on_with(tmp_path):
+def test_the_box_in_hand_is_gone_on_with(tmp_path, monkeypatch):
     """A search that is stopped inside of a proof: the next one begins with the parts that were left."""
+    monkeypatch.setattr(proving, "KEEP", 0.5)
     shape, path = fx.Workspace.about_home(0.02, np.radians(12)), tmp_path / "largest.json"
     with pytest.raises(fx.ArgumentError, match="no box of this shape was proved"):
         fx.certified_box(II, shape, 250.0, path=path, stop=lambda: largest_file.in_hand(path).exists())

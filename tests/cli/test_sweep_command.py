@@ -271,12 +271,9 @@ def test_scheduler_and_workers_from_the_shell(tmp_path):
     assert (fx.open_sweep(out).status.values == 0).all()
 
 
-def test_no_scheduler_there(tmp_path, capsys, monkeypatch):
-    from flexapod.workspace.store import dask_cluster
-
-    monkeypatch.setattr(dask_cluster.cluster.__wrapped__, "__defaults__", (0.5,))
-    out = tmp_path / "map.zarr"
-    code, _, said = run(capsys, "sweep", "mukherjee-i", *AROUND, "--out", out, "--scheduler", "tcp://127.0.0.1:9")
+def test_no_scheduler_there(tmp_path, capsys):
+    out, nobody = tmp_path / "map.zarr", ("--scheduler", "tcp://127.0.0.1:9", "--timeout", "500ms")
+    code, _, said = run(capsys, "sweep", "mukherjee-i", *AROUND, "--out", out, *nobody)
     assert code == 2
     assert "no Dask scheduler answers at tcp://127.0.0.1:9" in said
     assert not out.exists()
