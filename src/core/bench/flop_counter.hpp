@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
 #include "numbers/scalar.hpp"
 
@@ -11,14 +12,18 @@ namespace flexapod {
 struct Counted {
   static constexpr int lanes = 1, parts = 1;
   using Part = Counted;
+  using Wide = Counted;
   static inline thread_local long count = 0;
   double v{};
 
   Counted() = default;
   Counted(double x) : v(x) {}  // NOLINT: a number
   static Counted load(const double* p) { return *p; }
+  static Counted gather(const double* p, std::size_t) { return *p; }
   void store(double* p) const { *p = v; }
   void set_part(int, const Counted& part) { *this = part; }
+  void set_share(int, const Counted& share) { *this = share; }
+  template <class> Counted share(int) const { return *this; }
 
   Counted& operator+=(const Counted& b) { return *this = *this + b; }
   Counted& operator-=(const Counted& b) { return *this = *this - b; }

@@ -14,34 +14,55 @@ template <int n, class T> struct SquaredBidiagonal {
   T q[n], e[n > 1 ? n - 1 : 1];
 };
 
-template <int k, class T> FLEXAPOD_INLINE void bidiagonal_step(T (&a)[6][6], SquaredBidiagonal<6, T>& b) {
-  if constexpr (k == 5) {
-    b.q[5] = a[5][5] * a[5][5];
-  } else {
+/// Steps k to last - 1 of an n x n matrix, which is overwritten; q and e from those of step 0 on.
+template <int k, int last, int n, class T> FLEXAPOD_INLINE void bidiagonal_steps(T (&a)[n][n], T* q, T* e) {
+  if constexpr (k == n - 1) {
+    q[k] = a[k][k] * a[k][k];
+  } else if constexpr (k < last) {
     const auto column = [&](int j) { return [&a, j](int i) -> T& { return a[k + i][j]; }; };
-    const auto left = Reflection<T>::template of<6 - k>(column(k));
-    b.q[k] = left.square;
+    const auto left = Reflection<T>::template of<n - k>(column(k));
+    q[k] = left.square;
     FLEXAPOD_UNROLL
-    for (int j = k + 1; j < 6; ++j) left.template apply<6 - k>(column(k), column(j));
-    if constexpr (k == 4) {
-      b.e[4] = a[4][5] * a[4][5];
+    for (int j = k + 1; j < n; ++j) left.template apply<n - k>(column(k), column(j));
+    if constexpr (k == n - 2) {
+      e[k] = a[k][n - 1] * a[k][n - 1];
     } else {
       const auto row = [&](int i) { return [&a, i](int j) -> T& { return a[i][k + 1 + j]; }; };
-      const auto right = Reflection<T>::template of<5 - k>(row(k));
-      b.e[k] = right.square;
+      const auto right = Reflection<T>::template of<n - 1 - k>(row(k));
+      e[k] = right.square;
       FLEXAPOD_UNROLL
-      for (int i = k + 1; i < 6; ++i) right.template apply<5 - k>(row(k), row(i));
+      for (int i = k + 1; i < n; ++i) right.template apply<n - 1 - k>(row(k), row(i));
     }
-    bidiagonal_step<k + 1>(a, b);
+    bidiagonal_steps<k + 1, last>(a, q, e);
   }
 }
 
-/// A is overwritten.
-template <class T> FLEXAPOD_INLINE SquaredBidiagonal<6, T> bidiagonalise(Mat6<T>& A) {
-  SquaredBidiagonal<6, T> b;
-  bidiagonal_step<0>(A.a, b);
-  return b;
-}
+/// A 6x6 matrix after its first two steps. They are most of the work; in the others one operation waits for the one
+/// before, so that several matrices had better take them side by side.
+template <class T> struct HalfBidiagonal {
+  T q[2], e[2], rest[4][4];
+
+  HalfBidiagonal() = default;
+  /// A is overwritten.
+  FLEXAPOD_INLINE explicit HalfBidiagonal(Mat6<T>& A) {
+    bidiagonal_steps<0, 2>(A.a, q, e);
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) rest[i][j] = A.a[2 + i][2 + j];
+  }
+  /// The rest is overwritten.
+  FLEXAPOD_INLINE SquaredBidiagonal<6, T> finish() {
+    SquaredBidiagonal<6, T> b;
+    for (int i = 0; i < 2; ++i) b.q[i] = q[i], b.e[i] = e[i];
+    bidiagonal_steps<0, 4>(rest, b.q + 2, b.e + 2);
+    return b;
+  }
+  /// f of each number here and the same number of another.
+  template <class U, class F> FLEXAPOD_INLINE void for_each(HalfBidiagonal<U>& other, F&& f) const {
+    for (int i = 0; i < 2; ++i) f(q[i], other.q[i]), f(e[i], other.e[i]);
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) f(rest[i][j], other.rest[i][j]);
+  }
+};
 
 /// Divides by the sum of squares of all singular values, and returns it.
 template <int n, class T> FLEXAPOD_INLINE T normalise(SquaredBidiagonal<n, T>& b) {

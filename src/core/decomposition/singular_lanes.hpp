@@ -1,6 +1,8 @@
 // Singular values of 6 x m matrices in lanes: the bidiagonal form, and Jacobi rotations for lanes where it fails.
 #pragma once
 
+#include <limits>
+
 #include "decomposition/bidiagonal.hpp"
 #include "decomposition/svd_jacobi.hpp"
 
@@ -13,19 +15,9 @@ template <class T> struct SingularSquares {
   T share[6], sum;
 };
 
-/// For the lanes `failed`.
-template <class T, class Make>
-FLEXAPOD_COLD void repeat_by_rotations(const Make& matrix, const mask_t<T>& failed, SingularSquares<T>& found) {
-  T exact[6];
-  squares_by_rotations(matrix(), exact);
-  for (int i = 0; i < 6; ++i) found.share[i] = select(failed, exact[i] / found.sum, found.share[i]);
-}
-
-/// Of the matrix that `matrix` makes, which is asked again where the first way fails in a lane.
-template <Wanted wanted, class T, class Make> FLEXAPOD_INLINE SingularSquares<T> singular_squares(const Make& matrix) {
-  auto B = matrix();
-  auto&& square = square_factor(B);
-  SquaredBidiagonal<6, T> b = bidiagonalise(square);
+/// The second half of the work. In lanes where it fails, the lowest share is NaN.
+template <Wanted wanted, class T> FLEXAPOD_INLINE SingularSquares<T> finished(HalfBidiagonal<T>& half) {
+  SquaredBidiagonal<6, T> b = half.finish();
   SingularSquares<T> found;
   found.sum = normalise(b);
   mask_t<T> failed;
@@ -39,10 +31,53 @@ template <Wanted wanted, class T, class Make> FLEXAPOD_INLINE SingularSquares<T>
       failed = failed | open;
     }
   }
-  failed = failed & (found.sum < 1e300);  // others hold no numbers
+  found.share[0] = select(failed, T(std::numeric_limits<double>::quiet_NaN()), found.share[0]);
+  return found;
+}
+
+template <class T, class Make>
+FLEXAPOD_COLD void repeat_by_rotations(const Make& matrix, const mask_t<T>& failed, SingularSquares<T>& found) {
+  T exact[6];
+  squares_by_rotations(matrix(), exact);
+  for (int i = 0; i < 6; ++i) found.share[i] = select(failed, exact[i] / found.sum, found.share[i]);
+}
+
+/// Where `finished` failed, by rotations of the matrix, which `matrix` makes anew.
+template <class T, class Make> FLEXAPOD_INLINE void repair(const Make& matrix, SingularSquares<T>& found) {
+  const auto failed = !(found.share[0] >= 0.0) & (found.sum < 1e300);  // others hold no numbers
   if (any(failed)) [[unlikely]]
     repeat_by_rotations(matrix, failed, found);
+}
+
+/// The first half of the work, of a 6 x m matrix.
+template <class T, class Matrix> FLEXAPOD_INLINE HalfBidiagonal<T> begun(Matrix&& B) {
+  auto&& square = square_factor(B);
+  return HalfBidiagonal<T>(square);
+}
+
+/// Of the matrix that `matrix` makes, which is asked again where the first way fails in a lane.
+template <Wanted wanted, class T, class Make> FLEXAPOD_INLINE SingularSquares<T> singular_squares(const Make& matrix) {
+  HalfBidiagonal<T> half = begun<T>(matrix());
+  SingularSquares<T> found = finished<wanted, T>(half);
+  repair(matrix, found);
   return found;
+}
+
+/// The second half of the work of `count` matrices, as many of them side by side as go into a wide pack.
+template <Wanted wanted, class T>
+FLEXAPOD_FLAT void finish_all(const HalfBidiagonal<T>* half, SingularSquares<T>* found, int count) {
+  using Wide = typename T::Wide;
+  constexpr int share = Wide::parts / T::parts;
+  for (int i = 0; i < count; i += share) {
+    HalfBidiagonal<Wide> wide;
+    for (int s = 0; s < share; ++s)
+      half[i + s < count ? i + s : i].for_each(wide, [&](const T& from, Wide& to) { to.set_share(s, from); });
+    const SingularSquares<Wide> all = finished<wanted, Wide>(wide);
+    for (int s = 0; s < share && i + s < count; ++s) {
+      found[i + s].sum = all.sum.template share<T>(s);
+      for (int k = 0; k < 6; ++k) found[i + s].share[k] = all.share[k].template share<T>(s);
+    }
+  }
 }
 
 }  // namespace flexapod

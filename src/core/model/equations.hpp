@@ -28,14 +28,12 @@ template <class T, class P = T> struct Geometry {
   /// In the platform's axes, for a base given in them.
   Geometry(const Design<P>& d, const Pose<T>& base)
     requires(!std::is_same_v<T, P>)
-  {
-    for (int i = 0; i < 6; ++i) {
-      q_p[i] = d.p[i];
-      q_b[i] = base.R * d.b[i];
-      S[i] = q_p[i] - q_b[i] - base.t;
-      k[i] = base.R * d.k[i];
-    }
-  }
+      : Geometry(d, base, std::make_integer_sequence<int, 6>()) {}
+
+ private:
+  template <int... i>
+  Geometry(const Design<P>& d, const Pose<T>& base, std::integer_sequence<int, i...>)
+      : q_p{d.p[i]...}, q_b{base.R * d.b[i]...}, S{(q_p[i] - q_b[i] - base.t)...}, k{base.R * d.k[i]...} {}
 };
 
 /// A leg's column of H: the wrench on the platform of a unit force in the leg, [s; q_p x s].

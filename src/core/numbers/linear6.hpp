@@ -50,12 +50,16 @@ template <class T> struct Cholesky {
   T l[6][6];
 
   explicit Cholesky(const Mat6<T>& m) {
+    FLEXAPOD_UNROLL
     for (int j = 0; j < 6; ++j) {
       T pivot = m[j][j];
+      FLEXAPOD_UNROLL
       for (int k = 0; k < j; ++k) pivot = pivot - l[j][k] * l[j][k];
       l[j][j] = rsqrt(pivot);
+      FLEXAPOD_UNROLL
       for (int i = j + 1; i < 6; ++i) {
         T sum = m[i][j];
+        FLEXAPOD_UNROLL
         for (int k = 0; k < j; ++k) sum = sum - l[i][k] * l[j][k];
         l[i][j] = sum * l[j][j];
       }
@@ -69,12 +73,14 @@ template <class T> struct Cholesky {
     return b;
   }
   template <int m> void forward_all(Mat6<T, m>& B) const {  // L X = B, in place
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < m; ++j) {
-        T sum = B[i][j];
-        for (int k = 0; k < i; ++k) sum = sum - l[i][k] * B[k][j];
-        B[i][j] = sum * l[i][i];
-      }
+    FLEXAPOD_UNROLL
+    for (int j = 0; j < m; ++j) FLEXAPOD_UNROLL
+    for (int i = 0; i < 6; ++i) {
+      T sum = B[i][j];
+      FLEXAPOD_UNROLL
+      for (int k = 0; k < i; ++k) sum = sum - l[i][k] * B[k][j];
+      B[i][j] = sum * l[i][i];
+    }
   }
   void forward_lower(Mat6<T>& C) const {  // L X = C for a lower triangular C, in place
     for (int i = 0; i < 6; ++i)

@@ -15,11 +15,16 @@ template <int lanes> FLEXAPOD_COLD void wind_down(double (&angles)[lanes]) {
 /// A task's poses from `first` on, in lanes; those beyond `count` are filled up with the last of them.
 template <class T> void load_poses(const Task& task, size_t first, size_t count, double (&rows)[12][T::lanes]) {
   const sweep_task::Poses& poses = task.poses;
-  for (int l = 0; l < T::lanes; ++l) {
-    const size_t i = first + (static_cast<size_t>(l) < count ? l : count - 1);
-    const double *position = poses.position + i * poses.step, *rotation = poses.rotation + i * poses.turn_step;
-    for (int c = 0; c < 3; ++c) rows[c][l] = position[c];
-    for (int c = 0; c < poses.turned; ++c) rows[3 + c][l] = rotation[c];
+  const double *position = poses.position + first * poses.step, *rotation = poses.rotation + first * poses.turn_step;
+  if (count == T::lanes) {
+    for (int c = 0; c < 3; ++c) T::gather(position + c, poses.step).store(rows[c]);
+    for (int c = 0; c < poses.turned; ++c) T::gather(rotation + c, poses.turn_step).store(rows[3 + c]);
+  } else {
+    for (size_t l = 0; l < T::lanes; ++l) {
+      const size_t i = l < count ? l : count - 1;
+      for (int c = 0; c < 3; ++c) rows[c][l] = position[i * poses.step + c];
+      for (int c = 0; c < poses.turned; ++c) rows[3 + c][l] = rotation[i * poses.turn_step + c];
+    }
   }
   if (poses.turned == 3)
     for (int c = 3; c < 6; ++c)
@@ -34,14 +39,19 @@ template <class T, Swept kind> struct SweepModes {
   const Rows rows;
   const MassAndForceMap<T, kind>& dynamics;
 
-  template <bool all> FLEXAPOD_FLAT T frequencies() const {
-    T others(0.0);  // of the other springs alone, the sum of the squares
-    const auto B = [&] {
-      auto B = dynamics.B(machine, Cholesky<T>(dynamics.J.matrix()));
-      if constexpr (kind == Swept::others) others = B.square_of_C();
-      return B;
-    };
-    auto squares = singular_squares<all ? Wanted::all : Wanted::lowest, T>(B);
+  FLEXAPOD_FLAT HalfBidiagonal<T> begin_frequencies(T& others) const {
+    auto matrix = B();
+    if constexpr (kind == Swept::others) others = matrix.square_of_C();
+    return begun<T>(matrix);
+  }
+  FLEXAPOD_FLAT HalfBidiagonal<T> begin_condition() const {
+    auto matrix = dynamics.H();
+    return begun<T>(matrix);
+  }
+
+  /// others: sum of the squares of the other springs alone.
+  template <bool all> FLEXAPOD_FLAT T frequencies(SingularSquares<T>& squares, const T& others) const {
+    repair([this] { return B(); }, squares);
     if constexpr (kind == Swept::others) replace_rounded(others, squares);
     const T fault = worse(!(squares.sum < 1e300), sweep_task::no_inertia, dynamics.fault);
     const auto bad = fault > T(sweep_task::singular);
@@ -53,9 +63,10 @@ template <class T, Swept kind> struct SweepModes {
     return singular(squares.share[0] < 1e-26, fault);
   }
 
-  FLEXAPOD_FLAT T condition() const {
+  FLEXAPOD_FLAT T condition(SingularSquares<T>& squares) const {
     const auto bad = no_pose(dynamics.fault);
-    const auto [share, sum] = singular_squares<Wanted::extremes, T>([this] { return dynamics.H(); });
+    repair([this] { return dynamics.H(); }, squares);
+    const auto& share = squares.share;
     rows.put(task.cond_H_, unless(bad, sqrt(share[5] / share[0])));
     return singular(share[0] < 1e-26 * share[5], dynamics.fault);
   }
@@ -68,6 +79,8 @@ template <class T, Swept kind> struct SweepModes {
   }
 
  private:
+  auto B() const { return dynamics.B(machine, Cholesky<T>(dynamics.J.matrix())); }
+
   /// The square root of the other springs' sum is right to a rounding of its own size, which may be more than a rounding
   /// of omega_1 omega_6: there all columns are taken instead.
   void replace_rounded(const T& others, SingularSquares<T>& found) const {
@@ -99,6 +112,9 @@ template <class T, Swept kind> class Sweep {
   const SweptMachine machine;
   MassAndForceMap<Part, kind> part;
   MassAndForceMap<T, kind> joined[batch];
+  HalfBidiagonal<T> half[batch];
+  SingularSquares<T> squares[batch];
+  T others[batch];
   double rows[12][Part::lanes];
 
  public:
@@ -127,15 +143,29 @@ template <class T, Swept kind> class Sweep {
         MassAndForceMap<T, kind>& dynamics = joined[done / T::lanes];
         const size_t left = count - done;
         const Rows rows{first + done, static_cast<int>(left < T::lanes ? left : T::lanes)};
-        dynamics.fault = piece(SweepModes<T, kind>{machine, task, rows, dynamics});
+        piece(SweepModes<T, kind>{machine, task, rows, dynamics}, dynamics.fault, static_cast<int>(done / T::lanes));
       }
     };
-    if (asked & Quantity::cond_H) each([](const SweepModes<T, kind>& modes) { return modes.condition(); });
-    if (asked & Quantity::omega)
-      each([](const SweepModes<T, kind>& modes) { return modes.template frequencies<true>(); });
-    else if (asked & Quantity::omega_1)
-      each([](const SweepModes<T, kind>& modes) { return modes.template frequencies<false>(); });
-    each([](const SweepModes<T, kind>& modes) { return modes.status(); });
+    const int packs = static_cast<int>((count + T::lanes - 1) / T::lanes);
+    using Modes = SweepModes<T, kind>;
+    if (asked & Quantity::cond_H) {
+      each([&](const Modes& modes, T&, int i) { half[i] = modes.begin_condition(); });
+      finish_all<Wanted::extremes>(half, squares, packs);
+      each([&](const Modes& modes, T& fault, int i) { fault = modes.condition(squares[i]); });
+    }
+    if (asked & modal) each([&](const Modes& modes, T&, int i) { half[i] = modes.begin_frequencies(others[i]); });
+    if (asked & Quantity::omega) {
+      finish_all<Wanted::all>(half, squares, packs);
+      each([&](const Modes& modes, T& fault, int i) {
+        fault = modes.template frequencies<true>(squares[i], others[i]);
+      });
+    } else if (asked & Quantity::omega_1) {
+      finish_all<Wanted::lowest>(half, squares, packs);
+      each([&](const Modes& modes, T& fault, int i) {
+        fault = modes.template frequencies<false>(squares[i], others[i]);
+      });
+    }
+    each([](const Modes& modes, T&, int) { modes.status(); });
   }
 
   void one_part(size_t first, size_t count) {

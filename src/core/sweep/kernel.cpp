@@ -7,7 +7,7 @@ namespace flexapod {
 namespace {
 
 constexpr int width = 2;  // vectors in a pack
-using Lanes = Pack<Vector, width>;
+using Lanes = Pack<Vector, width, Division::quick>;
 
 bool runs_here() {
 #if defined(__AVX512F__)

@@ -119,13 +119,14 @@ template <class T, Swept kind> struct MassAndForceMap {
   void set(const SweptMachine& m, const PosePack<T>& at) {
     const auto axes = [&](int i) { return LegAxes<T>(at.g.S[i], at.g.k[i], m.machine.joint); };
     const LegAxes<T> legs[6] = {axes(0), axes(1), axes(2), axes(3), axes(4), axes(5)};  // together: six long chains
-    J = pack(m.J_platform);
-    fault = at.fault;
+    SpatialInertia<T> sum = pack(m.J_platform);  // kept apart from what is written meanwhile
+    T bad = at.fault;
     for (int i = 0; i < 6; ++i) {
-      add_leg_inertia(J, legs[i], m.machine.inertia[i], at.g.q_p[i]);
+      add_leg_inertia(sum, legs[i], m.machine.inertia[i], at.g.q_p[i]);
       set_spring_directions(directions, i, at.g.q_p[i], legs[i]);
-      fault = worse(!(legs[i].cosecant < 1e7), sweep_task::no_leg, fault);
+      bad = worse(!(legs[i].cosecant < 1e7), sweep_task::no_leg, bad);
     }
+    J = sum, fault = bad;
     set_springs(m, at, legs);
   }
   /// What of the springs goes with the pose.
@@ -204,6 +205,7 @@ struct Rows {
   int count;
 
   template <class T> FLEXAPOD_INLINE void put(double* to, const T& value, int column = 0, int columns = 1) const {
+    if (columns == 1 && count == T::lanes) return value.store(to + first);
     double x[T::lanes];
     value.store(x);
     for (int l = 0; l < count; ++l) to[(first + l) * columns + column] = x[l];
