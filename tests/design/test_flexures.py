@@ -185,6 +185,8 @@ def test_crossed_flexures_are_in_series():
         (lambda: flexures.round_notch(1e-3, 0.0, STEEL), "diameter is 0"),
         (lambda: flexures.round_notch(1e-3, 1e-4, 200e9), "it must be a Material"),
         (lambda: flexures.round_notch(1e-3, 1e-4, flexures.Material(0.0, 1e6)), "youngs_modulus is 0"),
+        (lambda: flexures.wire(1e-2, 1e-4, flexures.Material(71.0, 1e6)), "at least 1000 Pa. Steel has 200e9"),
+        (lambda: flexures.wire(1e-2, 1e-4, flexures.Material(5e-324, 1e6)), "at least 1000 Pa"),
         (lambda: flexures.round_notch(1e-3, 1e-4, flexures.Material(1e9, -1e6)), "strength is"),
         (lambda: flexures.round_notch(1e-3, 1e-4, flexures.Material(1e9, 1e6, 0.5)), "poisson_ratio is 0.5"),
         (lambda: flexures.crossed(LEAF, 3.0), "second is 3"),

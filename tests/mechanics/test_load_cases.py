@@ -207,6 +207,8 @@ def test_what_is_refused(machine, more, error, words):
         fx.load_cases(machine.replace({"home": None}))
     with pytest.raises(fx.ArgumentError, match="magnitude is -1"):
         gravity_at(1.0, magnitude=-1)
+    with pytest.raises(fx.ArgumentError, match=r"elevation has shape \(2, 6\), base_roll \(2,\)"):
+        gravity_at(np.zeros((2, 6)), [1, 2])
 
 
 def test_derivatives_under_a_stiffness_law_and_springs_in_joints():

@@ -465,6 +465,12 @@ def test_steps_that_collapse_are_told():
         )
 
 
+def test_the_shortest_duration_there_is_ends():
+    hexapod, pose = machine()
+    with pytest.raises(SimulationError, match="step"):
+        fx.simulate(hexapod, pose, base_motion=fx.harmonic("z", 1e-6, 750.0), duration=5e-324)
+
+
 def test_interrupt_stops_it():
     class Interrupted(Exception):
         pass

@@ -123,7 +123,7 @@ class Simulation {
     const bool last = next_step_ >= left * (1.0 - 1e-12);
     double h = last ? left : next_step_ > 0.5 * left ? 0.5 * left : next_step_;
     if (start_.gathering()) h = start_.spacing;
-    if (h < 1e-14 * std::max(rk_.t, 1e-3 * end)) return ended(collapse());
+    if (!(h > 1e-14 * std::max(rk_.t, 1e-3 * end))) return ended(collapse());
     rk_.attempt(h, f);
     const double error = rk_.error(allowance_.at(allowance_.after(peaks_, rk_.y1, h)), MachineOnBase::mechanical);
     if (!(error <= 1.0)) {

@@ -51,7 +51,7 @@ def half_sine_shock(axis: str, acceleration: float, duration: float, *, recovery
     T = positive(duration, "duration", "s")
     speed = 2 * peak * T / np.pi
     pieces = [_half_sine(0.0, 0.0, 0.0, peak, T)]
-    travel = peak * T**2 / np.pi
+    travel = peak * T * T / np.pi
     if recovery is not None:
         T_2 = positive(recovery, "recovery", "s")
         pieces.append(_half_sine(T, travel, speed, -peak * T / T_2, T_2))
@@ -166,7 +166,8 @@ def smooth_step(axis: str, change: float, duration: float) -> Excitation:
     array([0.   , 0.005, 0.01 ])
     """
     size, T = number(change, "change"), positive(duration, "duration", "s")
-    rise = np.array([0, 0, 0, 0, 35, -84, 70, -20]) * size / T ** np.arange(8)
+    with np.errstate(all="ignore"):
+        rise = np.array([0, 0, 0, 0, 35, -84, 70, -20]) * size / T ** np.arange(8)
     return _pieces(axis, [_piece(0.0, rise), _piece(T, [size])])
 
 
@@ -185,8 +186,11 @@ def sampled_term(
 
 
 def _pieces(axis: str, pieces: list[NDArray[np.void]], use: Use = "") -> Excitation:
-    """Pieces joined with corners, which a simulation steps onto."""
-    return one_term(axis, TermKind.pieces, np.concatenate([[1.0], np.stack(pieces).view(np.float64)]), use=use)
+    """Pieces joined with corners, which a simulation steps onto. Raises ArgumentError for numbers that overflow."""
+    rows = np.stack(pieces).view(np.float64)
+    if not np.isfinite(rows).all():
+        raise ArgumentError("duration and height are too far apart in size: what comes of them is not finite.")
+    return one_term(axis, TermKind.pieces, np.concatenate([[1.0], rows]), use=use)
 
 
 def _piece(start: float, coefficients: ArrayLike, sine: float = 0.0, omega: float = 0.0) -> NDArray[np.void]:
@@ -198,5 +202,5 @@ def _piece(start: float, coefficients: ArrayLike, sine: float = 0.0, omega: floa
 
 def _half_sine(start: float, travel: float, speed: float, peak: float, duration: float) -> NDArray[np.void]:
     """x'' = peak sin(pi t / duration) from the travel and speed given."""
-    omega = np.pi / duration
-    return _piece(start, [travel, speed + peak / omega], -peak / omega**2, omega)
+    scale = duration / np.pi
+    return _piece(start, [travel, speed + peak * scale], -peak * scale * scale, 1 / scale)

@@ -82,7 +82,12 @@ def gravity_at(elevation: ArrayLike, base_roll: ArrayLike = 0.0, *, magnitude: f
     """
     e, r = numbers(elevation, "elevation", None), numbers(base_roll, "base_roll", None)
     g = number(magnitude, "magnitude", "m/s2", need=">= 0")
-    e, r = np.broadcast_arrays(e, r)
+    try:
+        e, r = np.broadcast_arrays(e, r)
+    except ValueError:
+        raise ArgumentError(
+            f"elevation has shape {e.shape}, base_roll {r.shape}; their axes must be equal or 1."
+        ) from None
     down = np.stack([np.cos(e) * np.sin(r), np.cos(e) * np.cos(r), -np.sin(e)], axis=-1)
     return np.where(np.abs(down) < 1e-15, 0.0, g * down)
 
