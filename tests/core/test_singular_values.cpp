@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <array>
+#include <vector>
 
 #include "decomposition/singular_lanes.hpp"
 #include "example.hpp"
@@ -112,6 +113,27 @@ TEST_CASE("repeated singular values, where the bidiagonal form gives up") {
   const auto all = sigma(singular_squares<Wanted::all, Lanes>([&] { return B; }), {0, 1, 2, 3, 4, 5});
   for (int i = 0; i < 6; ++i)
     for (const double x : all[i]) CHECK(x == doctest::Approx(i < 3 ? 2.0 : 5.0).epsilon(1e-14));
+}
+
+TEST_CASE("matrices side by side have the singular values of each by itself") {
+  constexpr int packs = 5;  // an odd number: the last goes alone
+  example::Draw draw(23);
+  HalfBidiagonal<Lanes> half[packs];
+  SingularSquares<Lanes> found[packs];
+  std::vector<Many<6>> many;
+  for (int i = 0; i < packs; ++i) {
+    many.emplace_back(draw, 1e4);
+    half[i] = begun<Lanes>(Mat6<Lanes>(many[i].packed));
+  }
+  finish_all<Wanted::extremes>(half, found, packs);
+  for (int i = 0; i < packs; ++i) {
+    const auto both = sigma(found[i], {0, 5});
+    for (int l = 0; l < Lanes::lanes; ++l) {
+      const auto exact = reference(many[i].lane[l]);
+      for (const int k : {0, 5})
+        CHECK(std::abs(static_cast<double>((both[k][l] - exact[k]) / exact[5])) < 100 * 2.2e-16);
+    }
+  }
 }
 
 TEST_CASE("left singular vectors turn B into orthogonal rows") {

@@ -44,7 +44,7 @@ FLEXAPOD_COLD void repeat_by_rotations(const Make& matrix, const mask_t<T>& fail
 
 /// Where `finished` failed, by rotations of the matrix, which `matrix` makes anew.
 template <class T, class Make> FLEXAPOD_INLINE void repair(const Make& matrix, SingularSquares<T>& found) {
-  const auto failed = !(found.share[0] >= 0.0) & (found.sum < 1e300);  // others hold no numbers
+  const auto failed = (!(found.share[0] >= 0.0)) & (found.sum < 1e300);  // others hold no numbers
   if (any(failed)) [[unlikely]]
     repeat_by_rotations(matrix, failed, found);
 }
