@@ -423,7 +423,7 @@ def _check(material: Material) -> None:
     checks.instance(material, Material, "material", "flexures.Material(youngs_modulus, strength, poisson_ratio)")
     if checks.positive(material.youngs_modulus, "youngs_modulus", "Pa") < SOFTEST:
         raise ArgumentError(
-            f"youngs_modulus is {material.youngs_modulus:.6g} Pa; it must be at least {SOFTEST:g} Pa. Steel has 200e9 Pa."
+            f"youngs_modulus is {material.youngs_modulus:.6g} Pa; it must be at least {SOFTEST:g}; steel has 200e9."
         )
     checks.positive(material.strength, "strength", "Pa")
     if not 0 <= checks.number(material.poisson_ratio, "poisson_ratio") < 0.5:
