@@ -16,7 +16,7 @@ from flexapod.errors import ArgumentError
 from flexapod.showing import in_notebooks
 
 RECTANGLE, ROUND = 6 / 5, 10 / 9  # by how much shear strains a section more than if its stress were uniform
-SOFTEST = 1e3  # Pa, a modulus below which it is that of no solid, or in another unit
+SOFTEST = 1e-100  # Pa, a modulus below which compliances overflow
 SLENDER = 1e5  # radius over thickness, beyond which a notch is no part that is made
 
 
@@ -422,9 +422,7 @@ def _lengths(**values: float) -> list[float]:
 def _check(material: Material) -> None:
     checks.instance(material, Material, "material", "flexures.Material(youngs_modulus, strength, poisson_ratio)")
     if checks.positive(material.youngs_modulus, "youngs_modulus", "Pa") < SOFTEST:
-        raise ArgumentError(
-            f"youngs_modulus is {material.youngs_modulus:.6g} Pa; it must be at least {SOFTEST:g}; steel has 200e9."
-        )
+        raise ArgumentError(f"youngs_modulus is {material.youngs_modulus:.6g} Pa; it must be at least {SOFTEST:g}.")
     checks.positive(material.strength, "strength", "Pa")
     if not 0 <= checks.number(material.poisson_ratio, "poisson_ratio") < 0.5:
         raise ArgumentError(f"poisson_ratio is {material.poisson_ratio:.6g}; it must be >= 0 and < 0.5.")
