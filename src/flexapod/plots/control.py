@@ -26,6 +26,7 @@ from flexapod.plots.style import (
     ink,
     legend,
     letters,
+    plain_decades,
     stage,
     state_words,
     wide,
@@ -240,6 +241,7 @@ def isolation(
         ax.title.set(color=ink(), fontsize=letters("axes.titlesize"))
         legend(ax)
         dress(ax)
+        plain_decades(ax)
         ax.set_ylabel("transmissibility")
         ax.label_outer(remove_inner_ticks=False)
     words = f"{dataset.attrs['controller']}{of_point(dataset.attrs)}{state_words(dataset.attrs)}"

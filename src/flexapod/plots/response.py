@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure, SubFigure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, TWO_PI, Array, unit_of
 from flexapod.mechanics.point_motion import of_point
@@ -30,6 +29,7 @@ from flexapod.plots.style import (
     name_panel,
     note_still,
     panels,
+    plain_decades,
     stage,
     state_words,
     wide,
@@ -104,7 +104,7 @@ def frequency_response(
         for ax in (above, below):
             dress(ax)
             _mark(ax, natural)
-            _plain_decades(ax)
+            plain_decades(ax)
         legend(above)
     note_still(page, [OUTPUT_NAMES[axis] for axis in AXES if not drawn[axis]])
     source = f"leg {given}" if dimension == "leg" else f"{dimension} {given}"
@@ -162,7 +162,7 @@ def random_spectra(
         for ax in (above, below):
             dress(ax)
             _span(ax)
-            _plain_decades(ax)
+            plain_decades(ax)
         legend(below, title=f"total RMS, {unit}", title_fontsize=letters())
     note_still(page, [_named(name) for name in everything if not drawn[name]], "nothing")
     sources = dataset.attrs.get("sources", ["base"])
@@ -227,7 +227,7 @@ def stepped_ratio(
         )
         _span(ax)
         if scale == "log":
-            _plain_decades(ax)
+            plain_decades(ax)
         _mark(ax, natural, hertz=unit == "Hz")
         dress(ax)
         name_panel(ax, place, name)
@@ -262,14 +262,6 @@ def _mark(ax: Axes, natural: Iterable[float], hertz: bool = True) -> None:
         place = omega / TWO_PI if hertz else omega
         if low < place < high:
             ax.axvline(place, color=FAINT, lw=wide(0.7), ls=(0, (1, 2)), zorder=0)
-
-
-def _plain_decades(ax: Axes) -> None:
-    """Plain numbers at 1, 2, 5 of every decade of the horizontal axis, where they have room."""
-    low, high = ax.get_xlim()
-    ax.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 3e3 else (1,)))
-    ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:.10g}"))
-    ax.xaxis.set_minor_locator(NullLocator())
 
 
 def _span(ax: Axes, decades: float = 9.0) -> None:

@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -132,11 +133,12 @@ def _room(width: float, height: float) -> tuple[float, float]:
 
 
 def new_figure(width: float, height: float, layout: Any = "constrained") -> Figure:
-    """A figure of a size in inches, without pyplot; with it notebooks know how to show one that is a cell's result."""
+    """A figure of a size in inches, without pyplot; notebooks show it where it is what a cell gives."""
     from matplotlib.figure import Figure
 
-    if "ipykernel" in sys.modules:
-        import matplotlib.pyplot  # noqa: F401
+    if "ipykernel" in sys.modules:  # whose backend knows how, once it is loaded
+        with suppress(ImportError):
+            import_module("matplotlib_inline.backend_inline")
     return Figure(figsize=_room(width, height), layout=layout, dpi=changed("figure.dpi") or 130)
 
 
@@ -294,3 +296,13 @@ def prefixed(ax: Axes, unit: str) -> None:
         FuncFormatter(lambda value, _: f"{value / 10.0**power + 0.0:.6g}".replace("-", "\N{MINUS SIGN}"))
     )
     ax.set_ylabel(f"{_PREFIXES[power]}{unit}")
+
+
+def plain_decades(ax: Axes) -> None:
+    """Plain numbers at 1, 2, 5 of every decade of the horizontal axis, where they have room."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
+
+    low, high = ax.get_xlim()
+    ax.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 3e3 else (1,)))
+    ax.xaxis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:.10g}"))
+    ax.xaxis.set_minor_locator(NullLocator())
