@@ -70,6 +70,8 @@ def test_modes_of_many_poses_are_told_by_their_range():
 def test_parts_and_results_tell_meaning_and_unit():
     assert "stiffness" in words(fragment(BASE.legs))
     assert "N/m" in words(fragment(BASE.legs))
+    assert "damping Damping" in words(fragment(BASE.legs))
+    assert "0x" not in words(fragment(BASE.legs))
     assert "leg_length" in words(fragment(BASE.limits))
     held = fx.hold(BASE)
     assert "leg_force" in words(fragment(held))

@@ -38,7 +38,7 @@ _STYLE = """<style>
 .flexapod tbody th, .flexapod .meaning { text-align: left; font-weight: normal; }
 .flexapod .meaning { white-space: normal; opacity: 0.75; }
 .flexapod caption { text-align: left; font-weight: bold; padding: 4px 10px; color: inherit; }
-.flexapod svg { max-width: 26em; height: auto; color: inherit; }
+.flexapod svg { display: block; max-width: 26em; height: auto; color: inherit; }
 .flexapod svg text { fill: currentColor; }
 .flexapod summary { cursor: pointer; }
 </style>"""
@@ -154,7 +154,8 @@ def _value(value: Any) -> str:
             else type(value).__name__
         )
     text = repr(value)
-    return text if len(text) <= 80 and "\n" not in text else type(value).__name__
+    tells = len(text) <= 80 and "\n" not in text and " object at 0x" not in text  # and not only its address
+    return text if tells else type(value).__name__
 
 
 def _array(values: np.ndarray) -> str:
