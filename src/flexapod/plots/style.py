@@ -8,9 +8,8 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from contextvars import ContextVar
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
@@ -136,10 +135,20 @@ def new_figure(width: float, height: float, layout: Any = "constrained") -> Figu
     """A figure of a size in inches, without pyplot; notebooks show it where it is what a cell gives."""
     from matplotlib.figure import Figure
 
-    if "ipykernel" in sys.modules:  # whose backend knows how, once it is loaded
-        with suppress(ImportError):
-            import_module("matplotlib_inline.backend_inline")
+    if "ipykernel" in sys.modules:
+        _teach_notebook(Figure)
     return Figure(figsize=_room(width, height), layout=layout, dpi=changed("figure.dpi") or 130)
+
+
+def _teach_notebook(kind: type[Figure]) -> None:
+    """Make a kernel show figures as pictures, where pyplot has not done so yet."""
+    from IPython import get_ipython
+    from IPython.core.pylabtools import select_figure_formats
+
+    shell = get_ipython()
+    known = shell is None or any(kind in one.type_printers for one in shell.display_formatter.formatters.values())
+    if not known:
+        select_figure_formats(shell, {"png"}, bbox_inches="tight")
 
 
 def new_axes(width: float, height: float, **given: Any) -> Axes:
