@@ -24,7 +24,7 @@ NUMBERS = {
     "bearing_loads": (15829.469, 1e-5),
     "controller_rate": (1.751293e-4, 1e-4),
     "gravity_on_soft_legs": (974.507316, 1e-6),
-    "heavier_payload": (900.373117, 1e-6),
+    "heavier_payload": (900.362736, 1e-6),
     "joint_models": (0.003554672, 1e-5),
     "leg_tolerances": (83.435085, 1e-5),
     "motion_base_on_a_ship": (15937.19, 1e-4),
@@ -34,7 +34,7 @@ NUMBERS = {
     "path_round_weak_poses": (110.19, 2e-3),
     "platform_on_a_floor": (0.003066021, 1e-5),
     "pose_from_leg_lengths": (3.228303e-6, 1e-5),
-    "proved_bound": (4.2272, 1e-4),
+    "proved_bound": (4.2679, 1e-4),
     "shock_test": (1.3768, 0.006),  # a mass on a spring and a damper of the mode's frequency and damping, integrated
     "stiffness_for_a_frequency": (16488.2285, 1e-6),
     "to_python_control": (18656.858 + 6 * 4e4 / 3, 1e-6),  # six legs of a cube: their slopes squared are 1/3

@@ -73,7 +73,7 @@ class Uncertain:
 
     Examples
     --------
-    >>> tolerance = fx.Uncertain("legs.stiffness", 0.1)
+    >>> tolerance = fx.Uncertain("legs.stiffness_law.bulk_modulus", 0.1)
     >>> len(tolerance.parameters(fx.load("motion-base")))
     6
     """

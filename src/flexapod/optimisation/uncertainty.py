@@ -159,7 +159,8 @@ def robustness(
 
     Examples
     --------
-    >>> found = fx.robustness(fx.load("motion-base"), fx.Uncertain("legs.stiffness", 0.2, each=False), samples=64)
+    >>> oil = fx.Uncertain("legs.stiffness_law.bulk_modulus", 0.2, each=False)
+    >>> found = fx.robustness(fx.load("motion-base"), oil, samples=64)
     >>> round(found.worst / found.nominal, 4) == round(0.8**0.5, 4)
     True
     """

@@ -244,7 +244,8 @@ def spread(found: Robustness, *, ax: Axes | None = None) -> Axes:
 
     Examples
     --------
-    >>> found = fx.robustness(fx.load("motion-base"), fx.Uncertain("legs.stiffness", 0.1), samples=64, sensitivity=0)
+    >>> oil = fx.Uncertain("legs.stiffness_law.bulk_modulus", 0.1)
+    >>> found = fx.robustness(fx.load("motion-base"), oil, samples=64, sensitivity=0)
     >>> fx.plots.optimisation.spread(found).figure.savefig("spread.png")
     """
     below = ax is None

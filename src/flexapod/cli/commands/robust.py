@@ -52,7 +52,8 @@ def command(design: str, changes: tuple[str, ...], out: Path | None, as_json: bo
     """Distribution and worst case of the stability index of DESIGN, and which uncertain parameter matters most.
 
     \b
-    flexapod robust motion-base --uncertain legs.stiffness=15% --payload 0:500 --payload-at -0.5:0.5 -0.5:0.5 0.5:1.5
+    flexapod robust motion-base --uncertain legs.stiffness_law.bulk_modulus=15% --uncertain platform.mass=5%,normal
+    flexapod robust motion-base --payload 0:500 --payload-at -0.5:0.5 -0.5:0.5 0.5:1.5
     """
     from flexapod.cli.studies.robust import compute
 
