@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 def table() -> str:
-    """The designs of others first, then those without a maker: Flexapod's own."""
+    """The designs of others first, then Flexapod's own."""
     rows = ["| name | what it is | kind | by | a published number, found again by the tests |", "|---|---|---|---|---|"]
-    for name, one in sorted(catalogue().items(), key=lambda item: not item[1].by):
+    for name, one in sorted(catalogue().items(), key=lambda item: item[1].by.startswith("Flexapod")):
         by = ", ".join(filter(None, (one.by, one.year)))
         rows.append(f"| `{name}` | {one.about} | {one.kind} | {by} | {one.published} |")
     return "\n".join(rows)

@@ -10,6 +10,7 @@ import time
 
 import numpy as np
 import pytest
+from tests.helpers.plain import file
 
 import flexapod as fx
 from flexapod.certificates.file import write_certificate
@@ -73,15 +74,18 @@ def test_other_claims(result, run):
 
 def test_uncertain_machines_and_payloads(result):
     plain = result("certify", "motion-base", *SMALL)
-    given = ("--uncertain", "legs.stiffness=10%", "--payload", "0:200", "--payload-at", 0, 0, "0.8")
+    given = ("--uncertain", "legs.stiffness_law.bulk_modulus=10%", "--payload", "0:200", "--payload-at", 0, 0, "0.8")
     found = result("certify", "motion-base", *SMALL, *given)
     assert found["lower_rad_s"] < 0.95 * plain["lower_rad_s"]
     assert found["nominal_digest"] == plain["digest"] != found["digest"]
-    assert found["uncertain"] == ["legs.stiffness +-10 % (uniform)", "a payload of 0 to 200 kg at (0, 0, 0.8) m"]
+    assert found["uncertain"] == [
+        "legs.stiffness_law.bulk_modulus +-10 % (uniform)",
+        "a payload of 0 to 200 kg at (0, 0, 0.8) m",
+    ]
 
 
 def test_the_largest_box(result):
-    found = result("certify", "motion-base", *SMALL, "--at-least", 27, "--largest")
+    found = result("certify", file("motion-base"), *SMALL, "--at-least", 27, "--largest")
     assert found["status"] == "proved"
     assert 1 < found["scale"] < found["refuted_scale"] <= 1.02 * found["scale"]
 
@@ -117,7 +121,17 @@ def test_an_optimised_design_is_proved_on_request(run):
 
 def test_the_page_says_what_is_proved_and_how_to_check_it(run, there):
     assert (
-        run("certify", "motion-base", *SMALL, "--gap", "1%", "--uncertain", "legs.stiffness=5%", "--out", "proof")[0]
+        run(
+            "certify",
+            "motion-base",
+            *SMALL,
+            "--gap",
+            "1%",
+            "--uncertain",
+            "legs.stiffness_law.bulk_modulus=5%",
+            "--out",
+            "proof",
+        )[0]
         == 0
     )
     page = (there / "proof" / "motion-base-certificate.html").read_text()
@@ -129,7 +143,7 @@ def test_the_page_says_what_is_proved_and_how_to_check_it(run, there):
         "What it does not cover",
         "flexapod certify --check motion-base-certificate.json",
         "2.34 to 2.44",
-        "legs.stiffness +-5 %",
+        "legs.stiffness_law.bulk_modulus +-5 %",
         "exact universal joints",
     ):
         assert words in page, words
@@ -149,7 +163,7 @@ def test_the_page_says_what_is_proved_and_how_to_check_it(run, there):
         (("motion-base", "--largest", *SMALL), "Give --at-least"),
         (("motion-base", "--largest", "--at-least", "4"), "needs a shape"),
         (("motion-base", "--limits", "--within-limits"), "true of every machine"),
-        (("motion-base", "--regular", "--uncertain", "legs.stiffness=5%"), "depend on geometry alone"),
+        (("motion-base", "--regular", "--uncertain", "legs.stiffness_law.bulk_modulus=5%"), "depend on geometry alone"),
         (("motion-base", "--box", "z=2.5:2.4"), "the least comes first"),
         (("motion-base", "--uncertain", "platform.joints[0][0]=5%", *SMALL), "neither rises nor falls"),
         (("motion-base", "--resume", "--json"), "Give --out DIR"),

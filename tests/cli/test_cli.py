@@ -70,7 +70,7 @@ def test_check_lists_warnings_and_exceeded_limits(run, result):
     fine = result("check", "motion-base")
     assert fine["ok"] is True
     assert fine["limits_exceeded"] == fine["warnings"] == []
-    high = result("check", "motion-base", "--pose", "0", "0", "3.5", "0", "0", "0")
+    high = result("check", file("motion-base"), "--pose", "0", "0", "3.5", "0", "0", "0")
     assert high["ok"] is False
     assert len(high["limits_exceeded"]) == 6  # every leg is too long there, and nothing else
     assert all("length" in text for text in high["limits_exceeded"])
@@ -247,7 +247,7 @@ def test_designs_and_keys_complete():
 
 
 def test_check_says_that_a_pose_is_singular(run):
-    code, out, _ = run("check", "motion-base", "--pose", 0, 0, 2.4, 0, 0, 90)
+    code, out, _ = run("check", file("motion-base"), "--pose", 0, 0, 2.4, 0, 0, 90)
     assert code == 0
     assert "The pose is singular" in " ".join(out.split())
     assert "OK" not in out

@@ -91,7 +91,16 @@ def test_odd_names_make_plain_files_where_one_is(run, tmp_path):
 
 
 def test_robust_without_files_and_sensitivity(result):
-    found = result("robust", "motion-base", "--uncertain", "legs.stiffness=10%", "--samples", 16, "--sensitivity", 0)
+    found = result(
+        "robust",
+        "motion-base",
+        "--uncertain",
+        "legs.stiffness_law.bulk_modulus=10%",
+        "--samples",
+        16,
+        "--sensitivity",
+        0,
+    )
     assert found["files"] == []
     assert not any(name.startswith("sobol") for name in found)
 

@@ -67,9 +67,9 @@ def test_a_fault_of_flexapod_is_not_hidden(run, monkeypatch):
 
 ABSURD = [
     ["simulate", "motion-base", "--duration", "1", "--samples", "999999999999"],
-    ["robust", "motion-base", "--uncertain", "legs.stiffness=10%", "--samples", "99999999999"],
-    ["robust", "motion-base", "--uncertain", "legs.stiffness=10%", "--poses", "99999999"],
-    ["robust", "motion-base", "--uncertain", "legs.stiffness=10%", "--seed", "-1"],
+    ["robust", "motion-base", "--uncertain", "legs.stiffness_law.bulk_modulus=10%", "--samples", "99999999999"],
+    ["robust", "motion-base", "--uncertain", "legs.stiffness_law.bulk_modulus=10%", "--poses", "99999999"],
+    ["robust", "motion-base", "--uncertain", "legs.stiffness_law.bulk_modulus=10%", "--seed", "-1"],
     ["optimise", "motion-base", "--vary", "platform.mass=1:2", "--seed", "-1"],
     ["optimise", "motion-base", "--vary", "platform.mass=1:2", "--trials", "1" * 400],
     ["control", "motion-base", "velocity", "--shake", "0.01", "--duration", "1e12"],

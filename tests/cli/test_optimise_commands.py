@@ -75,18 +75,18 @@ def test_front(capsys, tmp_path):
 
 def test_robust(capsys, tmp_path):
     code, out, _ = run(
-        capsys, "robust", "motion-base", "--uncertain", "legs.stiffness=10%,together", "--uncertain",
+        capsys, "robust", "motion-base", "--uncertain", "legs.stiffness_law.bulk_modulus=10%,together", "--uncertain",
         "platform.mass=100,normal", "--payload", "0:500", "--payload-at", 0, "-0.5:0.5", 1.2, "--samples", 256,
         "--sensitivity", 32, "--out", tmp_path, "--json",
     )  # fmt: skip
     assert code == 0
     told = json.loads(out)
     assert told["worst_rad_s"] < told["quantiles_rad_s"]["0.01"] < told["nominal_rad_s"]
-    assert set(told["sobol_total"]) == {"legs.stiffness", "platform.mass", "payload.mass", "payload.y"}
+    assert set(told["sobol_total"]) == {"legs.stiffness_law.bulk_modulus", "platform.mass", "payload.mass", "payload.y"}
     assert told["worst_at"]["payload.mass"] == 500
     page = Path(told["files"][0]).read_text(encoding="utf-8")
     assert page.count("<svg") == 2
-    code, out, _ = run(capsys, "robust", "motion-base", "--uncertain", "legs.stiffness=10%", "--samples", 64,
+    code, out, _ = run(capsys, "robust", "motion-base", "--uncertain", "legs.stiffness_law.bulk_modulus=10%", "--samples", 64,
                        "--sensitivity", 0, "--out", tmp_path)  # fmt: skip
     assert code == 0
     assert "worst case" in out
@@ -255,12 +255,27 @@ def test_where_nothing_is_better_no_design_is_written(capsys, tmp_path):
 
 
 def test_robust_states_its_assumptions_and_counts_legs_from_one(capsys, tmp_path):
-    told = ["robust", "motion-base", "--uncertain", "legs.stiffness=15%", "--uncertain", "platform.mass_t=0.5,normal"]
+    told = [
+        "robust",
+        "motion-base",
+        "--uncertain",
+        "legs.stiffness_law.bulk_modulus=15%",
+        "--uncertain",
+        "platform.mass_t=0.5,normal",
+    ]
     told += ["--payload", "0:500", "--payload-at", 0, "-0.5:0.5", 1.2, "--samples", 64, "--seed", 3]
     code, out, _ = run(capsys, *told, "--sensitivity", 16, "--out", tmp_path)
     assert code == 0
     page = (tmp_path / "motion-base-robust.html").read_text(encoding="utf-8")
-    for words in ("legs.stiffness, leg 1", "legs.stiffness, leg 6", "uniform", "normal", "fixed", "payload.z", "N/m"):
+    for words in (
+        "legs.stiffness_law.bulk_modulus, leg 1",
+        "legs.stiffness_law.bulk_modulus, leg 6",
+        "uniform",
+        "normal",
+        "fixed",
+        "payload.z",
+        "Pa",
+    ):
         assert words in out
         assert words in page
     assert "64 designs of a scrambled Sobol sequence, seed 3" in page
@@ -272,4 +287,6 @@ def test_robust_states_its_assumptions_and_counts_legs_from_one(capsys, tmp_path
     assert (found["seed"], found["samples"], found["poses"]) == (3, 64, 1)
     assert found["worst_at"]["platform.mass_t"] == pytest.approx(6.0)
     assert found["parameters"]["payload.mass"]["high"] == 500
-    assert found["parameters"]["legs.stiffness[0]"]["words"] == "legs.stiffness, leg 1"
+    assert (
+        found["parameters"]["legs.stiffness_law.bulk_modulus[0]"]["words"] == "legs.stiffness_law.bulk_modulus, leg 1"
+    )

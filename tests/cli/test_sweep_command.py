@@ -10,10 +10,12 @@ import time
 
 import numpy as np
 import pytest
+from tests.helpers.plain import file
 
 import flexapod as fx
 from flexapod.cli import main
 
+BASE = file("motion-base")  # legs of any length
 I = fx.load("mukherjee-i")
 
 
@@ -81,7 +83,7 @@ def test_poses_of_a_file(tmp_path, capsys):
 
 
 def test_poses_beyond_the_limits_do_not_count(tmp_path, capsys):
-    given = ("sweep", "motion-base", "--around", 0.67, 24, "--points", 2000, "--worst", "--quantities", "omega_1")
+    given = ("sweep", BASE, "--around", 0.67, 24, "--points", 2000, "--worst", "--quantities", "omega_1")
     code, words, _ = run(capsys, *given)
     assert code == 0
     found = {}
@@ -101,10 +103,10 @@ def test_poses_beyond_the_limits_do_not_count(tmp_path, capsys):
         assert 23.9 < least[0]["omega_1"] < 25.5
         assert least[1]["omega_1"] < 22
     assert inside["worst_pose"]["at_limits"]
-    code, _, said = run(capsys, "sweep", "motion-base", "--grid", "z=3.5:3.6:3", "--json")
+    code, _, said = run(capsys, "sweep", BASE, "--grid", "z=3.5:3.6:3", "--json")
     assert code == 2
     assert "none of the 3 poses is within the design's limits" in said
-    code, _, _ = run(capsys, "sweep", "motion-base", "--grid", "z=3.5:3.6:3", "--all-poses")
+    code, _, _ = run(capsys, "sweep", BASE, "--grid", "z=3.5:3.6:3", "--all-poses")
     assert code == 0
 
 
@@ -113,7 +115,7 @@ def test_poses_beyond_the_limits_do_not_count(tmp_path, capsys):
 )
 def test_what_was_written_is_told_where_no_pose_is_within_the_limits(poses, tmp_path, capsys):
     for name in ("far.csv", "far.zarr"):
-        given = ("sweep", "motion-base", *poses, "--out", tmp_path / name, "--figure", tmp_path / "far.png")
+        given = ("sweep", BASE, *poses, "--out", tmp_path / name, "--figure", tmp_path / "far.png")
         code, text, _ = run(capsys, *given, "--json")
         assert code == 0
         found = json.loads(text)

@@ -2,17 +2,18 @@
 
 import pytest
 from tests.attack.test_command_lines import PYTHON
+from tests.helpers.plain import file
 
 #: Command lines whose errors come from the library, and the option that their remedy names.
 LINES = [
     (("robust", "motion-base", "--uncertain", "platform.mass_center[0]=10%"), "it has no %"),
     (
-        ("sweep", "motion-base", "--box", "z=3.5:3.6,roll=0:1", "--worst", "--no-summary", "--points", "64"),
+        ("sweep", file("motion-base"), "--box", "z=3.5:3.6,roll=0:1", "--worst", "--no-summary", "--points", "64"),
         "--all-poses",
     ),
-    (("sweep", "motion-base", "--grid", "z=3.5:3.6:3"), "--all-poses"),
+    (("sweep", file("motion-base"), "--grid", "z=3.5:3.6:3"), "--all-poses"),
     (
-        ("robust", "motion-base", "--uncertain", "legs.stiffness=10%", "--pose", "0", "0", "3.6", "0", "0", "0"),
+        ("robust", "motion-base", "--uncertain", "platform.mass=10%", "--pose", "0", "0", "3.6", "0", "0", "0"),
         "--all-poses",
     ),
     (("path", "mukherjee-i", "through.csv"), "--from and --to"),

@@ -162,11 +162,10 @@ def test_every_published_number_is_tested():
 def test_every_file_says_whose_it_is():
     for name, one in CATALOGUE.items():
         assert one.about.endswith(".")
-        if name not in OWN:
-            assert one.kind
-            assert one.by
-            assert one.source
-            assert re.fullmatch(r"(19|20)\d\d|", one.year)
+        assert one.kind
+        assert one.by.startswith("Flexapod, after ") == (name in OWN)
+        assert one.source
+        assert re.fullmatch(r"(19|20)\d\d|", one.year)
         text = find(name).read_text(encoding="utf-8")
         body = text[text.index("\nname = ") :]
         assert ("Assumed" in body) == bool(one.assumed and "Assumed: see above." in body)

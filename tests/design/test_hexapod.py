@@ -538,7 +538,7 @@ def test_loading_a_design_imports_nothing_slow():
 
 
 def test_home_is_a_pose_that_keeps_its_angles():
-    machine = load("motion-base").replace({"home.orientation": [0.1, -0.2, 7 / 3]})
+    machine = load("mukherjee-i").replace({"home.orientation": [0.1, -0.2, 7 / 3]})
     home = machine.home
     assert isinstance(home, Pose)
     assert home == Pose.from_rpy(*home.position, 0.1, -0.2, 7 / 3)

@@ -106,7 +106,9 @@ def test_at_home_screws_and_oil_are_as_stiff_as_the_plain_legs():
     np.testing.assert_allclose(1 / (1 / 50e6 + machine.legs.series_compliance), 24.23e6, rtol=1e-3)
     oil = built("motion-base")
     law = oil.legs.stiffness_law
-    np.testing.assert_allclose(stiffness(oil, law.shortest + law.stroke / 2), plain_machine("motion-base").legs.stiffness)
+    np.testing.assert_allclose(
+        stiffness(oil, law.shortest + law.stroke / 2), plain_machine("motion-base").legs.stiffness
+    )
     np.testing.assert_allclose(law.range, [[2.131, 3.281]] * 6)
 
 

@@ -67,7 +67,7 @@ def fronted():
 
 @cache
 def uncertain():
-    return fx.robustness(base(), fx.Uncertain("legs.stiffness", 0.1), samples=64, sensitivity=64)
+    return fx.robustness(base(), fx.Uncertain("legs.stiffness_law.bulk_modulus", 0.1), samples=64, sensitivity=64)
 
 
 @cache

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from tests.helpers.plain import plain_machine
+from tests.helpers.plain import file, plain_machine
 from tests.helpers.support import apart
 
 import flexapod as fx
@@ -263,7 +263,7 @@ def test_poses_beyond_the_limits_do_not_count_unless_all_are_asked_for(result, r
         fx.robustness(machine, soft, [0, 0, 3.6, 0, 0, 0], samples=8)
     given = (
         "robust",
-        "motion-base",
+        file("motion-base"),
         "--uncertain",
         "legs.stiffness=20%,together",
         "--around",

@@ -45,7 +45,7 @@ def planned(**options):
 
 
 def robust(*uncertain, name="motion-base", region=None, **options):
-    given = [fx.Uncertain("legs.stiffness", 0.1), *uncertain]
+    given = [fx.Uncertain("legs.stiffness_law.bulk_modulus", 0.1), *uncertain]
     return fx.robustness(fx.load(name), given, region, **{"samples": 16, **options})
 
 

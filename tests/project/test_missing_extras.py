@@ -66,7 +66,7 @@ NEEDS = [
     ("slycot", "control", lambda: fx.control.h_infinity(*isolator())),
     ("ompl", "plan", plan),
     ("optuna", "optimise", lambda: fx.optimise(plain_machine("precision-positioner"), [STIFFNESS], trials=2)),
-    ("SALib", "optimise", lambda: fx.robustness(fx.load("motion-base"), [fx.Uncertain("legs.stiffness", 0.1)],
+    ("SALib", "optimise", lambda: fx.robustness(fx.load("motion-base"), [fx.Uncertain("platform.mass", 0.1)],
                                                 samples=16, sensitivity=16)),
     ("skimage", "sweep", surface),
     ("h5netcdf", "sweep", lambda: saved("sweep.nc")),

@@ -37,7 +37,7 @@ def test_a_machine_shows_its_drawing_and_its_inputs():
     assert text.count("<svg") == 1
     told = words(text)
     assert told.startswith("motion-base")
-    assert "stiffness, N/m" in told
+    assert "hydraulic" in told
     assert "base x, mm" in told
     assert "gravity" in told
     without = fragment(BASE.replace({"home": None}))

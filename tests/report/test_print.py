@@ -49,7 +49,10 @@ def _report(name, **changes):
 
 def _robust():
     h = fx.load("motion-base")
-    strays = [fx.Uncertain("legs.stiffness", 0.15), Payload((0, 500), ((-0.5, 0.5), (-0.5, 0.5), (0.5, 1.5)))]
+    strays = [
+        fx.Uncertain("legs.stiffness_law.bulk_modulus", 0.15),
+        Payload((0, 500), ((-0.5, 0.5), (-0.5, 0.5), (0.5, 1.5))),
+    ]
     return whole(robustness.study(h, fx.robustness(h, strays, samples=64, sensitivity=16), "home"))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 from tests.helpers.cases import case
-from tests.helpers.plain import plain_machine
+from tests.helpers.plain import file, plain_machine
 
 import flexapod as fx
 from flexapod.workspace.rays import trace
@@ -254,7 +254,7 @@ def test_what_is_refused(machine, change, more, error, words):
 
 def test_the_command(result, run, tmp_path, machine, monkeypatch):
     expected = fx.envelope(machine, proportions=[0.25, 0.25, 0.2, *np.radians([20, 20, 25])], index=20.0)
-    line = ["envelope", "motion-base", "--proportions", "250mm", 0.25, 0.2, 20, 20, 25, "--index", 20]
+    line = ["envelope", file("motion-base"), "--proportions", "250mm", 0.25, 0.2, 20, 20, 25, "--index", 20]
     found = result(*line, "--out", tmp_path / "here")
     names = {"envelope.csv", "envelope-pairs.csv", "envelope-pairs.png", "envelope.html"}
     assert {file.name for file in (tmp_path / "here").iterdir()} == names
@@ -273,7 +273,7 @@ def test_the_command(result, run, tmp_path, machine, monkeypatch):
     code, out, _ = run("envelope", "mukherjee-i")
     assert "only singular poses stop motions" in out
     assert run("envelope", "motion-base", "--csv", "--json")[0] == 2
-    code, _, err = run("envelope", "motion-base", "--set", "limits.leg_length=[1,2]")
+    code, _, err = run("envelope", file("motion-base"), "--set", "limits.leg_length=[1,2]")
     assert code == 2
     assert "Begin at another pose, or widen the limits" in err
 

@@ -5,12 +5,13 @@ import pickle
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod import _core
 from flexapod.workspace.pose_sets import given_poses
 
-H = fx.load("motion-base")
+H = plain_machine("motion-base")
 RNG = np.random.default_rng(4)
 POSITION = np.array([0.0, 0.0, 2.4]) + RNG.uniform(-0.1, 0.1, (300, 3))
 ANY = Rotation.random(300, rng=5)

@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 from tests.helpers.support import JOINTS
 
 import flexapod as fx
@@ -22,7 +23,7 @@ SPRUNG = {
 }
 FORCES = {"limits.leg_compression": 9000.0, "limits.leg_tension": 500.0}
 MOMENTS = {"limits.universal_moment": 60.0, "limits.spherical_moment": 45.0}
-HOME = np.concatenate([fx.load("motion-base").home.position, np.zeros(3)])
+HOME = np.concatenate([plain_machine("motion-base").home.position, np.zeros(3)])
 
 
 def drawn(count, scale=0.3, seed=1):
@@ -52,7 +53,7 @@ def weights(machine, rows):
 
 @pytest.mark.parametrize("springs", [{}, SPRUNG], ids=["plain", "sprung"])
 def test_static_forces_of_sweeps_are_those_of_virtual_work(springs):
-    machine = fx.load("motion-base").replace(springs)
+    machine = plain_machine("motion-base").replace(springs)
     rows = drawn(12)
     expected = weights(machine, rows)
     found = evaluate(machine, rows, ("leg_compression", "leg_tension"), "universal", 1)
@@ -70,7 +71,7 @@ def test_static_forces_of_sweeps_are_those_of_virtual_work(springs):
 
 @pytest.mark.parametrize("joint", JOINTS)
 def test_sweeps_and_checks_agree_on_what_is_within(joint):
-    free = fx.load("motion-base").replace(SPRUNG | {"gravity": [4.0, 2.0, -5.0], "limits.leg_length": None})
+    free = plain_machine("motion-base").replace(SPRUNG | {"gravity": [4.0, 2.0, -5.0], "limits.leg_length": None})
     rows = drawn(1500, 0.2)
     poses = fx.Pose.from_rpy(*rows.T)
     force, moments = fx.hold(free, poses, joint=joint).leg_force, fx.joint_moments(free, poses, joint=joint)
@@ -96,7 +97,7 @@ def test_sweeps_and_checks_agree_on_what_is_within(joint):
 
 @pytest.mark.parametrize("joint", JOINTS)
 def test_margins_are_those_of_hold_and_moments_in_either_joint_model(joint):
-    machine = fx.load("motion-base").replace(SPRUNG | FORCES | MOMENTS)
+    machine = plain_machine("motion-base").replace(SPRUNG | FORCES | MOMENTS)
     margins = LimitMargins(machine, joint=joint)
     six = drawn(1, 0.2, 3)[0]
     pose = fx.Pose.from_rpy(*six)
@@ -117,7 +118,7 @@ def test_margins_are_those_of_hold_and_moments_in_either_joint_model(joint):
 
 
 def test_joint_models_differ_where_moments_are_limited():
-    machine = fx.load("motion-base").replace(SPRUNG)
+    machine = plain_machine("motion-base").replace(SPRUNG)
     six = HOME + np.array([0.2, 0.3, 0.1, 0.3, 0.2, 0.5])
     bends = [np.linalg.norm(fx.joint_moments(machine, six, joint=joint).universal_moment, axis=-1) for joint in JOINTS]
     leg = int(np.argmax(np.abs(bends[0] - bends[1])))
@@ -129,7 +130,7 @@ def test_joint_models_differ_where_moments_are_limited():
 
 
 def test_a_worst_pose_is_within_limits_of_forces():
-    machine = fx.load("motion-base")
+    machine = plain_machine("motion-base")
     box = fx.Workspace.about_home(0.15, 0.08)
     free = fx.worst_pose(machine, box, samples=2**11, starts=3)
     force = float(fx.hold(machine, fx.Pose.from_rpy(*free.pose)).leg_force.max())
@@ -149,7 +150,7 @@ def test_a_worst_pose_is_within_limits_of_forces():
 
 @pytest.mark.parametrize("joint", JOINTS)
 def test_forces_and_moments_of_constraints_have_exact_derivatives_by_the_design(joint):
-    machine = fx.load("motion-base").replace(SPRUNG)
+    machine = plain_machine("motion-base").replace(SPRUNG)
     keys = ("platform.mass", "platform.mass_center[2]", "base.joints[2][1]", "platform.joints[4][0]", "gravity[1]")
     keys += (
         "legs.upper.mass[3]",
@@ -183,7 +184,7 @@ def test_forces_and_moments_of_constraints_have_exact_derivatives_by_the_design(
 
 
 def test_a_path_of_a_given_time_is_refused_where_it_exceeds_what_motors_can_do():
-    machine = fx.load("motion-base").replace({"limits.leg_rate": 0.3, "limits.leg_acceleration": 1.0})
+    machine = plain_machine("motion-base").replace({"limits.leg_rate": 0.3, "limits.leg_acceleration": 1.0})
     goal = machine.home.displaced([0.2, 0.1, 0.05, 0, 0, 0.05])
     with pytest.raises(
         fx.errors.PathError, match=r"in 0.5 s the path exceeds .* leg rate and acceleration; it keeps them in"
@@ -204,7 +205,7 @@ def test_a_path_of_a_given_time_is_refused_where_it_exceeds_what_motors_can_do()
 
 
 def test_a_timed_path_slows_down_for_forces_and_power():
-    machine = fx.load("motion-base")
+    machine = plain_machine("motion-base")
     goal = machine.home.displaced([0.2, 0.1, 0.05, 0, 0, 0.05])
     quick = fx.plan_path(machine, machine.home, goal, 10.0, timing=LegSpeed(rate=2.0))
     loads = path_loads(machine, quick.path)
@@ -220,7 +221,7 @@ def test_a_timed_path_slows_down_for_forces_and_power():
 
 
 def test_a_search_keeps_forces_and_moments_of_the_design():
-    machine = fx.load("motion-base").replace(
+    machine = plain_machine("motion-base").replace(
         SPRUNG | {"limits": None, "limits.leg_compression": 12000.0, "limits.spherical_moment": 120.0}
     )
     limits = fx.optimisation.DesignLimits(region=fx.Workspace.about_home(0.1, 0.05))
@@ -236,7 +237,7 @@ def test_a_search_keeps_forces_and_moments_of_the_design():
 
 
 def test_what_only_motions_exceed_is_said():
-    machine = fx.load("motion-base").replace({"limits": None, "limits.leg_rate": 1.0, "limits.leg_power": 10.0})
+    machine = plain_machine("motion-base").replace({"limits": None, "limits.leg_rate": 1.0, "limits.leg_power": 10.0})
     assert not machine.limits.given
     assert machine.limits.of_motions == ("leg_rate", "leg_power")
     words = motion_limits_words(machine.limits)

@@ -88,7 +88,7 @@ def equations_of_motion(
     --------
     >>> terms = fx.equations_of_motion(fx.load("motion-base"))
     >>> np.diag(terms.J_p).round(1).tolist()
-    [4218.4, 4218.4, 4234.7, 9383.4, 10467.4, 7647.3]
+    [4218.5, 4218.5, 4234.7, 9383.4, 10467.4, 7647.4]
     """
     s = states(hexapod, pose, base)
     J_p, J_b, eta, H = _core.equations_of_motion(hexapod.packed, as_joint(joint), s.platform, s.base)

@@ -187,7 +187,7 @@ class Workspace:
     >>> fx.Workspace.about_home(0.05, 0.1)
     all poses within 0.05 m and 5.72958 degrees of home
     >>> round(fx.worst_pose(fx.load("motion-base"), fx.Workspace.about_home(0.05, 0.1), samples=1024).omega_1, 2)
-    27.37
+    27.79
     """
 
     def __init__(self, box: Box, from_home: bool = False) -> None:

@@ -121,8 +121,8 @@ def pose_grid(
     Examples
     --------
     >>> fx.sweep(fx.load("motion-base"), fx.pose_grid(z=[2.3, 2.4], yaw=[0.0, 0.2])).omega_1.round(2).values
-    array([[28.65, 28.51],
-           [27.99, 27.85]])
+    array([[28.88, 29.53],
+           [27.99, 28.56]])
     """
     axes: dict[str, Array] = {}
     for name, value in zip(AXES, (x, y, z, roll, pitch, yaw), strict=True):
@@ -171,7 +171,7 @@ def pose_path(waypoints: Pose | ArrayLike, samples: int) -> PoseSet:
     --------
     >>> path = fx.workspace.pose_path([[0, 0, 2.3, 0, 0, 0], [0, 0, 2.5, 0, 0, 0.2]], 5)
     >>> fx.sweep(fx.load("motion-base"), path).omega_1.round(2).values
-    array([28.65, 28.31, 27.95, 27.58, 27.2 ])
+    array([28.88, 28.4 , 28.13, 28.07, 28.2 ])
     """
     from scipy.spatial.transform import Rotation, Slerp
 

@@ -112,7 +112,7 @@ def sweep(
     --------
     >>> found = fx.sweep(fx.load("motion-base"), fx.Workspace.about_home(0.2, 0.1), samples=1024)
     >>> round(float(found.omega_1.min()), 1), round(float(found.cond_H.max()), 2)
-    (26.4, 3.68)
+    (27.6, 3.68)
     """
     points, wanted = poses_of(hexapod, region, samples, seed), chosen(quantities, hexapod)
     as_joint(joint)

@@ -152,7 +152,7 @@ def worst_pose(
     --------
     >>> worst = fx.worst_pose(fx.load("motion-base"), fx.Workspace.about_home(0.2, 0.1), samples=1024)
     >>> round(worst.omega_1, 2), worst.agreed == worst.starts
-    (26.18, False)
+    (27.48, False)
     """
     where = as_region(region)
     index = SquaredFrequency(as_hexapod(hexapod), joint, mode=1)

@@ -47,7 +47,7 @@ def open_sweep(path: str | Path) -> xr.Dataset:
     >>> store = fx.workspace.SweepStore.create("map.zarr", fx.load("motion-base"), fx.pose_grid(z=[2.3, 2.4]))
     >>> _ = store.run()
     >>> fx.open_sweep("map.zarr").omega_1.round(2).values
-    array([28.65, 27.99])
+    array([28.88, 27.99])
     """
     import xarray as xr
 

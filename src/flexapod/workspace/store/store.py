@@ -88,7 +88,7 @@ class SweepStore:
     >>> store.run().done, store.complete
     (1000, True)
     >>> round(fx.summarise(fx.open_sweep("map.zarr")).worst.omega_1, 1)
-    26.4
+    27.6
     """
 
     def __init__(
