@@ -27,7 +27,7 @@ PLAIN = Path(__file__).parents[1] / "tests" / "data" / "machines"
 
 
 def machine_of(name: str) -> fx.Hexapod:
-    """The machine with joints that turn freely and one constant spring a leg, as such bounds were measured before."""
+    """The machine with joints that turn freely and one constant spring a leg, as calls and bounds are measured."""
     file = PLAIN / f"{name}.toml"
     return fx.load(file if file.exists() else name)
 

@@ -1,5 +1,7 @@
 """Draws the figures of the how-to pages, and that of modes.md in README.md: python docs/images/draw_guides.py"""
 
+from __future__ import annotations
+
 import sys
 from contextlib import chdir
 from pathlib import Path

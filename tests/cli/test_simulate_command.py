@@ -82,9 +82,9 @@ def test_files_hold_the_motion(result, tmp_path):
     table = np.genfromtxt(out / "simulation.csv", delimiter=",", names=True)
     np.testing.assert_allclose(table["displacement_z_m"], expected.displacement[:, 2], rtol=1e-11, atol=1e-30)
     np.testing.assert_allclose(table["leg_force_6_N"], expected.leg_force[:, 5], rtol=1e-11)
-    for file in found["files"]:
-        assert (out / file).stat().st_size > 100
-    assert {file.rsplit(".")[-1] for file in found["files"]} == {"nc", "csv", "png"}
+    for name in found["files"]:
+        assert (out / name).stat().st_size > 100
+    assert {name.rsplit(".")[-1] for name in found["files"]} == {"nc", "csv", "png"}
 
 
 def test_a_table_is_shown(capsys):
