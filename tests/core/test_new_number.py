@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 
@@ -114,6 +113,6 @@ def test_a_number_of_each_leg_is_one_line_in_the_core_and_one_in_the_schema(tmp_
     command = [sys.executable, "-S", "-c", USE]  # -S: no import hook of an editable install
     run = subprocess.run(command, env=outside, capture_output=True, text=True, check=False)
     assert run.returncode == 0, run.stderr
-    same = plain_machine("motion-base").replace({"legs.stiffness": [2e7, 3e7, 4e7, 5e7, 6e7, 7e7]})
+    same = fx.load("motion-base").replace({"legs.stiffness": [2e7, 3e7, 4e7, 5e7, 6e7, 7e7]})
     omega = np.frombuffer(bytes.fromhex(run.stdout))
     np.testing.assert_allclose(omega, fx.natural_modes(same).omega, rtol=1e-12)  # rounding of another instruction set
