@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 from tests.helpers.public import PUBLIC
 
 import flexapod as fx
 from flexapod.errors import FlexapodError
 
-MACHINE = fx.load("motion-base")
+MACHINE = plain_machine("motion-base")
 LINEAR = fx.linearise(MACHINE)
 EMPTY = (np.zeros((0, 0)), np.zeros((0, 6)), np.zeros((6, 0)), np.eye(6))
 STIFFNESS = fx.Variable("legs.stiffness", 1e5, 1e7)
