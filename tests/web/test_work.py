@@ -7,10 +7,12 @@ import signal
 import threading
 from collections.abc import Iterator
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from tests.helpers.plain import file, plain_machine
 from tests.web.asked import ASKED, BOX, MACHINE, POSE
 from tests.web.serving import apart
 
@@ -78,8 +80,8 @@ def test_one_process_does_one_job_after_another(job: Work) -> None:
 
 
 def test_a_cloud_and_the_worst_pose_are_within_the_limits(job: Work) -> None:
-    text = design_file.find("motion-base").read_text(encoding="utf-8")
-    machine, asked = fx.load("motion-base"), {"design": text, "pose": [0.0, 0.0, 2.39, 0.0, 0.0, 0.0]}
+    text = Path(file("motion-base")).read_text(encoding="utf-8")
+    machine, asked = plain_machine("motion-base"), {"design": text, "pose": [0.0, 0.0, 2.39, 0.0, 0.0, 0.0]}
     box = pose_ranges.box(machine)
     rows = rows_of(job("cloud", box=box, points=60_000, seed=1, **asked), 9)
     ok = fx.check_limits(machine, fx.Pose.from_rpy(*rows[:, :3].T, *np.radians(rows[:, 3:6]).T)).ok
