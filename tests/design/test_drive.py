@@ -7,13 +7,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.report.studies import inputs
 from flexapod.web.description import described, fields
 from flexapod.web.designs import Source
 
-MACHINE = fx.load("motion-base")
+MACHINE = plain_machine("motion-base")
 TABLES = """
 [drive]
 lead_mm = 20
