@@ -5,11 +5,12 @@ import math
 
 import numpy as np
 import pytest
+from tests.helpers.plain import plain_machine
 
 import flexapod as fx
 from flexapod.mechanics.energies import energy
 
-MACHINE = fx.load("motion-base")
+MACHINE = plain_machine("motion-base")
 SMOOTH = MACHINE.replace({f"legs.damping.{name}": 0.0 for name in ("prismatic", "universal", "spherical")})
 HOME = MACHINE.home
 ROWS = [[0, 0, 0, 0, 0, 0], [0.3, 0.1, 0.1, 0.1, 0, 0.1], [-0.1, 0.2, -0.1, 0, 0.1, 0], [0, 0, 0, 0, 0, 0]]
