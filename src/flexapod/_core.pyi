@@ -385,7 +385,8 @@ class CertificateOptions:
     """How a certificate is looked for; without arguments: the level itself, without limits, on one thread.
 
     `gap` > 0: the level is a value that some pose has, and what is proved lies that share from the worst that is seen.
-    `limits`: boxes that break one are left out. `cut`: where boxes are cut, 0.3 to 0.7 of the side.
+    `limits`: boxes that break one are left out. `cut`: where boxes are cut, 0.3 to 0.7 of the side. `strays`: (n,
+    design_size), what each of n variables from -1 to 1 adds to the numbers of the design.
     """
 
     @overload
@@ -400,6 +401,7 @@ class CertificateOptions:
         max_boxes: float,
         threads: int,
         cut: float,
+        strays: _A,
     ) -> None: ...
     gap: float
     limits: SweepLimits | None

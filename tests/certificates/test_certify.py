@@ -167,8 +167,7 @@ def test_uncertain_numbers_are_proved_at_their_worst():
 
 def test_uncertain_numbers_without_a_worst_end_are_refused():
     for wrong in (
-        fx.Uncertain("platform.joints[0][0]", 0.01),
-        fx.Uncertain("platform.mass_center[2]", 0.01, relative=False),
+        fx.Uncertain("legs.upper.mass_center[0][0]", 0.01),
         fx.Uncertain("platform.inertia[0][1]", 1.0, relative=False),
         fx.optimisation.Payload((0, 5), ((0, 1), 0, 0)),
     ):

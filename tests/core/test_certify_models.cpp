@@ -1,9 +1,8 @@
 // Taylor models against the same templates in long double, whose roundings are 2000 times smaller.
 #include <doctest/doctest.h>
 
+#include "certified_numbers.hpp"
 #include "example.hpp"
-#include "model/springs.hpp"
-#include "wide.hpp"
 
 namespace flexapod {
 
@@ -18,26 +17,6 @@ concept Compares = requires(T a) { a < a; } || requires(T a) { a > a; } || requi
                    requires(T a) { a < 1.0; } || requires(T a) { a == a; };
 static_assert(!Compares<Taylor<Lanes, 6, 3>>, "a branch on the value of a model must not compile");
 static_assert(Compares<double>);
-
-/// What of a machine a certificate takes: all numbers of H and J.
-template <class T> struct Numbers {
-  T number[72];
-
-  Numbers(const Machine<double>& machine, const Pose<T>& pose) {
-    const Pose<T> base{-transposed(pose.R, pose.t), transpose(pose.R)};
-    const Geometry<T, double> g(machine.design, base);
-    SpringMatrix<T> directions;
-    SpatialInertia<T> J{};
-    for (int i = 0; i < 6; ++i) {
-      const LegAxes<T> leg(g.S[i], g.k[i], machine.joint);
-      set_spring_directions(directions, i, g.q_p[i], leg);
-      add_leg_inertia(J, leg, machine.inertia[i], g.q_p[i]);
-    }
-    const Mat6<T> matrix = J.matrix();
-    for (int r = 0; r < 6; ++r)
-      for (int s = 0; s < 6; ++s) number[6 * r + s] = directions[r][s], number[36 + 6 * r + s] = matrix[r][s];
-  }
-};
 
 struct Trial {
   Machine<double> machine;
@@ -54,9 +33,9 @@ struct Trial {
   template <class Rules> Numbers<Taylor<Lanes, 6, 3, Rules>> models() const {
     const Box* boxes[Lanes::lanes];
     for (auto& each : boxes) each = &box;
-    return {machine, box_pose<Taylor<Lanes, 6, 3, Rules>>(boxes)};
+    return {machine, machine.design, box_pose<Taylor<Lanes, 6, 3, Rules>>(boxes)};
   }
-  Numbers<Wide> exact(const long double (&u)[6]) const { return {machine, wide_pose(box, u)}; }
+  Numbers<Wide> exact(const long double (&u)[6]) const { return {machine, machine.design, wide_pose(box, u)}; }
   /// The largest part of a radius that is used, at vertices and random points.
   template <class Rules> double most_used(example::Draw& draw, int points) const {
     const auto models = this->models<Rules>();

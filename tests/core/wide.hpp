@@ -28,11 +28,13 @@ template <> struct is_scalar<Wide> : std::true_type {};
 
 using Lanes = Pack<Vector, 1>;
 
-/// How far a model's function may be from an exact value, of its radius, in lane 0.
-template <class T> double used(const T& model, const long double (&u)[T::variables], Wide exact) {
+/// How far a model's function may be from an exact value, of its radius, in lane 0. strays: values of those.
+template <class T>
+double used(const T& model, const long double (&u)[T::variables], Wide exact, const long double* strays = nullptr) {
   constexpr const auto& m = monomials<T::variables, T::highest>;
   long double value = 0;
-  for (int k = 0; k < T::count; ++k) {
+  for (int k = T::terms; k < T::count; ++k) value += lane_of(model.c[k], 0) * strays[k - T::terms];
+  for (int k = 0; k < T::terms; ++k) {
     long double term = lane_of(model.c[k], 0);
     for (int i = 0; i < T::variables; ++i)
       for (int p = 0; p < m.power[k][i]; ++p) term *= u[i];

@@ -15,15 +15,18 @@ from flexapod.design.stiffness_laws import HydraulicLaw, ScrewLaw
 ctx.prec = 80
 
 
-def proved(hexapod, box, level: float, most: int = 2000) -> int | None:
-    """Boxes that it took to prove omega_1 >= level over a box (6, 2); None where `most` were not enough."""
+def proved(hexapod, box, level: float, most: int = 2000, reach: float = 0.0) -> int | None:
+    """Boxes that it took to prove omega_1 >= level over a box (6, 2); None where `most` were not enough.
+
+    reach: how far each coordinate of the joints and of the platform's mass centre may be from the design's, m.
+    """
     t, open_boxes, looked = arb(float(level)) ** 2, [np.asarray(box, float)], 0
     while open_boxes:
         here = open_boxes.pop()
         looked += 1
         if looked > most:
             return None
-        if not _positive(hexapod, here, t):
+        if not _positive(hexapod, here, t, reach):
             share = (here[:, 1] - here[:, 0]) / (box[:, 1] - box[:, 0])
             axis = int(np.argmax(share))
             middle = here[axis].mean()
@@ -35,10 +38,10 @@ def proved(hexapod, box, level: float, most: int = 2000) -> int | None:
     return looked
 
 
-def _positive(hexapod, box, t) -> bool:
+def _positive(hexapod, box, t, reach) -> bool:
     balls = [_ball(low, high) for low, high in box]
     middle = [arb(float(x)) for x in box.mean(axis=1)]
-    centre, slopes = _matrix(hexapod, middle, t)[0], _matrix(hexapod, balls, t)[1]
+    centre, slopes = _matrix(hexapod, middle, t, reach)[0], _matrix(hexapod, balls, t, reach)[1]
     A = centre
     for ball, point, slope in zip(balls, middle, slopes, strict=True):
         A = A + slope * (ball - point)
@@ -117,7 +120,7 @@ def _times(rows, v):
     return [_dot(row, v) for row in rows]
 
 
-def _matrix(hexapod, coordinates, t):
+def _matrix(hexapod, coordinates, t, reach):
     """K - t J in base axes, and its derivatives by the coordinates."""
     x = []
     for i, value in enumerate(coordinates):
@@ -131,14 +134,14 @@ def _matrix(hexapod, coordinates, t):
         A,
         -t,
         [_jet(0.0)] * 3,
-        _times(R, _vector(hexapod.platform_mass_center)),
+        _times(R, _vector(hexapod.platform_mass_center, reach)),
         R,
         hexapod.platform_mass,
         hexapod.platform_inertia,
     )
     for i in range(6):
-        q = _times(R, _vector(hexapod.platform_joints[i]))
-        S = [a + b - c for a, b, c in zip(x[:3], q, _vector(hexapod.base_joints[i]), strict=True)]
+        q = _times(R, _vector(hexapod.platform_joints[i], reach))
+        S = [a + b - c for a, b, c in zip(x[:3], q, _vector(hexapod.base_joints[i], reach), strict=True)]
         u = _dot(S, S).rsqrt()
         s = [u * a for a in S]
         h = [*s, *_cross(q, s)]
@@ -266,5 +269,5 @@ def _rotation(roll, pitch, yaw):
     ]
 
 
-def _vector(v):
-    return [_jet(float(x)) for x in v]
+def _vector(v, reach=0.0):
+    return [_Jet(_ball(float(x) - reach, float(x) + reach)) for x in v]

@@ -17,6 +17,12 @@ using sweep_task::Limits;
 
 struct Options : CertifyOptions {
   std::optional<Limits> limits;
+  std::vector<double> strays;  // rows of a design's numbers
+
+  void set_strays(const Input& given) {
+    if (given.size() % design_size != 0) throw std::invalid_argument("strays must have shape (n, design_size)");
+    strays.assign(given.data(), given.data() + given.size());
+  }
 };
 
 Task task_of(const Input& design, Joint joint, Kind kind) {
@@ -28,6 +34,8 @@ Task task_of(const Input& design, Joint joint, Kind kind) {
 Certification run(Task task, double level, const Options& options, std::vector<certify_task::Box> boxes,
                   const nb::object& progress) {
   task.limits = options.limits ? &*options.limits : nullptr;
+  task.reach = options.strays.data(), task.strays = static_cast<int>(options.strays.size() / design_size);
+  check_strays(task);
   if (task.kind == Kind::limits && task.limits == nullptr) throw std::invalid_argument("limits are not given");
   CertifySearch search(kernels().certify, task, level, options, std::move(boxes));
   {
@@ -59,8 +67,11 @@ void bind_options(nb::module_& m) {
   options.def(
       "__init__",
       [](Options* self, double gap, const std::optional<Limits>& limits, double seconds, double max_boxes, int threads,
-         double cut) { new (self) Options{{gap, seconds, max_boxes, threads, cut}, limits}; },
-      nb::kw_only(), "gap"_a, "limits"_a.none(), "seconds"_a, "max_boxes"_a, "threads"_a, "cut"_a);
+         double cut, const Input& strays) {
+        new (self) Options{{gap, seconds, max_boxes, threads, cut}, limits, {}};
+        self->set_strays(strays);
+      },
+      nb::kw_only(), "gap"_a, "limits"_a.none(), "seconds"_a, "max_boxes"_a, "threads"_a, "cut"_a, "strays"_a);
   options.def_rw("gap", &Options::gap)
       .def_rw("limits", &Options::limits, nb::arg().none())
       .def_rw("seconds", &Options::seconds)

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "certify/search.hpp"
+#include "certify/strays.hpp"
 
 namespace flexapod {
 
@@ -51,6 +52,17 @@ struct Certification {
     return rows;
   }
 };
+
+/// Throws where numbers are to stray that may not.
+inline void check_strays(const certify_task::Task& task) {
+  if (task.strays > certify_task::most_strays)
+    throw std::invalid_argument("at most " + std::to_string(certify_task::most_strays) + " numbers may stray");
+  if (task.strays > 0 && task.limits != nullptr) throw std::invalid_argument("limits are for designs without strays");
+  const auto& design = *reinterpret_cast<const Design<double>*>(task.design);
+  for (int k = 0; k < task.strays * design_size; ++k)
+    if (!(task.reach[k] == 0.0 || (std::isfinite(task.reach[k]) && may_stray(design, k % design_size))))
+      throw std::invalid_argument("number " + std::to_string(k % design_size) + " of the design may not stray");
+}
 
 /// Gives each box its share of the volume, in those of `sides` coordinates that any box has a width in.
 inline void share_out(std::vector<certify_task::Box>& boxes, int sides) {

@@ -9,10 +9,10 @@ namespace flexapod {
 
 /// sum f_k (a - a_0)^k over k <= order, with `remainder` for the rest of the series. The f_k may be wrong by `unit`, of
 /// themselves.
-template <class Lane, int n, int order, class Rules>
-Taylor<Lane, n, order, Rules> compose(const Taylor<Lane, n, order, Rules>& a, const Lane (&f)[order + 1],
-                                      const Lane& remainder) {
-  Taylor<Lane, n, order, Rules> change = a;
+template <class Lane, int n, int order, class Rules, int strays>
+Taylor<Lane, n, order, Rules, strays> compose(const Taylor<Lane, n, order, Rules, strays>& a,
+                                              const Lane (&f)[order + 1], const Lane& remainder) {
+  Taylor<Lane, n, order, Rules, strays> change = a;
   change.c[0] = Lane(0.0);
   const Lane reach = change.variation();
   Lane errors = abs(f[order]);
@@ -35,8 +35,8 @@ template <int order, class Lane> Lane geometric_rest(const Lane& reach) {
 }  // namespace detail
 
 /// a^(-1/2) = c^(-1/2) sum b_k x^k with x = (a - c)/c and |b_k| falling; no bound where x may reach -1.
-template <class Lane, int n, int order, class Rules>
-Taylor<Lane, n, order, Rules> rsqrt(const Taylor<Lane, n, order, Rules>& a) {
+template <class Lane, int n, int order, class Rules, int strays>
+Taylor<Lane, n, order, Rules, strays> rsqrt(const Taylor<Lane, n, order, Rules, strays>& a) {
   const Lane& c = a.c[0];
   const Lane root = rsqrt(c), inverse = 1.0 / c;
   Lane f[order + 1], next = root;
@@ -51,32 +51,32 @@ Taylor<Lane, n, order, Rules> rsqrt(const Taylor<Lane, n, order, Rules>& a) {
   return compose(a, f, Lane(std::abs(b)) * root * detail::geometric_rest<order>(reach));
 }
 
-template <class Lane, int n, int order, class Rules>
-Taylor<Lane, n, order, Rules> sqrt(const Taylor<Lane, n, order, Rules>& a) {
+template <class Lane, int n, int order, class Rules, int strays>
+Taylor<Lane, n, order, Rules, strays> sqrt(const Taylor<Lane, n, order, Rules, strays>& a) {
   return a * rsqrt(a);
 }
 
 /// 1/a.
-template <class Lane, int n, int order, class Rules>
-Taylor<Lane, n, order, Rules> reciprocal(const Taylor<Lane, n, order, Rules>& a) {
+template <class Lane, int n, int order, class Rules, int strays>
+Taylor<Lane, n, order, Rules, strays> reciprocal(const Taylor<Lane, n, order, Rules, strays>& a) {
   const Lane inverse = 1.0 / a.c[0];
   Lane f[order + 1], next = inverse;
   for (int k = 0; k <= order; ++k) f[k] = next, next = next * -inverse;
   const Lane reach = a.variation() * abs(inverse) * rounding::up;
   return compose(a, f, abs(inverse) * detail::geometric_rest<order>(reach));
 }
-template <class Lane, int n, int order, class Rules>
-Taylor<Lane, n, order, Rules> operator/(const Taylor<Lane, n, order, Rules>& a,
-                                        const Taylor<Lane, n, order, Rules>& b) {
+template <class Lane, int n, int order, class Rules, int strays>
+Taylor<Lane, n, order, Rules, strays> operator/(const Taylor<Lane, n, order, Rules, strays>& a,
+                                                const Taylor<Lane, n, order, Rules, strays>& b) {
   return a * reciprocal(b);
 }
 
-template <class Lane, int n, int order, class Rules>
-Taylor<Lane, n, order, Rules> operator/(double a, const Taylor<Lane, n, order, Rules>& b) {
+template <class Lane, int n, int order, class Rules, int strays>
+Taylor<Lane, n, order, Rules, strays> operator/(double a, const Taylor<Lane, n, order, Rules, strays>& b) {
   return a * reciprocal(b);
 }
-template <class Lane, int n, int order, class Rules>
-Taylor<Lane, n, order, Rules> operator/(Taylor<Lane, n, order, Rules> a, double b) {
+template <class Lane, int n, int order, class Rules, int strays>
+Taylor<Lane, n, order, Rules, strays> operator/(Taylor<Lane, n, order, Rules, strays> a, double b) {
   const Lane divisor(b);
   for (Lane& c : a.c) c = c / divisor;
   return a.rounded(a.r / abs(divisor));
@@ -113,10 +113,10 @@ template <class T> struct SinCosModel {
 
 /// The angle of a vector with the parts x and y, by the arc tangent of what is left when it is turned back by the angle at
 /// the centre. Where it may pass pi there is no bound.
-template <class Lane, int n, int order, class Rules>
-Taylor<Lane, n, order, Rules> signed_angle(const Taylor<Lane, n, order, Rules>& y,
-                                           const Taylor<Lane, n, order, Rules>& x) {
-  using T = Taylor<Lane, n, order, Rules>;
+template <class Lane, int n, int order, class Rules, int strays>
+Taylor<Lane, n, order, Rules, strays> signed_angle(const Taylor<Lane, n, order, Rules, strays>& y,
+                                                   const Taylor<Lane, n, order, Rules, strays>& x) {
+  using T = Taylor<Lane, n, order, Rules, strays>;
   const Lane at = each_lane<Lane>([](double b, double a) { return std::atan2(b, a); }, y.c[0], x.c[0]);
   const Lane sine = each_lane<Lane>([](double a) { return std::sin(a); }, at);
   const Lane cosine = each_lane<Lane>([](double a) { return std::cos(a); }, at);

@@ -5,6 +5,7 @@
 #include "certify/limit_models.hpp"
 #include "certify/matrix_models.hpp"
 #include "certify/stiffness_models.hpp"
+#include "certify/strays.hpp"
 
 namespace flexapod {
 
@@ -31,16 +32,23 @@ inline int sign_of_determinant(Mat6<double> m) {
   return sign;
 }
 
-/// n = 6: boxes of coordinates; n = 1: spans of a path.
-template <class Lane, int n, class Rules = Sound> class Looking {
+/// n = 6: boxes of coordinates; n = 1: spans of a path. strays: how many numbers of the design may stray.
+template <class Lane, int n, int strays = 0, class Rules = Sound> class Looking {
  public:
-  using T = Taylor<Lane, n, 3, Rules>;
-  using Low = Taylor<Lane, n, 2, Rules>;  // of limits
+  using T = Taylor<Lane, n, 3, Rules, strays>;
+  using Settled = Taylor<Lane, n, 3, Rules>;
+  using Low = Taylor<Lane, n, 2, Rules>;                     // of limits
+  using Place = std::conditional_t<strays == 0, double, T>;  // of a joint
+  using Places = std::conditional_t<strays == 0, const Design<double>&, const StrayingPlaces<T>>;
 
   explicit Looking(const Task& task)
       : task_(task),
         machine_(*reinterpret_cast<const Design<double>*>(task.design), task.joint),
-        platform_(platform_inertia(machine_.design, Mat3<double>::identity()).matrix()),
+        places_([this]() -> Places {
+          if constexpr (strays == 0) return machine_.design;
+          else return {machine_.design, task_};
+        }()),
+        platform_(platform_inertia(places_, Mat3<Place>::identity()).matrix()),
         size_(mean_radius(machine_.design)),
         law_(task.kind == Kind::index && machine_.features.law != Law::constant),
         others_(task.kind == Kind::index && machine_.features.others()),
@@ -56,13 +64,16 @@ template <class Lane, int n, class Rules = Sound> class Looking {
     for (int l = 0; l < count; ++l) found[l] = start(l);
     if (task_.limits == nullptr || !judge_limits(base, count, found)) judge_matrix(base, level, count, found);
     for (int l = 0; l < count; ++l)
-      if (n == 6 && width(*boxes_[l], found[l].axis) < 0x1p-30) found[l].axis = -1;
+      if (n == 6 && width(*boxes_[l], found[l].axis) < smallest) found[l].axis = -1;
   }
 
  private:
+  static constexpr double smallest = strays == 0 ? 0x1p-30 : 0x1p-12;  // what strays does not shrink with the box
+
   const Task task_;
   const Machine<double> machine_;
-  const Mat6<double> platform_;
+  const Places places_;
+  const Mat6<Place> platform_;
   const double size_;
   const bool law_, others_, within_law_;  // what of the springs counts; whether limits keep lengths in the law's range
   const Box* boxes_[Lane::lanes];
@@ -70,11 +81,13 @@ template <class Lane, int n, class Rules = Sound> class Looking {
   SpringMatrix<T> directions_;
   Mat6<T> M_, K_;       // inertia; stiffness of springs that do not lie along the legs
   Lane beyond_law_[6];  // 1 where a leg at the centre is
-  MatrixModel<T> A_;
+  MatrixModel<Settled> A_;
+  mask_t<Lane> hopeless_;
   HalvingTest<Lane, n, Rules> test_;
 
   Finding start(int l) const {
-    Finding f{Verdict::open, widest(*boxes_[l]), std::numeric_limits<double>::quiet_NaN(), 0, -1, -1, {}, false, {}};
+    Finding f{
+        Verdict::open, widest(*boxes_[l]), std::numeric_limits<double>::quiet_NaN(), 0, -1, -1, {}, false, false, {}};
     const Vec3<T>* rows[4] = {&pose_.t, &pose_.R.row[0], &pose_.R.row[1], &pose_.R.row[2]};
     for (int r = 0; r < 4; ++r) {
       f.pose[3 * r] = lane_of(rows[r]->x.c[0], l);
@@ -95,7 +108,9 @@ template <class Lane, int n, class Rules = Sound> class Looking {
   double width(const Box& box, int i) const { return (box.high[i] - box.low[i]) / (i < 3 ? size_ : 1.0); }
 
   /// True where limits leave nothing to be looked at.
-  bool judge_limits(const Pose<T>& base, int count, Finding* found) {
+  bool judge_limits(const Pose<T>& base, int count, Finding* found)
+    requires(strays == 0)
+  {
     const Pose<Low> low = cut(base);
     LimitModels<Low> limits(*task_.limits, machine_, low);
     bool all = true;
@@ -105,6 +120,7 @@ template <class Lane, int n, class Rules = Sound> class Looking {
     }
     return all || task_.kind == Kind::limits;
   }
+  bool judge_limits(const Pose<T>&, int, Finding*) { return false; }
 
   static Pose<Low> cut(const Pose<T>& pose) {
     const auto vector = [](const Vec3<T>& v) {
@@ -114,7 +130,7 @@ template <class Lane, int n, class Rules = Sound> class Looking {
   }
 
   void judge_matrix(const Pose<T>& base, double level, int count, Finding* found) {
-    set_matrices(Geometry<T, double>(machine_.design, base), base.R);
+    set_matrices(Geometry<T, Place>(places_, base), base.R);
     const CentreModes<Lane> modes = centre_modes();
     note_centres(modes, count, found);
     bool proved[Lane::lanes];
@@ -144,7 +160,7 @@ template <class Lane, int n, class Rules = Sound> class Looking {
 
   /// The springs' directions, and what stiffness is compared with: inertia, or lengths and angles where directions alone
   /// are asked for.
-  void set_matrices(const Geometry<T, double>& g, const Mat3<T>& base) {
+  void set_matrices(const Geometry<T, Place>& g, const Mat3<T>& base) {
     SpatialInertia<T> legs{}, others{};
     for (int i = 0; i < 6; ++i) {
       const LegAxes<T> leg(g.S[i], g.k[i], machine_.joint);
@@ -232,27 +248,50 @@ template <class Lane, int n, class Rules = Sound> class Looking {
     if (below && f.limit < 0) f.verdict = Verdict::broken;
     else if (proved) f.verdict = Verdict::proved;
     if (proved) return;
+    f.hopeless = lane_of(select(hopeless_, Lane(1.0), Lane(0.0)), l) > 0.0;
     f.axis = cut_along(l, f.axis);
     if (!boxes_[l]->probe) probe(l, f);
   }
 
   /// sign C K C^T + factor C M C^T positive definite in all of a box?
   void prove(const FrameRows<Lane>& C, double sign, const Lane& factor, int count, bool (&proved)[Lane::lanes]) {
-    for (T& a : A_.a) a = T(0.0);
-    add_springs(A_, C, directions_, sign, [this](int j) { return stiffness(j); });
-    add_matrix(A_, C, M_, factor);
-    if (others_) add_matrix(A_, C, K_, Lane(sign));
+    hopeless_ = Lane(0.0) > 0.0;
+    if constexpr (strays == 0) {
+      form(A_, C, sign, factor);
+    } else {
+      MatrixModel<T> A;
+      form(A, C, sign, factor);
+      settle_strays(A);
+    }
     test_(A_, count, proved);
+  }
+  void form(MatrixModel<T>& A, const FrameRows<Lane>& C, double sign, const Lane& factor) const {
+    for (T& a : A.a) a = T(0.0);
+    add_springs(A, C, directions_, sign, [this](int j) { return stiffness(j); });
+    add_matrix(A, C, M_, factor);
+    if (others_) add_matrix(A, C, K_, Lane(sign));
+  }
+  /// The matrix with what strays in its radii; whether these alone are too much at the centre.
+  void settle_strays(const MatrixModel<T>& A) {
+    Lane centre[symmetric_size];
+    for (int r = 0; r < 6; ++r)
+      for (int s = 0; s <= r; ++s) {
+        const T& a = A.a[entry(r, s)];
+        const Lane reach = a.norm(T::terms, T::count);
+        centre[entry(r, s)] = r == s ? a.c[0] - reach : -(abs(a.c[0]) + reach);
+        A_.a[entry(r, s)] = a.settled();
+      }
+    hopeless_ = !positive_definite(centre);
   }
 
   /// A corner where a diagonal entry of the matrix, without its radius, is negative: downhill by its linear terms.
   void probe(int l, Finding& f) const {
     constexpr const auto& m = monomials<n, 3>;
     for (int r = 0; r < 6 && !f.probe; ++r) {
-      const T& a = A_.a[entry(r, r)];
+      const Settled& a = A_.a[entry(r, r)];
       double u[n], value = 0.0;
       for (int i = 0; i < n; ++i) u[i] = lane_of(a.c[m.at(i)], l) > 0.0 ? -1.0 : 1.0;
-      for (int k = 0; k < T::count; ++k) {
+      for (int k = 0; k < T::terms; ++k) {
         double term = lane_of(a.c[k], l);
         for (int i = 0; i < n; ++i) term *= m.power[k][i] % 2 ? u[i] : 1.0;
         value += term;
@@ -266,8 +305,8 @@ template <class Lane, int n, class Rules = Sound> class Looking {
   int cut_along(int l, int otherwise) const {
     constexpr const auto& m = monomials<n, 3>;
     double bend[n] = {};
-    for (const T& a : A_.a)
-      for (int k = m.first[2]; k < T::count; ++k) {
+    for (const Settled& a : A_.a)
+      for (int k = m.first[2]; k < Settled::count; ++k) {
         const double size = std::abs(lane_of(a.c[k], l)) * (m.degree[k] == 2 ? 0.03 : 1.0);
         for (int i = 0; i < n; ++i) bend[i] += size * m.power[k][i];
       }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -111,6 +112,7 @@ class CertifySearch {
 
   static constexpr double smallest = 0x1p-40;  // share of a path's parameters below which a span is not cut
   static constexpr std::size_t most_stuck = 1000;
+  static constexpr double tried = 0x1p-12;  // share above which it is seen whether a box's centre can be proved
 
   const certify_task::Kernel& kernel_;
   const certify_task::Task task_;
@@ -182,7 +184,10 @@ class CertifySearch {
   void settle(void* memory, const Box& box, const Finding& found, std::vector<Box>& mine) {
     if (found.value == found.value && found.limit < 0) note(found);
     if (box.sign * found.sign < 0 && task_.limits == nullptr) return refute(box, singular(memory, box, found));
-    if (box.probe && found.verdict != Verdict::broken) return;
+    if (box.probe && found.verdict != Verdict::broken) {
+      if (task_.strays > 0 && found.verdict == Verdict::open) finish();  // what cannot be proved of a point
+      return;
+    }
     switch (found.verdict) {
       case Verdict::proved:
         proved_ += box.share;
@@ -191,8 +196,10 @@ class CertifySearch {
         outside_ += box.share;
         break;
       case Verdict::open:
+        if (found.hopeless) return give_up(box);
         cut(box, found, mine);
-        if (found.probe) mine.push_back(probe(box, found));  // next
+        if (found.probe) mine.push_back(probe(box, found.corner));  // next
+        else if (task_.strays > 0 && box.share > tried) mine.push_back(probe(box, centre_of(box).data()));
         break;
       case Verdict::broken:
         if (options_.gap == 0.0 || found.limit >= 0) refute(box, found);
@@ -200,9 +207,23 @@ class CertifySearch {
     }
   }
 
-  static Box probe(const Box& box, const Finding& found) {
+  /// Cutting does not help where a design's numbers stray too far.
+  void give_up(const Box& box) {
+    {
+      const std::lock_guard lock(mutex_);
+      stuck_.push_back(box);
+    }
+    finish();
+  }
+
+  static std::array<double, 6> centre_of(const Box& box) {
+    std::array<double, 6> centre;
+    for (int k = 0; k < 6; ++k) centre[k] = 0.5 * (box.low[k] + box.high[k]);
+    return centre;
+  }
+  static Box probe(const Box& box, const double* at) {
     Box point = box;
-    for (int k = 0; k < 6; ++k) point.low[k] = point.high[k] = found.corner[k];
+    for (int k = 0; k < 6; ++k) point.low[k] = point.high[k] = at[k];
     point.share = 0.0, point.probe = true;
     return point;
   }
@@ -248,7 +269,7 @@ class CertifySearch {
     if (found.sign != 0)
       for (Box* half : {&below, &above}) {
         half->sign = found.sign;
-        for (int k = 0; k < 6; ++k) half->seen[k] = 0.5 * (box.low[k] + box.high[k]);
+        std::ranges::copy(centre_of(box), half->seen);
       }
     mine.push_back(below);
     mine.push_back(above);
@@ -257,8 +278,8 @@ class CertifySearch {
   /// The pose without rigidity between a box's centre and the point where det H had the other sign.
   Finding singular(void* memory, const Box& box, const Finding& found) const {
     Box point = box;
-    double here[6], there[6];
-    for (int k = 0; k < 6; ++k) here[k] = 0.5 * (box.low[k] + box.high[k]), there[k] = box.seen[k];
+    std::array<double, 6> here = centre_of(box), there;
+    std::ranges::copy(box.seen, there.begin());
     Finding last = found;
     for (int step = 0; step < 60; ++step) {
       for (int k = 0; k < 6; ++k) point.low[k] = point.high[k] = 0.5 * (here[k] + there[k]);

@@ -8,6 +8,8 @@
 
 namespace certify_task {
 
+inline constexpr int most_strays = 40;
+
 enum class Kind {
   index,      // omega_1 is not below the level
   regular,    // no singular pose
@@ -31,6 +33,9 @@ struct Task {
   core_enums::Joint joint;
   Kind kind;
   const sweep_task::Limits* limits;  // null: none
+  // Numbers of the design that stray: what each of `strays` variables from -1 to 1 adds to them. Without limits only.
+  const double* reach;  // (strays, numbers of a design)
+  int strays;
   // A path: polynomials of a piece's parameter for position and rotation vector e, R = exp(e) middle; null for boxes.
   const double* pieces;  // (pieces, 6, powers), the lowest power first
   int powers;
@@ -51,6 +56,7 @@ struct Finding {
   int sign;         // of det H at the centre; 0 where it is nearly singular
   int limit, leg;   // a `BrokenLimit` that the centre breaks, of a leg or a pair; or -1
   double pose[12];  // the centre: position, matrix by rows
+  bool hopeless;    // what strays is too much at the centre already: no box about it can be proved
   bool probe;       // whether `corner` may break what is to be proved
   double corner[6];
 };

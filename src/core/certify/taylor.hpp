@@ -1,6 +1,7 @@
 // Taylor models: a function of u in [-1, 1]^n as a polynomial and a radius, for one box in each lane.
 //
-// A model stands for every function f with |f(u) - p(u)| <= r for all u. Each operation gives a model of its exact
+// A model stands for every function f with |f(u) - p(u)| <= r for all u. Numbers of the design that stray (docs/theory/
+// certificates.md) are further variables from -1 to 1, of which the polynomial has the linear terms only. Each operation gives a model of its exact
 // result: what the polynomial cannot hold and what rounding can have changed go into the radius. Rounding is bounded
 // beforehand (docs/theory/certificates.md): no operation here adds more than 16 numbers to a coefficient, so `unit` times
 // the sum of absolute coefficients is more than all roundings together, whatever the order of sums and with or without
@@ -37,13 +38,14 @@ inline constexpr double up = 1.0 + 0x1p-40;  // for bounds that are themselves r
 inline constexpr double least = 1e-290;      // more than all underflows
 }  // namespace rounding
 
-template <class Lane, int n, int order, class Rules = Sound> struct Taylor {
-  static constexpr int count = Monomials<n, order>::count;
+template <class Lane, int n, int order, class Rules = Sound, int strays = 0> struct Taylor {
+  static constexpr int terms = Monomials<n, order>::count;
+  static constexpr int count = terms + strays;
   static constexpr int variables = n, highest = order;
   using Number = Lane;
   using Rule = Rules;
 
-  Lane c[count];  // coefficients, in the order of Monomials
+  Lane c[count];  // coefficients, in the order of Monomials, and those of the strays
   Lane r;         // radius
 
   Taylor() = default;
@@ -98,28 +100,29 @@ template <class Lane, int n, int order, class Rules = Sound> struct Taylor {
   friend Taylor operator*(const Taylor& a, const Taylor& b) {
     Taylor product;
     const Norms na(a), nb(b);
-    multiply(product, a, b, std::make_index_sequence<count>{});
+    multiply(product, a, b, std::make_index_sequence<terms>{});
+    for (int k = terms; k < count; ++k) product.c[k] = a.c[0] * b.c[k] + a.c[k] * b.c[0];
     product.r = product_radius(a, na, b, nb);
     return product;
   }
 
-  /// Sums of absolute coefficients by degree.
+  /// Sums of absolute coefficients by degree, of those of the strays, and of all.
   struct Norms {
-    Lane of[order + 1], all;
+    Lane of[order + 1], straying, all;
 
     explicit Norms(const Taylor& a) {
-      all = Lane(0.0);
+      all = straying = a.norm(terms, count);
+      constexpr const auto& m = monomials<n, order>;
       for (int d = 0; d <= order; ++d) {
-        of[d] = a.norm(d);
+        of[d] = a.norm(m.first[d], m.first[d + 1]);
         all += of[d];
       }
     }
   };
 
-  Lane norm(int degree) const {
-    constexpr const auto& m = monomials<n, order>;
+  Lane norm(int first, int last) const {
     Lane sum(0.0);
-    for (int k = m.first[degree]; k < m.first[degree + 1]; ++k) sum += abs(c[k]);
+    for (int k = first; k < last; ++k) sum += abs(c[k]);
     return sum;
   }
   /// The largest absolute value of all that is not constant.
@@ -131,7 +134,8 @@ template <class Lane, int n, int order, class Rules = Sound> struct Taylor {
 
   /// Adds factor a b, for constants.
   void add_product(const Lane& factor, const Taylor& a, const Norms& na, const Taylor& b, const Norms& nb) {
-    multiply_add(*this, factor, a, b, std::make_index_sequence<count>{});
+    multiply_add(*this, factor, a, b, std::make_index_sequence<terms>{});
+    for (int k = terms; k < count; ++k) c[k] += factor * (a.c[0] * b.c[k] + a.c[k] * b.c[0]);
     Lane all(0.0);
     for (int k = 0; k < count; ++k) all += abs(c[k]);
     r = (r + abs(factor) * product_radius(a, na, b, nb) + rounding::unit * all) * rounding::up;
@@ -146,21 +150,33 @@ template <class Lane, int n, int order, class Rules = Sound> struct Taylor {
   }
 
   /// The same with a lower order.
-  template <int lower> Taylor<Lane, n, lower, Rules> cut() const {
-    Taylor<Lane, n, lower, Rules> low;
-    for (int k = 0; k < low.count; ++k) low.c[k] = c[k];
-    Lane rest(0.0);
-    for (int k = low.count; k < count; ++k) rest += abs(c[k]);
-    low.r = (r + rest) * rounding::up;
+  template <int lower> Taylor<Lane, n, lower, Rules, strays> cut() const {
+    Taylor<Lane, n, lower, Rules, strays> low;
+    for (int k = 0; k < low.terms; ++k) low.c[k] = c[k];
+    for (int k = 0; k < strays; ++k) low.c[low.terms + k] = c[terms + k];
+    low.r = (r + norm(low.terms, terms)) * rounding::up;
     return low;
+  }
+  /// The same with the strays in the radius.
+  Taylor<Lane, n, order, Rules> settled() const {
+    Taylor<Lane, n, order, Rules> model;
+    for (int k = 0; k < terms; ++k) model.c[k] = c[k];
+    model.r = (r + norm(terms, count)) * rounding::up;
+    return model;
   }
 
  private:
   static Lane product_radius(const Taylor& a, const Norms& na, const Taylor& b, const Norms& nb) {
     Lane cut(0.0);
-    if constexpr (Rules::product_remainder)
+    if constexpr (Rules::product_remainder) {
       for (int i = 1; i <= order; ++i)
         for (int j = order + 1 - i; j <= order; ++j) cut += na.of[i] * nb.of[j];
+      if constexpr (strays > 0) {
+        Lane vary_a(0.0), vary_b = nb.straying;
+        for (int d = 1; d <= order; ++d) vary_a += na.of[d], vary_b += nb.of[d];
+        cut += na.straying * vary_b + vary_a * nb.straying;
+      }
+    }
     const Lane errors = a.r * (nb.all + b.r) + na.all * b.r;
     return (errors + cut + rounding::unit * (na.all * nb.all)) * rounding::up + rounding::least;
   }
@@ -182,7 +198,7 @@ template <class Lane, int n, int order, class Rules = Sound> struct Taylor {
   }
 };
 
-template <class Lane, int n, int order, class Rules>
-struct is_scalar<Taylor<Lane, n, order, Rules>> : std::true_type {};
+template <class Lane, int n, int order, class Rules, int strays>
+struct is_scalar<Taylor<Lane, n, order, Rules, strays>> : std::true_type {};
 
 }  // namespace flexapod

@@ -25,14 +25,13 @@ template <class T, class P = T> struct Geometry {
       k[i] = base.R * d.k[i];
     }
   }
-  /// In the platform's axes, for a base given in them.
-  Geometry(const Design<P>& d, const Pose<T>& base)
-    requires(!std::is_same_v<T, P>)
-      : Geometry(d, base, std::make_integer_sequence<int, 6>()) {}
+  /// In the platform's axes, for a base given in them. d: a design, or what has its places.
+  template <class D>
+  Geometry(const D& d, const Pose<T>& base) : Geometry(d, base, std::make_integer_sequence<int, 6>()) {}
 
  private:
-  template <int... i>
-  Geometry(const Design<P>& d, const Pose<T>& base, std::integer_sequence<int, i...>)
+  template <class D, int... i>
+  Geometry(const D& d, const Pose<T>& base, std::integer_sequence<int, i...>)
       : q_p{d.p[i]...}, q_b{base.R * d.b[i]...}, S{(q_p[i] - q_b[i] - base.t)...}, k{base.R * d.k[i]...} {}
 };
 
@@ -51,8 +50,8 @@ template <class T> Mat6<T> force_transformation(const Geometry<T>& g) {
   return H;
 }
 
-/// J_plat of Eq. 34, in the axes of R.
-template <class T, class D> SpatialInertia<T> platform_inertia(const Design<D>& d, const Mat3<T>& R) {
+/// J_plat of Eq. 34, in the axes of R. d: a design, or what has its platform.
+template <class T, class D> SpatialInertia<T> platform_inertia(const D& d, const Mat3<T>& R) {
   const Vec3<T> R_p = R * d.R_0;
   const T M(d.M), zero(0.0);
   SpatialInertia<T> J;

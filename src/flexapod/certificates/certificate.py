@@ -9,6 +9,7 @@ import numpy as np
 
 from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.strays import Stray, strayed
 from flexapod.showing import in_notebooks
 from flexapod.workspace.box import Box
 from flexapod.workspace.proof import Boxes, Place
@@ -48,6 +49,11 @@ class Certificate:
         What is uncertain about the design, in words.
     nominal : str
         Digest of the design as it is, where something is uncertain; else that of `hexapod`.
+    strays : tuple of Stray
+        Places of the design that may lie anywhere in a range, each by a variable from -1 to 1; `hexapod` is in the
+        middle.
+    strayed : tuple of float
+        The values of these variables in the design that is the most adverse known at `pose`; none where all are 0.
     lower, upper : float
         Between which the extreme of the region lies: the least index, rad/s (`lower` is proved at all poses, `upper` is
         that of `pose`), or the greatest cond(H) (`upper` is proved, `lower` is that of `pose`). NaN where not known.
@@ -85,6 +91,8 @@ class Certificate:
     within_limits: bool
     assumed: tuple[str, ...]
     nominal: str
+    strays: tuple[Stray, ...]
+    strayed: tuple[float, ...]
     lower: float
     upper: float
     pose: Array | None
@@ -100,6 +108,11 @@ class Certificate:
     def proved(self) -> bool:
         """Whether the claim holds at every pose of the region."""
         return self.status == "proved"
+
+    @property
+    def adverse(self) -> Hexapod:
+        """The design, of all that the certificate is about, that has the most adverse value known, at `pose`."""
+        return strayed(self.hexapod, self.strays, self.strayed)
 
     @property
     def on_path(self) -> bool:

@@ -84,7 +84,16 @@ def check_certificate(
         return given
     level = _level(given)
     limits = given.within_limits or given.claim == "limits"
-    prover = Prover(given.hexapod, given.joint, given.claim, given.place, limits, cut=CUT, threads=setup.threads)
+    prover = Prover(
+        given.hexapod,
+        given.joint,
+        given.claim,
+        given.place,
+        limits,
+        strays=given.strays,
+        cut=CUT,
+        threads=setup.threads,
+    )
     found = run(prover, Standing("undecided", level, np.nan, given.place.parts), 0.0, setup.watch)
     return _made(given, level, found)
 
@@ -102,7 +111,9 @@ def _level(given: Certificate) -> float:
 
 def _made(given: Certificate, level: float, found: Standing) -> Certificate:
     """The certificate of the check; the pose is that of the one that is checked, unless another breaks it."""
-    asked = Question(given.hexapod, given.joint, given.place, given.within_limits, given.nominal, given.assumed)
+    asked = Question(
+        given.hexapod, given.joint, given.place, given.within_limits, given.nominal, given.assumed, given.strays
+    )
     bound = level if given.claim in ("index", "condition") else None
     made = proving.certificate(asked, given.claim, bound, given.gap, found)
     if found.status == "refuted":
@@ -111,7 +122,7 @@ def _made(given: Certificate, level: float, found: Standing) -> Certificate:
         made = replace(made, upper=given.upper)
     elif given.claim == "condition":
         made = replace(made, lower=given.lower)
-    return replace(made, pose=given.pose)
+    return replace(made, pose=given.pose, strayed=given.strayed)
 
 
 def _check_pose(given: Certificate) -> None:
@@ -124,7 +135,7 @@ def _check_pose(given: Certificate) -> None:
         raise ArgumentError(f"the pose of the certificate, {given.pose.tolist()}, is not in its region.")
     said, name = {"index": (given.upper, "omega_1"), "condition": (given.lower, "cond_H")}.get(given.claim, (None, ""))
     if said is not None:
-        value = float(evaluate(given.hexapod, given.pose[None], (name,), given.joint, 1)[name][0])
+        value = float(evaluate(given.adverse, given.pose[None], (name,), given.joint, 1)[name][0])
         scale = _omega_6(given) if name == "omega_1" else value
         if abs(value - said) > _ROUNDING * scale:
             raise ArgumentError(f"the pose of the certificate has {value:.9g}, and it says {said:.9g}.")
@@ -134,7 +145,7 @@ def _check_pose(given: Certificate) -> None:
 
 def _omega_6(given: Certificate) -> float:
     assert given.pose is not None
-    return float(evaluate(given.hexapod, given.pose[None], ("omega",), given.joint, 1)["omega"][0, -1])
+    return float(evaluate(given.adverse, given.pose[None], ("omega",), given.joint, 1)["omega"][0, -1])
 
 
 def _inside(place: Place, pose: np.ndarray) -> bool:
@@ -147,11 +158,11 @@ def _breaks(given: Certificate) -> bool:
     if given.claim == "limits":
         return not check_limits(given.hexapod, given.pose, joint=given.joint).ok
     if given.claim == "index" and given.broken:
-        return bool(np.isnan(evaluate(given.hexapod, given.pose[None], ("omega_1",), given.joint, 1)["omega_1"][0]))
+        return bool(np.isnan(evaluate(given.adverse, given.pose[None], ("omega_1",), given.joint, 1)["omega_1"][0]))
     if given.claim == "index" and given.wanted is not None:
         return given.upper < given.wanted
     if given.claim == "condition":
         return given.wanted is not None and given.lower > given.wanted
-    design = without_springs(given.hexapod) if given.claim == "regular" else given.hexapod
+    design = without_springs(given.adverse) if given.claim == "regular" else given.adverse
     omega = evaluate(design, given.pose[None], ("omega",), given.joint, 1)["omega"][0]
     return bool(omega[0] <= 1e-6 * omega[-1])

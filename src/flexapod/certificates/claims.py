@@ -8,7 +8,7 @@ from os import PathLike
 from flexapod.certificates.certificate import Certificate
 from flexapod.certificates.known import greatest_condition, least_index, legs_alone
 from flexapod.certificates.proving import Setup, prove
-from flexapod.certificates.question import Asked, checked_gap, checked_level, limited, question
+from flexapod.certificates.question import Asked, Uncertainty, checked_gap, checked_level, limited, question
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.progress import ProgressLike, with_progress
@@ -22,6 +22,7 @@ def certify_regular(
     region: Asked = None,
     *,
     within_limits: bool = False,
+    uncertain: Uncertainty = (),
     time_limit: float | None = None,
     threads: int | None = None,
     cluster: Cluster | None = None,
@@ -40,6 +41,8 @@ def certify_regular(
         Where, as for `certify`. Default: the home pose.
     within_limits : bool, optional
         Whether only poses within the design's limits count.
+    uncertain : Uncertain or sequence of them, optional
+        Places of joints that stray, as for `certify`; other numbers of a design do not matter here.
     time_limit, threads, cluster, path, resume, progress, stop : optional
         As for `certify`.
 
@@ -75,7 +78,7 @@ def certify_regular(
     >>> fx.certify_regular(machine, fx.Workspace.about_home(0.1, 0.1)).status
     'proved'
     """
-    asked = question(hexapod, region, "universal", (), within_limits)
+    asked = question(hexapod, region, "universal", uncertain, within_limits)
     setup = Setup.of(
         time_limit=time_limit,
         threads=threads,
@@ -168,6 +171,7 @@ def certify_condition_number(
     at_most: float | None = None,
     gap: float = 0.01,
     within_limits: bool = False,
+    uncertain: Uncertainty = (),
     time_limit: float | None = None,
     threads: int | None = None,
     cluster: Cluster | None = None,
@@ -191,6 +195,8 @@ def certify_condition_number(
         How far the bound may be from what a pose has, as a share of that.
     within_limits : bool, optional
         Whether only poses within the design's limits count.
+    uncertain : Uncertain or sequence of them, optional
+        Places of joints that stray, as for `certify`; other numbers of a design do not matter here.
     time_limit, threads, cluster, path, resume, progress, stop : optional
         As for `certify`.
 
@@ -226,7 +232,7 @@ def certify_condition_number(
     >>> found.status
     'proved'
     """
-    asked = question(hexapod, region, "universal", (), within_limits)
+    asked = question(hexapod, region, "universal", uncertain, within_limits)
     wanted, gap = checked_level(at_most, "at_most", ""), checked_gap(gap)
     setup = Setup.of(
         time_limit=time_limit,

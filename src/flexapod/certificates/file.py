@@ -16,13 +16,16 @@ from flexapod.certificates.certificate import CLAIMS, STATUSES, Certificate
 from flexapod.certificates.question import MOST_BOXES
 from flexapod.conventions import JOINT_MODELS, Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import DesignError, OutputError
+from flexapod.design.strays import data_of as strays_data
+from flexapod.design.strays import strays_of
+from flexapod.errors import ArgumentError, DesignError, OutputError
 from flexapod.output_files import output_path, write_file
 from flexapod.workspace.proof import Boxes, PathPieces, Place
 from flexapod.workspace.store.integrity import sealed
 
 FORMAT = "flexapod certificate"
 VERSION = 1
+_WITH_STRAYS = 2  # what reads version 1 only would check the design in the middle of the ranges
 _NUMBERS = ("wanted", "gap", "lower", "upper", "level", "share_left", "share_outside", "seconds")
 _PLAIN = ("claim", "status", "joint", "within_limits", "nominal", "broken", "boxes")
 
@@ -44,11 +47,16 @@ def data_of(certificate: Certificate) -> dict[str, Any]:
     design = certificate.hexapod
     return {
         "format": FORMAT,
-        "version": VERSION,
+        "version": _WITH_STRAYS if certificate.strays else VERSION,
         "source": f"flexapod {__version__}",
         **{name: getattr(certificate, name) for name in _PLAIN},
         **{name: _plain(getattr(certificate, name)) for name in _NUMBERS},
         "assumed": list(certificate.assumed),
+        **(
+            {"strays": strays_data(certificate.strays), "strayed": list(certificate.strayed)}
+            if certificate.strays
+            else {}
+        ),
         "pose": None if certificate.pose is None else certificate.pose.tolist(),
         "region": region_data(certificate.place),
         "left": _packed(certificate.left),
@@ -102,7 +110,7 @@ def read_certificate(path: str | PathLike[str]) -> Certificate:
     data = read_data(place, FORMAT)
     try:
         return certificate_of(data)
-    except (KeyError, TypeError, ValueError, DesignError) as error:
+    except (KeyError, TypeError, ValueError, ArgumentError, DesignError) as error:
         raise _none(place, f"it cannot be understood ({error})") from error
 
 
@@ -118,8 +126,10 @@ def read_data(place: Path, kind: str) -> dict[str, Any]:
         raise _none(place, "it is no JSON") from error
     if not isinstance(data, dict) or data.get("format") != kind:
         raise _none(place, f"its format is not {kind!r}")
-    if data.get("version") != VERSION:
-        raise OutputError(f"{place} is of version {data.get('version')!r}; this Flexapod reads version {VERSION}.")
+    if data.get("version") not in (VERSION, _WITH_STRAYS):
+        raise OutputError(
+            f"{place} is of version {data.get('version')!r}; this Flexapod reads versions up to {_WITH_STRAYS}."
+        )
     if sealed(data)["sum"] != data.get("sum"):
         raise OutputError(
             f"{place} was changed since it was written: its sum is not that of what is in it. Take another copy, or "
@@ -133,7 +143,7 @@ def certificate_of(data: Mapping[str, Any]) -> Certificate:
     hexapod = Hexapod.from_toml(data["design"]["toml"])
     if hexapod.digest != data["design"]["digest"]:
         raise ValueError("its design has another digest than it says")
-    place = _place(data["region"])
+    place, strays = _place(data["region"]), strays_of(data.get("strays", []))
     for name, known in (("claim", CLAIMS), ("status", STATUSES), ("joint", JOINT_MODELS)):
         if data[name] not in known:
             raise ValueError(f"{name} is {data[name]!r}")
@@ -144,11 +154,20 @@ def certificate_of(data: Mapping[str, Any]) -> Certificate:
         hexapod=hexapod,
         place=place,
         assumed=tuple(map(str, data["assumed"])),
+        strays=strays,
+        strayed=_strayed(data.get("strayed", []), len(strays)),
         pose=None if data["pose"] is None else np.array(data["pose"], dtype=np.float64).reshape(6),
         left=_unpacked(data["left"], place.parts.shape[1:]),
         **numbers,
         **{name: data[name] for name in _PLAIN},
     )
+
+
+def _strayed(values: list[float], count: int) -> tuple[float, ...]:
+    found = tuple(map(float, values))
+    if len(found) not in (0, count) or not all(-1 <= value <= 1 for value in found):
+        raise ValueError("the values of its strays are not from -1 to 1 each")
+    return found
 
 
 def _place(data: Mapping[str, Any]) -> Place:

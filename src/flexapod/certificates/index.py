@@ -51,8 +51,9 @@ def certify(
     within_limits : bool, optional
         Whether only poses within the design's limits count. Default: all do.
     uncertain : Uncertain, Payload or sequence of them, optional
-        Stiffnesses, masses, moments of inertia and payloads that stray: the bound holds for every design in their
-        ranges.
+        Stiffnesses, masses, moments of inertia, payloads, and places of joints and of the platform's mass centre that
+        stray: the bound holds for every design in their ranges. How close it comes is limited by how far places stray,
+        so that `gap` may not be reached.
     time_limit : float, optional
         How long to try, s; then the best bound that is proved is given.
     threads : int, optional
@@ -97,7 +98,8 @@ def certify(
     the platform: along the legs, in their joints, and a suspension. Its entries are enclosed by
     Taylor models of third order in the coordinates (Makino and Berz, 2003) with bounded rounding, and matrices at the
     corners of the box are tested [1]_; a box for which this does not decide is cut. What counts as exact are the
-    numbers of the design and of the region. A pose that leaves the range of the design's stiffness law has no index and
+    numbers of the design and of the region. Places that stray are further variables of the models, of the first order,
+    so that many of them cost little. A pose that leaves the range of the design's stiffness law has no index and
     refutes the claim, unless only poses within the limits count, of which that range is one.
 
     References

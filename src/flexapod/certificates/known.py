@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
 from flexapod.certificates.question import Question, known_poses, none_known
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.strays import strayed
+from flexapod.errors import ArgumentError, DesignError
 from flexapod.workspace.box import Box, Workspace
 from flexapod.workspace.descents import BoxSearch, SquaredFrequency
 from flexapod.workspace.limit_margins import margins_to_keep, none_within
@@ -20,18 +23,82 @@ from flexapod.workspace.worst import worst_pose
 _SAMPLES, _STARTS = 2**13, 12  # of a region; each of its boxes gets a part of them
 _FEWEST = 64
 _ALONG = 2000  # poses along a path
+_ROUNDS = 3  # of a pose that is adverse and strays that are at it
+Quantity: TypeAlias = Literal["omega_1", "cond_H"]
 
 
 class Known(NamedTuple):
-    """The most adverse value that a pose was found to have, and the pose, (6,), or (12,) on a path."""
+    """The most adverse value that a pose was found to have, and the pose, (6,), or (12,) on a path.
+
+    strayed: of the strays in the design that has it; none: all are 0.
+    """
 
     value: float
     pose: Array
     singular: bool = False
+    strayed: tuple[float, ...] = ()
 
 
 def least_index(question: Question, threads: int) -> Known:
     """The least index that is known of a region. Raises PoseError where no pose can be computed, or none counts."""
+    return _most_adverse(question, threads, "omega_1", _least_index)
+
+
+def _most_adverse(
+    question: Question, threads: int, quantity: Quantity, search: Callable[[Question, int], Known]
+) -> Known:
+    """What a search finds for the design as it is, and for one whose strays are as adverse as may be at that pose."""
+    found = search(question, threads)
+    if not question.strays or found.singular:
+        return found
+    for _ in range(_ROUNDS):
+        there = strayed_from(question, found, quantity)
+        if there.strayed == found.strayed:
+            break
+        other = search(of_strays(question, there.strayed), threads)._replace(strayed=there.strayed)
+        found = other if other.singular or not worse_of(quantity, there.value, other.value) else there
+        if found.singular:
+            break
+    return found
+
+
+def worse_of(quantity: Quantity, value: float, than: float) -> bool:
+    """Whether a value of a quantity is more adverse than another."""
+    return value < than if quantity == "omega_1" else value > than
+
+
+def of_strays(question: Question, values: tuple[float, ...]) -> Question:
+    """The question of the one design whose strays have these values. Raises ArgumentError where it is none."""
+    return replace(question, hexapod=_design(question, values), strays=())
+
+
+def _design(question: Question, values: tuple[float, ...]) -> Hexapod:
+    try:
+        return strayed(question.hexapod, question.strays, values)
+    except DesignError as error:
+        raise ArgumentError(f"what is uncertain leads to what is no hexapod: {error}") from error
+
+
+def strayed_from(question: Question, known: Known, quantity: Quantity) -> Known:
+    """The same pose with the strays at the ends to which their slopes there point, if that is more adverse."""
+    signs = np.empty(len(question.strays))
+    for k in range(len(signs)):
+        ends = []
+        for side in (-1.0, 1.0):
+            values = np.array(known.strayed or np.zeros(len(signs)))
+            values[k] = side
+            ends.append(_value(question, tuple(values), known.pose, quantity))
+        signs[k] = 1.0 if worse_of(quantity, ends[1], ends[0]) else -1.0
+    value = _value(question, tuple(signs), known.pose, quantity)
+    return known._replace(value=value, strayed=tuple(signs)) if worse_of(quantity, value, known.value) else known
+
+
+def _value(question: Question, values: tuple[float, ...], pose: Array, quantity: Quantity) -> float:
+    design = _design(question, values)
+    return float(evaluate(design, pose[None], (quantity,), question.joint, 1)[quantity][0])
+
+
+def _least_index(question: Question, threads: int) -> Known:
     free, rest = _free_boxes(question)
     found = [_least_of_box(question, box, len(free), threads) for box in free]
     if len(rest) or not free:
@@ -63,6 +130,10 @@ def without_springs(hexapod: Hexapod) -> Hexapod:
 
 def greatest_condition(question: Question, threads: int) -> Known:
     """The greatest cond(H) that is known of a region. Raises PoseError as `least_index`."""
+    return _most_adverse(question, threads, "cond_H", _greatest_condition)
+
+
+def _greatest_condition(question: Question, threads: int) -> Known:
     free, rest = _free_boxes(question)
     count = max(_FEWEST, _SAMPLES // max(1, len(free)))
     rows = [Workspace(box).rows(np.zeros(6), count) for box in free]

@@ -12,7 +12,7 @@ import numpy as np
 
 from flexapod.certificates import file
 from flexapod.certificates.certificate import Certificate, Claim
-from flexapod.certificates.known import Known, lowered, six_numbers_of
+from flexapod.certificates.known import Known, lowered, six_numbers_of, strayed_from
 from flexapod.certificates.question import Question
 from flexapod.checks import positive, thread_count
 from flexapod.conventions import LEG_PAIRS, LEGS
@@ -103,7 +103,7 @@ def _begun(asked: Question, wanted: float | None, known: Callable[[], Known] | N
         return Standing("undecided", level, np.nan, asked.place.parts)
     first = known()
     status = "refuted" if first.singular and wanted is None else "undecided"
-    return Standing(status, level, first.value, asked.place.parts, at=first.pose)
+    return Standing(status, level, first.value, asked.place.parts, at=first.pose, strayed=first.strayed)
 
 
 def _broken(claim: Claim, wanted: float | None, start: Standing) -> bool:
@@ -128,6 +128,7 @@ def _gone_on(earlier: Certificate, wanted: float | None, gap: float) -> Standing
         left=earlier.left if wanted is not None or close or np.isnan(value) else earlier.left[:0],
         floor=floor if floor > 0 else np.nan,
         at=pose,
+        strayed=earlier.strayed,
         decided=1.0 - earlier.share_left,
         outside=earlier.share_outside,
         boxes=earlier.boxes,
@@ -149,6 +150,7 @@ def _earlier(asked: Question, claim: Claim, wanted: float | None, gap: float, se
         "bound": found.wanted,
         "gap": found.gap,
         "within_limits": found.within_limits,
+        "uncertain places": found.strays,
     }
     other = [name for name, value in given.items() if there[name] != value]
     if other:
@@ -168,6 +170,7 @@ def _identity(asked: Question, claim: Claim, wanted: float | None, gap: float) -
         "bound": wanted,
         "gap": gap,
         "within_limits": asked.within_limits,
+        "uncertain places": asked.strays,
     }
 
 
@@ -190,8 +193,10 @@ class _Keeper:
         met = len(standing.at) == len(_UNKNOWN) and bool(np.isfinite(standing.at).all())  # by the prover
         if claim == "index" and standing.status != "undecided" and met and standing.broken < 0:
             better = lowered(asked, standing.at)
+            if asked.strays:
+                better = strayed_from(asked, better, "omega_1")
             if better.value < standing.value:
-                standing = replace(standing, value=better.value, at=better.pose)
+                standing = replace(standing, value=better.value, at=better.pose, strayed=better.strayed)
         found = certificate(*self._of, standing)
         if self._path is not None:
             file.write_certificate(found, self._path)
@@ -217,6 +222,8 @@ def certificate(asked: Question, claim: Claim, wanted: float | None, gap: float,
         within_limits=asked.within_limits,
         assumed=asked.assumed,
         nominal=asked.nominal,
+        strays=asked.strays,
+        strayed=standing.strayed,
         lower=lower,
         upper=upper,
         pose=six_numbers_of(standing.at, asked) if np.isfinite(standing.at).all() else None,

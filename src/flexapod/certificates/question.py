@@ -11,6 +11,7 @@ import numpy as np
 from flexapod.checks import number, positive
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.strays import MOST, Stray
 from flexapod.errors import ArgumentError, DesignError, PoseError, shown
 from flexapod.mechanics.inputs import as_hexapod, as_joint
 from flexapod.pose import Pose
@@ -36,6 +37,10 @@ class Straying(Protocol):
         """The design with it at the end of its range at which the index is least at every pose."""
         ...
 
+    def strays(self, hexapod: Hexapod) -> list[Stray]:
+        """What it adds to the design, where it has no such end and the proof is for all of its range."""
+        ...
+
 
 @runtime_checkable
 class PolynomialCurve(Curve, Protocol):
@@ -55,8 +60,8 @@ Uncertainty: TypeAlias = "Straying | Iterable[Straying]"
 class Question:
     """A design at its worst, and where; within_limits: whether only poses within its limits count.
 
-    nominal: the digest of the design as it was given. assumed: what is uncertain, in words. path: the curve, if it is
-    one.
+    nominal: the digest of the design as it was given. assumed: what is uncertain, in words. strays: what of the design
+    may lie anywhere in a range.
     """
 
     hexapod: Hexapod
@@ -65,11 +70,12 @@ class Question:
     within_limits: bool
     nominal: str
     assumed: tuple[str, ...]
+    strays: tuple[Stray, ...] = ()
 
     def prover(self, kind: str, threads: int, limits: bool | None = None) -> Prover:
         """The prover of a claim, a name of `_core.CertificateKind`."""
         limits = self.within_limits if limits is None else limits
-        return Prover(self.hexapod, self.joint, kind, self.place, limits, threads=threads)
+        return Prover(self.hexapod, self.joint, kind, self.place, limits, strays=self.strays, threads=threads)
 
 
 def question(
@@ -94,13 +100,31 @@ def question(
             f"{hexapod.name!r} limits the moment of its universal joints (limits.universal_moment); which poses keep "
             "that is proved in the exact joint model only. Take the joint model universal, or leave within_limits out."
         )
-    worst, assumed = hexapod, []
+    worst, assumed, strays = hexapod, [], []  # type: tuple[Hexapod, list[str], list[Stray]]
     for one in [uncertain] if isinstance(uncertain, Straying) else uncertain:
         if not isinstance(one, Straying):
             raise ArgumentError(f"uncertain holds {shown(one)}; give fx.Uncertain or fx.optimisation.Payload.")
-        worst = _at_worst(one, worst)
+        more = one.strays(worst)
+        if not more:
+            worst = _at_worst(one, worst)
+        strays += more
         assumed.append(one.words)
-    return Question(worst, joint, place, within_limits, hexapod.digest, tuple(assumed))
+    _check_strays(strays, within_limits)
+    return Question(worst, joint, place, within_limits, hexapod.digest, tuple(assumed), tuple(strays))
+
+
+def _check_strays(strays: list[Stray], within_limits: bool) -> None:
+    """Raises ArgumentError where so many numbers, or the limits of such a design, are more than can be proved."""
+    numbers = [number for one in strays for number in one.numbers]
+    if len(set(numbers)) < len(numbers):
+        raise ArgumentError("uncertain names a number of the design twice. Give each of them once.")
+    if len(strays) > MOST:
+        raise ArgumentError(f"{len(strays)} places are uncertain independently; at most {MOST} are proved together.")
+    if strays and within_limits:
+        raise ArgumentError(
+            f"{strays[0].words} is uncertain, and so is which poses are within the limits. Leave within_limits out, or "
+            "certify several designs."
+        )
 
 
 def limited(hexapod: Hexapod) -> bool:

@@ -15,42 +15,14 @@ from flexapod.design.form_numbers import with_numbers
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import entries
 from flexapod.design.payload import with_payload
+from flexapod.design.strays import KEYS, Stray
 from flexapod.errors import ArgumentError
+from flexapod.optimisation.worst_ends import side_of
 from flexapod.showing import in_notebooks
 
 Distribution = Literal["uniform", "normal", "triangular", "lognormal"]
 #: How many spreads below its value a number may come; a normal distribution is cut off at four.
 _REACH = {"uniform": 1.0, "triangular": 1.0, "normal": 4.0, "lognormal": 0.0}
-#: Numbers that raise the index with themselves, those that lower it, and those that are not in it.
-_RAISING = (
-    "legs.stiffness",
-    "legs.series_stiffness",
-    "legs.joint_stiffness.universal",
-    "legs.joint_stiffness.spherical",
-    "legs.joint_stiffness.torsion",
-    "legs.stiffness_law.fixed",
-    "legs.stiffness_law.axial_rigidity",
-    "legs.stiffness_law.bulk_modulus",
-    "legs.stiffness_law.area_1",
-    "legs.stiffness_law.area_2",
-)
-_LOWERING = (
-    "platform.mass",
-    "legs.lower.mass",
-    "legs.upper.mass",
-    "legs.stiffness_law.dead_1",
-    "legs.stiffness_law.dead_2",
-)
-#: The same of symmetric matrices, by numbers on their diagonals.
-_RAISING_MATRICES = ("suspension.stiffness",)
-_LOWERING_MATRICES = ("platform.inertia", "legs.lower.inertia", "legs.upper.inertia")
-_WITHOUT_EFFECT = (
-    "gravity",
-    "legs.damping.prismatic",
-    "legs.damping.universal",
-    "legs.damping.spherical",
-    "suspension.damping",
-)
 
 
 @in_notebooks
@@ -146,6 +118,36 @@ class Uncertain:
         cut = ", cut off at four of these" if self.distribution in ("normal", "lognormal") else ""
         return f"{self.target} +-{spread} ({self.distribution}{cut})"
 
+    def strays(self, hexapod: Hexapod) -> list[Stray]:
+        """Make the ranges of numbers that have no worst end, of which a certificate is for all.
+
+        Parameters
+        ----------
+        hexapod : Hexapod
+            The design.
+
+        Returns
+        -------
+        list of Stray
+            One for each number that varies independently; none where the target is no place of joints or of the
+            platform's mass centre.
+
+        Raises
+        ------
+        ArgumentError
+            If the range is one that a design cannot have.
+        """
+        found = []
+        for parameter in self.parameters(hexapod):
+            if any(layout.owner(number) not in KEYS for number in parameter.index):
+                return []
+            away = np.array([quantile(self.distribution, np.array(u), self.spread) for u in (0.0, 1.0)])
+            own = np.abs(layout.own(hexapod, parameter.index, self.target))
+            factor = np.abs(away - 1.0).max() * own if self.distribution == "lognormal" else None
+            reach = np.abs(away).max() * parameter.width if factor is None else factor
+            found.append(Stray(parameter.words, tuple(parameter.index.tolist()), tuple(reach.tolist())))
+        return found
+
     def at_worst(self, hexapod: Hexapod) -> Hexapod:
         """Make the design with these numbers at the ends of their ranges at which the index is least.
 
@@ -175,14 +177,14 @@ class Uncertain:
         found = layout.with_short_forms(hexapod)
         changed = np.zeros(layout.FULL, dtype=bool)
         for parameter in self.parameters(hexapod):
-            sides = np.array([_side(number) for number in parameter.index])
+            sides = np.array([side_of(number) for number in parameter.index])
             if not sides.all():
                 name = layout.describe(int(parameter.index[int(np.argmin(np.abs(sides)))]))
                 raise ArgumentError(
                     f"{name} is uncertain, and the index neither rises nor falls with it at every pose, so that no end "
                     "of its range is the worst. Stiffnesses of legs and joints, masses, moments of inertia and the "
-                    "numbers of a stiffness law that do not move its range have one; for others certify several "
-                    "designs."
+                    "numbers of a stiffness law that do not move its range have one; places of joints and of the "
+                    "platform's mass centre are proved over their ranges; for others certify several designs."
                 )
             ends = np.array([quantile(self.distribution, np.array(u), self.spread) for u in (0.0, 1.0)])
             away = np.where(sides > 0, ends[0], ends[1])
@@ -243,6 +245,10 @@ class Payload:
                 raise ArgumentError(f"the payload's {axis} is {given!r} m; it must be a number, or (least, most).")
             found.append(_of_payload(axis, np.array(pair), "m"))
         return found
+
+    def strays(self, hexapod: Hexapod) -> list[Stray]:
+        """None: see `at_worst`."""
+        return []
 
     @property
     def words(self) -> str:
@@ -345,20 +351,6 @@ class UncertainParameter:
 def _of_payload(name: str, pair: Array, unit_name: str) -> UncertainParameter:
     name = f"payload.{name}"
     return UncertainParameter(name, "uniform", None, pair, 0.0, name, unit_name=unit_name)
-
-
-def _side(number: int) -> int:
-    """1 for a number that the index rises with at every pose, -1 for one that it falls with, 0 for others.
-
-    One that is not in the index counts as 1: either end is as bad.
-    """
-    key = layout.owner(number)
-    if key in _RAISING or key in _WITHOUT_EFFECT:
-        return 1
-    if key in _RAISING_MATRICES + _LOWERING_MATRICES:
-        on_diagonal = len(set(layout.indices(number)[-2:])) == 1
-        return 0 if not on_diagonal else 1 if key in _RAISING_MATRICES else -1
-    return -1 if key in _LOWERING else 0
 
 
 def quantile(distribution: str, u: Array, spread: float) -> Array:

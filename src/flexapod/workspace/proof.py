@@ -15,6 +15,7 @@ import numpy as np
 from flexapod import _core
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.strays import Stray, rows_of
 from flexapod.mechanics.inputs import as_joint
 from flexapod.pose import Pose
 from flexapod.workspace.quantities import kernel_limits
@@ -25,6 +26,7 @@ RUNGS = (
     0.2,
     0.05,
 )  # gaps that are proved first where the time is limited: each takes several times the one before
+FINE = 0.7  # the ratio of such gaps where a design's numbers stray
 CUT = 0.5  # where boxes are cut
 
 
@@ -111,7 +113,7 @@ class Prover:
     """What is to be proved of a design, and where. kind: a name of `_core.CertificateKind`.
 
     limits: whether the design's limits are what is proved, or what poses must be within to count. only_law: of these,
-    the range of a stiffness law alone.
+    the range of a stiffness law alone. strays: what of the design may lie anywhere in a range.
     """
 
     hexapod: Hexapod
@@ -120,6 +122,7 @@ class Prover:
     place: Place
     limits: bool = False
     only_law: bool = False
+    strays: tuple[Stray, ...] = ()
     cut: float = CUT
     threads: int = 1
 
@@ -134,6 +137,7 @@ class Prover:
             max_boxes=np.inf,
             threads=self.threads,
             cut=self.cut,
+            strays=rows_of(self.strays),
         )
         found = self.place.prove(
             self.hexapod.packed,
@@ -199,7 +203,8 @@ class Standing:
 
     level: what is proved everywhere but in the parts `left`. floor: what is proved everywhere; NaN for nothing. value,
     at: the most adverse value that a pose was found to have, and the pose (12,), position and matrix; NaN where none is
-    known. decided, outside: shares of the whole.
+    known. strayed: of the strays, from -1 to 1, in the design that has that value; none: all are 0. decided, outside:
+    shares of the whole.
     """
 
     status: str
@@ -208,6 +213,7 @@ class Standing:
     left: Array
     floor: float = np.nan
     at: Array = field(default_factory=lambda: np.full(12, np.nan))
+    strayed: tuple[float, ...] = ()
     broken: int = -1
     leg: int = -1
     decided: float = 0.0
@@ -264,9 +270,9 @@ def _after_turn(prover: Prover, standing: Standing, gap: float, watch: Watch) ->
     level = standing.value if gap > 0 else standing.level
     take = watch.take or (lambda prover, *given: prover.turn(*given))
     turn = take(prover, standing.left, level, gap, max(seconds, 1e-3), told)
-    value, at = standing.value, standing.at
+    value, at, strayed = standing.value, standing.at, standing.strayed
     if worse(prover.kind, turn.value, value) or turn.status == "refuted":
-        value, at = turn.value, turn.at
+        value, at, strayed = turn.value, turn.at, ()
     told(min(1.0, turn.proved + turn.outside))
     return replace(
         standing,
@@ -274,6 +280,7 @@ def _after_turn(prover: Prover, standing: Standing, gap: float, watch: Watch) ->
         level=turn.level if gap > 0 and np.isfinite(turn.level) else standing.level,
         value=value,
         at=at,
+        strayed=strayed,
         broken=turn.broken,
         leg=turn.leg,
         left=turn.left,
@@ -294,10 +301,12 @@ def worse(kind: str, value: float, than: float) -> bool:
 def closest(prover: Prover, standing: Standing, gap: float, watch: Watch) -> Standing:
     """The closest bound of all parts that the time allows: its `floor`.
 
-    Where the time is limited, wide gaps are proved first, each over all parts.
+    Where the time is limited, or what strays may leave no narrow gap, wide ones are proved first, each over all parts.
     """
-    rungs = [rung for rung in RUNGS if rung > 2 * gap and not _reached(prover.kind, standing, rung)]
-    for rung in (*(rungs if np.isfinite(watch.until) else ()), gap):
+    rungs = RUNGS if not prover.strays else tuple(FINE ** np.arange(1, 40))
+    rungs = tuple(rung for rung in rungs if rung > (2 if not prover.strays else 1) * gap)
+    rungs = tuple(rung for rung in rungs if not _reached(prover.kind, standing, rung))
+    for rung in (*(rungs if np.isfinite(watch.until) or prover.strays else ()), gap):
         anew = replace(standing, status="undecided", left=prover.place.parts, decided=0.0, outside=0.0)
         standing = run(prover, anew, rung, watch)
         if standing.status != "proved":

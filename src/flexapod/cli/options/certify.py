@@ -73,8 +73,8 @@ region_options = common.stack(
         "--uncertain",
         multiple=True,
         metavar="KEY=SPREAD[%][,DISTRIBUTION]",
-        help="A stiffness, mass or moment of inertia that strays, as for `flexapod robust`: the bound holds for all of "
-        "its values. Repeatable.",
+        help="A stiffness, mass, moment of inertia or place of a joint that strays, as for `flexapod robust`: the "
+        "bound holds for all of its values. Repeatable.",
     ),
     click.option("--payload", metavar="LEAST:LARGEST", help="Mass (kg) of a load on the platform beyond the design's."),
     click.option(

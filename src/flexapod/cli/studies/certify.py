@@ -72,8 +72,12 @@ def _check_claim(options: Options) -> None:
         raise click.UsageError("--at-least is what to prove, --gap how close the closest bound. Give one of them.")
     if options.largest and options.at_least is None:
         raise click.UsageError("--largest needs the bound that the box is to keep. Give --at-least.")
-    if any(claims[1:]) and (options.uncertain or options.payload):
-        raise click.UsageError("--uncertain and --payload are for the index: other claims depend on geometry alone.")
+    if any(claims[1:]) and options.payload:
+        raise click.UsageError("--payload is for the index: other claims depend on geometry alone.")
+    if options.limits and options.uncertain:
+        raise click.UsageError(
+            "--uncertain is for the index, --regular and --condition; limits are those of one design."
+        )
     if options.limits and options.within_limits:
         raise click.UsageError("--limits with --within-limits is true of every machine. Leave one of them out.")
     if options.largest and (options.scheduler or options.path_file or options.pose):
@@ -108,12 +112,12 @@ def _certified(hexapod: Hexapod, options: Options, path: Path | None, watch: dic
         given = {**watch, "path": path, "resume": options.resume, "cluster": workers}
         if options.limits:
             return certify_limits(hexapod, region, **given)
-        given["within_limits"] = options.within_limits
+        given |= {"within_limits": options.within_limits, "uncertain": _uncertain(options)}
         if options.regular:
             return certify_regular(hexapod, region, **given)
         if options.condition is not None:
             return certify_condition_number(hexapod, region, at_most=options.condition, **given)
-        given |= {"joint": options.joint, "uncertain": _uncertain(options), "gap": options.gap or 0.01}
+        given |= {"joint": options.joint, "gap": options.gap or 0.01}
         return certify(hexapod, region, at_least=options.at_least, **given)
 
 
