@@ -9,7 +9,7 @@ SECONDS ?= 300
 CORE := CMakeLists.txt $(wildcard src/core/*/*)
 CPP  := $(wildcard src/core/*/*.?pp tests/core/*.?pp)
 
-.PHONY: report paper test coverage build lint types bench bench-readme docs validation core-test sanitize portable fuzz attack dist \
+.PHONY: report paper test coverage build lint types bench bench-readme docs validation core-test sanitize portable contradictions fuzz attack dist \
         clean web web-types web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
@@ -97,6 +97,9 @@ core-test: $(VENV)/.tools ## tests of the core in C++, where doctest is installe
 
 portable: build ## the core by other compilers and for Arm, as far as this machine has them, gives the same numbers
 	$(BIN)/python tests/core/compare.py
+
+contradictions: build ## proved bounds of SEEDS random machines and boxes against 40000 samples and corners each
+	FLEXAPOD_CERTIFY_SEEDS=$(SEEDS) $(BIN)/python -m pytest tests/core/test_certify.py -k contradiction
 
 fuzz: $(VENV)/.fuzz ## the design reader, for SECONDS; what it finds is kept in build/fuzz
 	mkdir -p build/fuzz

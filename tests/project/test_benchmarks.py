@@ -23,6 +23,8 @@ TASKS = [
     "Simulation, fastest mode to 1 %",
     "Worst case of a design",
     "Proved bound over a box",
+    "Proved bound over a large box",
+    "Proved bound over the smallest box",
 ]
 
 
@@ -45,7 +47,9 @@ def test_quick_run_of_all_tools_installed(tmp_path):
     assert done.returncode == 0, done.stderr
     found = json.loads((tmp_path / "results.json").read_text())
     assert list(dict.fromkeys(r["task"] for r in found["records"])) == TASKS
-    assert found["absent"] == sorted(p for p in ("exudyn", "jax", "mujoco-core", "scikit-sundae") if missing(p))
+    assert found["absent"] == sorted(
+        p for p in ("exudyn", "jax", "mujoco-core", "python-flint", "scikit-sundae") if missing(p)
+    )
     tools = {r["tool"] for r in found["records"]}
     assert {"Flexapod", "NumPy + LAPACK", "SciPy", "Pinocchio"} <= tools
     for record in found["records"]:

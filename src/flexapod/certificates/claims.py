@@ -8,7 +8,16 @@ from os import PathLike
 from flexapod.certificates.certificate import Certificate
 from flexapod.certificates.known import greatest_condition, least_index, legs_alone
 from flexapod.certificates.proving import Setup, prove
-from flexapod.certificates.question import Asked, Uncertainty, checked_gap, checked_level, limited, question
+from flexapod.certificates.question import (
+    Asked,
+    Uncertainty,
+    checked_gap,
+    checked_level,
+    limited,
+    question,
+    refuse_moments,
+)
+from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.progress import ProgressLike, with_progress
@@ -96,6 +105,7 @@ def certify_limits(
     hexapod: Hexapod,
     region: Asked = None,
     *,
+    joint: JointModel = "universal",
     time_limit: float | None = None,
     threads: int | None = None,
     cluster: Cluster | None = None,
@@ -112,6 +122,8 @@ def certify_limits(
         The machine, with limits.
     region : Box, Workspace, Trajectory, Pose, array_like or sequence of Box, optional
         Where, as for `certify`. Default: the home pose.
+    joint : {"universal", "spin_free"}, optional
+        Joint model, which only moments in universal joints depend on; these are proved in the exact one.
     time_limit, threads, cluster, path, resume, progress, stop : optional
         As for `certify`.
 
@@ -125,7 +137,7 @@ def certify_limits(
     DesignError
         If `hexapod` is not a Hexapod.
     ArgumentError
-        If the design has no limits, or a number is invalid.
+        If the design has no limits, one that is not proved in this joint model, or a number is invalid.
     PoseError
         If the region is none.
     OutputError
@@ -147,10 +159,11 @@ def certify_limits(
     >>> fx.certify_limits(machine, fx.Workspace.about_home(0.05, 0.05)).status
     'proved'
     """
-    asked = question(hexapod, region, "universal")
+    asked = question(hexapod, region, joint)
     if not limited(hexapod):
         raise ArgumentError(f"{hexapod.name!r} has no limits, so that there is nothing to prove. Add [limits] to it.")
     refuse_force_limits(hexapod)
+    refuse_moments(hexapod, joint)
     setup = Setup.of(
         time_limit=time_limit,
         threads=threads,

@@ -95,11 +95,7 @@ def question(
         )
     if within_limits:
         refuse_force_limits(hexapod)
-    if within_limits and joint == "spin_free" and hexapod.limits.universal_moment is not None:
-        raise ArgumentError(
-            f"{hexapod.name!r} limits the moment of its universal joints (limits.universal_moment); which poses keep "
-            "that is proved in the exact joint model only. Take the joint model universal, or leave within_limits out."
-        )
+        refuse_moments(hexapod, joint)
     worst, assumed, strays = hexapod, [], []  # type: tuple[Hexapod, list[str], list[Stray]]
     for one in [uncertain] if isinstance(uncertain, Straying) else uncertain:
         if not isinstance(one, Straying):
@@ -124,6 +120,15 @@ def _check_strays(strays: list[Stray], within_limits: bool) -> None:
         raise ArgumentError(
             f"{strays[0].words} is uncertain, and so is which poses are within the limits. Leave within_limits out, or "
             "certify several designs."
+        )
+
+
+def refuse_moments(hexapod: Hexapod, joint: JointModel) -> None:
+    """Raises ArgumentError where a limit is one that is proved in the exact joint model only."""
+    if joint == "spin_free" and hexapod.limits.universal_moment is not None:
+        raise ArgumentError(
+            f"{hexapod.name!r} limits the moment of its universal joints (limits.universal_moment); which poses keep "
+            "that is proved in the exact joint model only. Take the joint model universal, or leave the limits out."
         )
 
 

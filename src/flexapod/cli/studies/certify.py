@@ -111,7 +111,7 @@ def _certified(hexapod: Hexapod, options: Options, path: Path | None, watch: dic
     with cluster(options.scheduler, options.timeout) if options.scheduler else nullcontext() as workers:
         given = {**watch, "path": path, "resume": options.resume, "cluster": workers}
         if options.limits:
-            return certify_limits(hexapod, region, **given)
+            return certify_limits(hexapod, region, joint=options.joint, **given)
         given |= {"within_limits": options.within_limits, "uncertain": _uncertain(options)}
         if options.regular:
             return certify_regular(hexapod, region, **given)
