@@ -89,7 +89,7 @@ def test_places_that_stray_are_proved_and_checked(result, run, there):
     found = result("certify", "motion-base", *SMALL, "--uncertain", "base.joints_mm=1", "--out", "proof")
     assert found["status"] == "proved"
     assert 0.98 * plain["upper_rad_s"] < found["upper_rad_s"] < plain["upper_rad_s"]
-    assert found["uncertain"] == ["base.joints_mm +-1 in its unit (uniform)"]
+    assert found["uncertain"] == ["base.joints_mm +-1 mm (uniform)"]
     assert found["digest"] == plain["digest"]
     kept = there / "proof" / "motion-base-certificate.json"
     assert run("certify", "--check", kept)[0] == 0

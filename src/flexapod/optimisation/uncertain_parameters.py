@@ -114,7 +114,11 @@ class Uncertain:
     @property
     def words(self) -> str:
         """What is assumed, for readers: "legs.stiffness +-10 % (uniform)"."""
-        spread = f"{100 * self.spread:.6g} %" if self.relative else f"{self.spread:.6g} in its unit"
+        spread = (
+            f"{100 * self.spread:.6g} %"
+            if self.relative
+            else f"{self.spread:.6g} {layout.unit_name(self.target)}".strip()
+        )
         cut = ", cut off at four of these" if self.distribution in ("normal", "lognormal") else ""
         return f"{self.target} +-{spread} ({self.distribution}{cut})"
 

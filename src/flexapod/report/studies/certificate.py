@@ -91,7 +91,7 @@ def _bounds(found: Certificate) -> list[Row]:
 def _sections(found: Certificate, name: str, checked: bool) -> list[Section]:
     model = _model(found)
     assumed = f"It holds for every design in the ranges of {'; '.join(found.assumed)}." if found.assumed else ""
-    words = [found.words, model, *filter(None, [assumed, _straying(found)])]
+    words = [model, *filter(None, [" ".join(filter(None, [assumed, _straying(found)]))])]
     left = (
         [Table(_box_columns(found.left), _more(found.left), on="page")] if len(found.left) and not found.on_path else []
     )
@@ -104,7 +104,7 @@ def _sections(found: Certificate, name: str, checked: bool) -> list[Section]:
         Section("What is claimed", [_facts(found)], words),
         Section("The region", [_region(found)]),
         *([Section("What is not decided", left)] if left else []),
-        Section("What it does not cover", [], [f"{text}" for text in _LEAVES_OUT]),
+        Section("What it does not cover", [], [" ".join(_LEAVES_OUT)]),
     ]
     return sections if checked else [*sections, Section("Check it again", [], [again])]
 
