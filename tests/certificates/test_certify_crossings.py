@@ -24,11 +24,11 @@ def wide(design, share, degrees):
 
 def test_a_cluster_proves_what_one_computer_does():
     pytest.importorskip("distributed")
-    places = fx.Uncertain("base.joints", 0.001, relative=False)
+    places = fx.Uncertain("base.joints[0]", 0.001, relative=False)
     with fx.workspace.cluster("local") as workers:
         for given in ({}, {"uncertain": places}):
-            found = fx.certify(BOTH, wide(BOTH, 0.05, 4), cluster=workers, gap=0.02, **given)
-            alone = fx.certify(BOTH, wide(BOTH, 0.05, 4), gap=0.02, **given)
+            found = fx.certify(BOTH, SMALL, cluster=workers, gap=0.05, **given)
+            alone = fx.certify(BOTH, SMALL, gap=0.05, **given)
             assert found.proved
             assert found.lower == pytest.approx(alone.lower, rel=1e-9)
 
