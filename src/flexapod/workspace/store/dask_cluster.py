@@ -78,7 +78,8 @@ class Cluster:
         shares = [parts[first::each] for first in range(min(each, len(parts)))]
         long = _SHARED_TURN if seconds >= TURN else seconds
         try:
-            job = self.client.scatter(prover, broadcast=True)
+            # Under a name of its own: one by its content may be what an earlier turn is still letting go.
+            job = self.client.scatter(prover, broadcast=True, hash=False)
             given = [self.client.submit(_turn, job, share, level, gap, long, pure=False, retries=2) for share in shares]
             found = [_result(future) for future in given]
         except (CancelledError, CommClosedError) as error:
