@@ -79,6 +79,7 @@ def test_every_dimension_has_its_article(dimension):
         "acceleration": "gravity",
         "angle": "limits.universal_angle",
         "velocity": "limits.leg_rate",
+        "angular velocity": "drive.motor.max_speed",
         "power": "limits.leg_power",
     }[dimension]
     wrong = "mm" if dimension != "length" else "kg"
