@@ -192,7 +192,7 @@ def test_fits_a_phone(tab: str, opened: Any) -> None:
 
 @pytest.mark.parametrize("slider", ["z slider", "Leg stiffness slider"])
 def test_on_a_phone_the_machine_is_in_sight_of_its_sliders(slider: str, opened: Any) -> None:
-    page = opened("design=motion-base&tab=modes")
+    page = opened("design=mukherjee-ii&tab=modes")
     page.set_viewport_size({"width": 390, "height": 844})
     page.wait_for_timeout(300)
     page.get_by_label(slider, exact=True).evaluate("e => e.scrollIntoView({ block: 'end' })")
