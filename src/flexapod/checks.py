@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Collection
+from pathlib import Path
+from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -117,3 +120,13 @@ def thread_count(threads: int | None) -> int:
             f"threads is {threads!r}; it must be a whole number, at least 1. Leave it out for all cores."
         )
     return threads
+
+
+def level_outside() -> int:
+    """Stack level of the first caller outside this package, for warnings."""
+    package = Path(__file__).parent
+    level = 1
+    frame: FrameType | None = sys._getframe()
+    while frame is not None and Path(frame.f_code.co_filename).is_relative_to(package):
+        level, frame = level + 1, frame.f_back
+    return level - 1

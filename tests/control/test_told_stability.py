@@ -109,7 +109,7 @@ def test_the_machine_decides_where_its_loop_is_slower():
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (("motion-base", "velocity", "--pose", 0, 0, 1e-12, 0, 0, 0), "move away from a singular pose"),
+        ((file("motion-base"), "velocity", "--pose", 0, 0, 1e-12, 0, 0, 0), "move away from a singular pose"),
         ((file("precision-positioner"), "lqg", "--measure", "leg_length", "--noise", 1e-6), "raise noise or effort"),
     ],
 )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.optimize import linear_sum_assignment
-from tests.helpers.plain import plain_machine
+from tests.helpers.plain import file, plain_machine
 from tests.helpers.support import MACHINES, away
 
 import flexapod as fx
@@ -135,7 +135,7 @@ def test_a_singular_pose_is_one_thing_everywhere(name, result):
     six = [*fx.home_pose(hexapod).position, 0.0, 0.0, 90.0]
     state = pose_state(hexapod, fx.Pose.from_rpy(*six[:3], 0, 0, np.pi / 2))
     assert (state.stability, state.condition, state.modes.omega[0], state.tangent) == ("singular", np.inf, 0, None)
-    modes, check = (result(command, name, "--pose", *six) for command in ("modes", "check"))
+    modes, check = (result(command, file(name), "--pose", *six) for command in ("modes", "check"))
     assert modes["stability"] == check["stability"] == "singular"
     assert modes["omega_rad_s"][0] == modes["stability_index_rad_s"] == 0
     assert modes["condition_number"] == check["condition_number"]

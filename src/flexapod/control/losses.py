@@ -6,6 +6,7 @@ import warnings
 
 from numpy.typing import ArrayLike
 
+from flexapod.checks import level_outside
 from flexapod.control.plant import Plant
 from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
@@ -50,7 +51,7 @@ def assumptions(hexapod: Hexapod, loss_frequency: float | None = None) -> str:
 def warn_of_losses(hexapod: Hexapod) -> None:
     """Warn the caller of a function of control where loss factors of the design are left out."""
     if has_losses(hexapod):
-        warnings.warn(_LEFT_OUT, UserWarning, stacklevel=3)
+        warnings.warn(_LEFT_OUT, UserWarning, stacklevel=level_outside())
 
 
 def plant_with_losses(

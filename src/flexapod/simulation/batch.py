@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import inspect
 import warnings
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from flexapod.checks import numbers, positive, whole
+from flexapod.checks import level_outside, numbers, positive, whole
 from flexapod.conventions import Array, JointModel
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point
@@ -127,7 +125,7 @@ def simulate_many(
     each = [one_run(run, found, i, at, told) for i, run in enumerate(runs)]
     notes = list(dict.fromkeys([*notes, *_of_results(runs, each, joint)]))
     for note in notes:
-        warnings.warn(note, UserWarning, stacklevel=_outside())
+        warnings.warn(note, UserWarning, stacklevel=level_outside())
     dataset = xr.concat([part.reindex(time=at) for part in each], dim="run", combine_attrs="drop_conflicts")
     dataset.attrs = {
         "design": ", ".join(sorted({run.hexapod.name for run in runs})),
@@ -162,16 +160,6 @@ def _of_results(runs: Sequence[SimulationRun], each: Sequence[xr.Dataset], joint
     if len(runs) == 1 or not said:
         return [note for notes in found for note in notes]
     return [f"run {said[0]}, and {len(said) - 1} of {len(runs)} runs besides: {note}" for note in found[said[0]]]
-
-
-def _outside() -> int:
-    """Stack level of the first caller outside this package, for warnings."""
-    package = Path(__file__).parents[1]
-    level = 1
-    frame = inspect.currentframe()
-    while frame is not None and Path(frame.f_code.co_filename).is_relative_to(package):
-        level, frame = level + 1, frame.f_back
-    return level - 1
 
 
 def _sample_times(times: ArrayLike | None, duration: float | None, samples: int | None, highest: float) -> Array:
