@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from flexapod.checks import not_negative, numbers, one_of
+from flexapod.checks import level_outside, not_negative, numbers, one_of
 from flexapod.control.closed_loop_poles import ClosedLoop, assess, distances, instability_message, nearest, pole_text
 from flexapod.control.controllers import PID, pid_units
 from flexapod.control.linear_controller import ControlLaw, controller_for
@@ -129,7 +129,7 @@ def closed_loop(
             f"{pole_text(found.pole[first])} rad/s beside {nearest(found.pole[first], found.omega):.5g} rad/s; the "
             "machine may vibrate more than without control. Move the gains away.",
             GainWarning,
-            stacklevel=2,
+            stacklevel=level_outside(),
         )
     return found
 
@@ -219,7 +219,7 @@ def gain_map(
             f"{int(near.sum())} of {near.size} pairs of gains put a pole within {nearness:.0%} of a natural frequency; "
             "there the machine may vibrate more than without control. Choose gains where `near` is False.",
             GainWarning,
-            stacklevel=2,
+            stacklevel=level_outside(),
         )
     return dataset
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from flexapod import __version__
-from flexapod.checks import positive
+from flexapod.checks import level_outside, positive
 from flexapod.conventions import TWO_PI, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import DesignError
@@ -111,7 +111,7 @@ def mjcf(hexapod: Hexapod, pose: PoseLike | None = None, timestep: float | None 
             f"MuJoCo takes no moments of inertia as small as those of {hexapod.name!r}: masses in its model are in "
             f"{MASSES[smaller]} and forces in {FORCES[smaller]}. It moves as before; the motors take N.",
             UserWarning,
-            stacklevel=3,
+            stacklevel=level_outside(),
         )
     root = ET.Element("mujoco", model=machine.name)
     root.append(ET.Comment(f" Written by Flexapod {__version__} for {machine.pose!r}; {units}, base frame. "))

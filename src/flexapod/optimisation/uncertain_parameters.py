@@ -146,9 +146,10 @@ class Uncertain:
             if any(layout.owner(number) not in KEYS for number in parameter.index):
                 return []
             away = np.array([quantile(self.distribution, np.array(u), self.spread) for u in (0.0, 1.0)])
-            own = np.abs(layout.own(hexapod, parameter.index, self.target))
-            factor = np.abs(away - 1.0).max() * own if self.distribution == "lognormal" else None
-            reach = np.abs(away).max() * parameter.width if factor is None else factor
+            if self.distribution == "lognormal":  # quantiles are factors of the design's value
+                reach = np.abs(away - 1.0).max() * np.abs(layout.own(hexapod, parameter.index, self.target))
+            else:
+                reach = np.abs(away).max() * parameter.width
             found.append(Stray(parameter.words, tuple(parameter.index.tolist()), tuple(reach.tolist())))
         return found
 
