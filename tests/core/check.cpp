@@ -57,11 +57,14 @@ void sweep(const double* design, const double* poses, std::size_t n) {
   write({within.get(), within.get() + n});
 }
 
+/// With a load, so that no acceleration is zero but for rounding; compare.py has the same.
 void dynamics(const Design<double>& design, const Motion<double>* platform, std::size_t n) {
   const Machine<double> machine(design, Joint::universal);
   const SixLegs legs(machine);
+  const Vec6<double> load = Vec6<double>::of({1.0, 1.0, 1.0}, {1.0, 1.0, 1.0});
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec6<double> a = forward_dynamics(legs, platform[i], Motion<double>(), Vec6<double>(), Vec6<double>());
+    const Vec6<double> wrench = external_wrench(platform[i].pose.R, load);
+    const Vec6<double> a = forward_dynamics(legs, platform[i], Motion<double>(), Vec6<double>(), wrench);
     write({a.a, a.a + 6});
   }
 }

@@ -83,8 +83,8 @@ class Problem:
         self.input = np.concatenate([hexapod.packed, poses.ravel(), motions.ravel()]).tobytes()
         self.expected = _core.sweep(hexapod.packed, JOINT, poses, reduce(or_, _core.SweepQuantity), LIMITS, 1)
         rest = np.tile(fx.Motion(fx.Pose([0.0, 0.0, 0.0])).packed, (POSES, 1))
-        none = np.zeros((POSES, 6))
-        self.expected["acceleration"] = _core.forward_dynamics(hexapod.packed, JOINT, motions, rest, none, none)
+        force, wrench = np.zeros((POSES, 6)), np.ones((POSES, 6))
+        self.expected["acceleration"] = _core.forward_dynamics(hexapod.packed, JOINT, motions, rest, force, wrench)
 
 
 def difference(problem: Problem, output: bytes) -> float:
