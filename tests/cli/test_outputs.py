@@ -106,6 +106,15 @@ def test_links_modes_and_pipes_are_respected(tmp_path):
         output_files.check_file(tmp_path / ("a" * 400))
 
 
+@pytest.fixture
+def interruptible():
+    """Ctrl-C raises KeyboardInterrupt, as it does but in a shell's background jobs."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_signals_end_a_command_with_their_code(number, code, run, monkeypatch, tmp_path):
     import flexapod.cli.studies.simulate as study
@@ -121,6 +130,7 @@ def test_signals_end_a_command_with_their_code(number, code, run, monkeypatch, t
     assert not (tmp_path / "here").exists()
 
 
+@pytest.mark.usefixtures("interruptible")
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_a_search_that_is_cut_short_says_so(number, code, run, monkeypatch):
     pytest.importorskip("optuna")
