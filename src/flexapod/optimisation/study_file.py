@@ -40,8 +40,9 @@ def told(file: Path | None) -> Iterator[None]:
         while not isinstance(cause, sqlite3.Error) and cause.__cause__ is not None:
             cause = cause.__cause__
         raise OutputError(
-            f"{file} cannot be used as a study file: {cause}. Trials that are finished stay in it: make room, or wait "
-            "for who holds it, and give the same command again; or choose another place."
+            f"{file} cannot be used as a study file: {cause}. Trials that are finished stay in it, and in "
+            f"{file.name}-wal where that is left beside it: make room, or wait for who holds it, and give the same "
+            "command again; or choose another place."
         ) from error
 
 
