@@ -20,6 +20,9 @@ PAPER: dict[str, Any] = {
     "title": "Dynamic stability index and vibration analysis of a flexible Stewart platform",
     "authors": [("Mukherjee", "P."), ("Dasgupta", "B."), ("Mallik", "A. K.")],
     "journal": "Journal of Sound and Vibration",
+    "volume": 307,
+    "issue": "3-5",
+    "pages": (495, 512),
     "year": 2007,
 }
 _NAMES = ("Stewart", "Flexapod", "6-UPS")  # whose letters BibTeX must keep
@@ -41,6 +44,9 @@ def bibtex() -> str:
         "author": " and ".join(f"{family}, {given}" for family, given in PAPER["authors"]),
         "title": _kept(PAPER["title"]),
         "journal": PAPER["journal"],
+        "volume": PAPER["volume"],
+        "number": PAPER["issue"].replace("-", "--"),
+        "pages": "{}--{}".format(*PAPER["pages"]),
         "year": PAPER["year"],
     }
     own = {
@@ -77,6 +83,10 @@ def cff() -> str:
         "    authors:",
         *people,
         f"    journal: {PAPER['journal']}",
+        f"    volume: {PAPER['volume']}",
+        f"    issue: {PAPER['issue']}",
+        f"    start: {PAPER['pages'][0]}",
+        f"    end: {PAPER['pages'][1]}",
         f"    year: {PAPER['year']}",
     ]
     return "\n".join(lines) + "\n"
