@@ -20,13 +20,18 @@ def waypoints(closed=False):
     return fx.Pose.from_rpy(*rows.T)
 
 
+HOME = fx.Pose.from_rpy(0.02, 0, 0.89, 0, 0, 0.1)
+
+
 def path(ends="rest", **more):
     poses = waypoints(ends == "periodic")
     times = np.cumsum([0.0, 0.7, 0.5, 0.9, 0.6, 0.8])[: poses.shape[0]] + 2.0
+    if ends == "joined":
+        return path("free", **more).between(HOME, 0.9)
     return fx.Trajectory(poses, times, ends=ends, **more)
 
 
-@pytest.mark.parametrize("ends", ["rest", "free", "periodic"])
+@pytest.mark.parametrize("ends", ["rest", "free", "periodic", "joined"])
 def test_motion_is_the_derivative_of_the_pose(ends):
     p = path(ends)
     t, h = p.grid(40)[1:-1] + 1e-3, 1e-4  # off the knots of the cubic, where the jerk jumps
@@ -44,7 +49,7 @@ def test_motion_is_the_derivative_of_the_pose(ends):
         np.testing.assert_allclose(getattr(here, name), value, atol=1e-5, err_msg=name)
 
 
-@pytest.mark.parametrize("ends", ["rest", "free", "periodic"])
+@pytest.mark.parametrize("ends", ["rest", "free", "periodic", "joined"])
 def test_path_passes_its_waypoints_and_is_smooth_there(ends):
     p = path(ends)
     at = p(p.times).pose
@@ -57,8 +62,9 @@ def test_path_passes_its_waypoints_and_is_smooth_there(ends):
         np.testing.assert_allclose(getattr(left, name), getattr(right, name), atol=1e-6)
 
 
-def test_path_starts_and_stops_at_rest():
-    p = path("rest")
+@pytest.mark.parametrize("ends", ["rest", "joined"])
+def test_path_starts_and_stops_at_rest(ends):
+    p = path(ends)
     for end in (p(p.times[0]), p(p.times[-1])):
         for value in (end.velocity, end.angular_velocity, end.acceleration, end.angular_acceleration):
             np.testing.assert_allclose(value, 0, atol=1e-12)
@@ -227,24 +233,60 @@ def test_sampling_time_over_poses_paths_and_boxes(machine):
         fx.control.sampling_time(-1.0)
 
 
-def test_a_path_between_rest_poses_joins_smoothly():
-    """At rest at home at both ends, through all waypoints, with continuous accelerations; far inside it is the same."""
-    inner = fx.Trajectory(fx.Pose.from_rpy(0.1 * np.sin(np.arange(40) / 4), 0, 0.9, 0, 0, 0.02 * np.arange(40)), np.arange(40) / 8)  # fmt: skip
-    home = fx.Pose.from_rpy(0, 0, 0.89, 0, 0, 0.1)
-    joined = inner.between(home, 1.5)
-    assert (joined.start, joined.duration, joined.ends) == (-1.5, inner.duration + 3, "rest")
-    for t in (joined.times[0], joined.times[-1]):
-        motion = joined(t)
-        np.testing.assert_allclose(motion.pose.position, home.position, atol=1e-12)
-        np.testing.assert_allclose(motion.pose.matrix, home.matrix, atol=1e-12)
-        for rest in (motion.velocity, motion.acceleration, motion.angular_velocity, motion.angular_acceleration):
-            np.testing.assert_allclose(rest, 0, atol=1e-9)
-    np.testing.assert_allclose(joined(inner.times).pose.position, inner.waypoints.position, atol=1e-12)
-    before, after = joined(inner.times - 1e-9), joined(inner.times + 1e-9)
-    np.testing.assert_allclose(before.acceleration, after.acceleration, atol=1e-5)
-    middle = np.linspace(inner.times[15], inner.times[24], 50)
-    np.testing.assert_allclose(joined(middle).pose.position, inner(middle).pose.position, atol=1e-5)
-    with pytest.raises(fx.PoseError, match="batch axes"):
-        inner.between(inner.waypoints, 1.0)
-    with pytest.raises(fx.ArgumentError, match="lead is 0 s"):
-        inner.between(home, 0)
+RATES = ("velocity", "angular_velocity", "acceleration", "angular_acceleration")
+
+
+def numbers_of(motion):
+    matrix = motion.pose.matrix.reshape(*motion.pose.shape, 9)
+    return np.concatenate([matrix, motion.pose.position, *(getattr(motion, name) for name in RATES)], axis=-1)
+
+
+@pytest.mark.parametrize("ends", ["rest", "free", "periodic"])
+def test_a_path_joined_to_home_is_itself_between(ends):
+    inner = path(ends)
+    joined = inner.between(HOME, 1.5)
+    assert (joined.start, joined.ends, joined.waypoints.shape) == (inner.start - 1.5, "rest", (len(inner.times) + 2,))
+    assert joined.duration == pytest.approx(inner.duration + 3.0, rel=1e-15)
+    t = inner.grid(200)[:-1]
+    np.testing.assert_array_equal(numbers_of(joined(t)), numbers_of(inner(t)))
+    np.testing.assert_allclose(numbers_of(joined(inner.times[-1])), numbers_of(inner(inner.times[-1])), atol=1e-12)
+    np.testing.assert_allclose(joined(joined.times[[0, -1]]).pose.position, [HOME.position] * 2, atol=1e-15)
+    np.testing.assert_allclose(joined(joined.times[[0, -1]]).pose.matrix, [HOME.matrix] * 2, atol=1e-14)
+    for join in inner.times[[0, -1]]:
+        near = joined([np.nextafter(join, 0), join, np.nextafter(join, np.inf)])
+        np.testing.assert_allclose(numbers_of(near), [numbers_of(inner(join))] * 3, atol=1e-12)
+
+
+def test_a_joined_path_in_another_time_and_as_polynomials():
+    inner = path("free")
+    joined = inner.between(HOME, 1.5)
+    slow = joined.retimed(3 * joined.duration)
+    t = joined.grid(50)
+    there, later = joined(t), slow(slow.start + 3 * (t - joined.start))
+    np.testing.assert_allclose(later.pose.position, there.pose.position, atol=1e-14)
+    np.testing.assert_allclose(later.angular_velocity, there.angular_velocity / 3, atol=1e-13)
+    np.testing.assert_allclose(later.acceleration, there.acceleration / 9, atol=1e-13)
+    pieces, middle, spans = joined.polynomials()
+    assert pieces.shape == (len(joined.times) - 1, 6, 6)  # that of the cubic has zeros above
+    begin = joined.start + np.concatenate([[0.0], np.cumsum(spans[:-1, 2])])
+    for six, at, length in zip(pieces, begin, spans[:, 2], strict=True):
+        since = np.linspace(0, length, 7)
+        q = np.polynomial.polynomial.polyval(since, six.T).T
+        pose = joined(np.clip(at + since, *joined.times[[0, -1]])).pose
+        np.testing.assert_allclose(q[:, :3], pose.position, atol=1e-13)
+        np.testing.assert_allclose(Rotation.from_rotvec(q[:, 3:]).as_matrix() @ middle, pose.matrix, atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("pose", "lead", "error", "words"),
+    [
+        (HOME, 0, fx.ArgumentError, "lead is 0 s"),
+        (HOME, 1e-17, fx.errors.PathError, r"times\[1\] is 2 s, after 2 s; times must increase"),
+        (HOME, 1e13, fx.errors.PathError, r"the path lasts 2e\+13 s; it must last at least"),
+        (waypoints(), 1.0, fx.PoseError, "batch axes"),
+        ([0, 0, 0.9, 0, 0, 3.1], 1.0, fx.errors.PathError, "pose is turned by 1.* deg from the mean orientation of the waypoints"),
+    ],
+)  # fmt: skip
+def test_what_a_path_cannot_be_joined_to(pose, lead, error, words):
+    with pytest.raises(error, match=words):
+        path().between(pose, lead)

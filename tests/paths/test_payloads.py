@@ -201,6 +201,12 @@ def test_a_motion_is_joined_to_home(run, result, motion):
     found = result(*line, "--home-time", "1500ms")
     assert found["duration_s"] == 5.0
     assert found["waypoints_m_deg"][0] == found["waypoints_m_deg"][-1] == [0, 0, 2.39, 0, 0, 0]
+    shown = [run(*line, *more, "--ends", "free", "--csv")[1] for more in ([], ["--home-time", 1.5])]
+    alone, joined = ({float(row["time_s"]): row for row in csv.DictReader(io.StringIO(text))} for text in shown)
+    for t in (0, 1, 2):  # in motion, with the forces of the motion alone
+        for name in ("x_m", "yaw_rad", "velocity_x_m_per_s", "leg_rate_1_m_per_s", "leg_force_1_N", "power_6_W"):
+            assert float(joined[t][name]) == pytest.approx(float(alone[t][name]), rel=1e-9, abs=1e-12), name
+    assert float(joined[0]["velocity_x_m_per_s"]) < -0.1
     code, _, err = run("path", "motion-base", "--from", *[0, 0, 2.39, 0, 0, 0], "--to", *[0, 0, 2.4, 0, 0, 0], "--bound", 1, "--home-time", 1)  # fmt: skip
     assert code == 2
     assert "--home-time joins the motion of a FILE" in err

@@ -31,15 +31,18 @@ class Chart:
     @classmethod
     def about(cls, poses: Pose) -> Chart:
         """The chart about the mean orientation of poses. Raises PathError where one is turned too far from it."""
-        middle = poses.rotation.mean().as_matrix()
-        chart = cls(middle)
-        turn = np.linalg.norm(chart.coordinates(poses)[..., 3:], axis=-1)
+        chart = cls(poses.rotation.mean().as_matrix())
+        chart.check(poses, "orientations lie up to")
+        return chart
+
+    def check(self, poses: Pose, what: str) -> None:
+        """Raises PathError where a pose is turned too far from the middle; what: how the message begins."""
+        turn = np.linalg.norm(self.coordinates(poses)[..., 3:], axis=-1)
         if turn.max(initial=0.0) > _WIDEST:
             raise PathError(
-                f"orientations lie up to {np.degrees(turn.max()):.4g} deg from their mean; at most "
+                f"{what} {np.degrees(turn.max()):.4g} deg from the mean orientation of the waypoints; at most "
                 f"{np.degrees(_WIDEST):.4g} deg can be joined. Split the path into parts."
             )
-        return chart
 
     def coordinates(self, poses: Pose) -> Array:
         """(..., 6) numbers of poses."""

@@ -10,9 +10,9 @@ from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.kinematics import leg_rates
 from flexapod.paths.chart import Chart, turning
+from flexapod.paths.curve import Curve, spline
 from flexapod.paths.leg_speed import LegSpeed, duration
 from flexapod.paths.requirements import Margins, smooth_minimum
-from flexapod.paths.trajectory import spline
 from flexapod.workspace.box_minimum import Remembered
 
 _STEP = 1e-6  # of central differences, in scaled coordinates: truncation and rounding both near 1e-10
@@ -28,7 +28,8 @@ class Knots:
     def __init__(self, waypoints: int, count: int) -> None:
         self.times = np.linspace(0.0, 1.0, waypoints)
         self.at = np.linspace(0.0, 1.0, count)
-        self.B = np.stack([curve(self.at) for curve in spline(self.times, np.eye(waypoints), "rest")])
+        curve = Curve([spline(self.times, np.eye(waypoints), "rest")], self.times[[0, -1]])
+        self.B = np.stack([curve(self.at, order) for order in range(3)])
 
 
 def resampled(points: Array, count: int) -> Array:

@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import math
-from typing import Any, Literal, get_args
+from copy import copy
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import numbers, one_of, positive, whole
+from flexapod.checks import numbers, positive, whole
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, PathError, PoseError
 from flexapod.paths.chart import Chart
+from flexapod.paths.curve import Curve, Ends, spline
 from flexapod.pose import Motion, Pose, PoseLike, as_pose
 
 _SHORTEST, _LONGEST = 1e-9, 1e12  # of a path, s: accelerations beyond would be no numbers
 _LEAST_GAP = 1e-6  # between waypoints, of the mean: closer ones leave no digits for the spline
-Ends = Literal["rest", "free", "periodic"]
 
 
 class Trajectory:
@@ -66,7 +65,7 @@ class Trajectory:
     Notes
     -----
     Positions and rotation vectors about the waypoints' mean orientation are B-splines: quintic, or cubic with free
-    ends. Velocity and acceleration are continuous throughout.
+    ends. Velocity and acceleration are continuous throughout. `between` joins such a path to rest poses.
 
     Examples
     --------
@@ -94,7 +93,7 @@ class Trajectory:
         self.weights = _weights(weights, poses.shape[0])
         self.ends = ends
         self.chart = Chart.about(poses)
-        self._splines = spline(self.times, self.chart.coordinates(poses), ends)
+        self._curve = Curve([spline(self.times, self.chart.coordinates(poses), ends)], self.times[[0, -1]])
 
     @property
     def start(self) -> float:
@@ -115,7 +114,7 @@ class Trajectory:
                 f"t runs from {when.min():.6g} to {when.max():.6g} s; the path runs from {self.times[0]:.6g} to "
                 f"{self.times[-1]:.6g} s"
             )
-        return self.chart.motions(*(curve(when) for curve in self._splines))
+        return self.chart.motions(*(self._curve(when, order) for order in range(3)))
 
     def grid(self, samples: int) -> Array:
         """Give at least `samples` times over the path, evenly within each piece, with every waypoint among them."""
@@ -142,11 +141,8 @@ class Trajectory:
         spans : ndarray, shape (n, 3)
             Number of the piece, and the least and largest time since its beginning, s.
         """
-        curve = self._splines[0]
-        knots = np.unique(np.clip(curve.t, self.times[0], self.times[-1]))
-        begin, length = knots[:-1], np.diff(knots)
-        pieces = np.stack([curve(begin, nu=m) / math.factorial(m) for m in range(curve.k + 1)], axis=-1)
-        spans = np.stack([np.arange(len(begin), dtype=np.float64), np.zeros(len(begin)), length], axis=1)
+        pieces, length = self._curve.polynomials()
+        spans = np.stack([np.arange(len(length), dtype=np.float64), np.zeros(len(length)), length], axis=1)
         return pieces, self.chart.middle, spans
 
     def length(self, characteristic_length: float = 1.0) -> float:
@@ -160,9 +156,11 @@ class Trajectory:
 
     def retimed(self, duration: float) -> Trajectory:
         """Give the same curve in space, run in another time, s."""
-        wanted = positive(duration, "duration", "s")
-        times = self.times[0] + (self.times - self.times[0]) * (wanted / self.duration)
-        return Trajectory(self.waypoints, times, ends=self.ends, weights=self.weights)
+        factor = positive(duration, "duration", "s") / self.duration
+        run = copy(self)
+        run.times = _lasting(self.times[0] + (self.times - self.times[0]) * factor)
+        run._curve = self._curve.retimed(factor)
+        return run
 
     def between(self, pose: PoseLike, lead: float) -> Trajectory:
         """Give the path with a rest pose before and after it, joined smoothly.
@@ -177,26 +175,44 @@ class Trajectory:
         Returns
         -------
         Trajectory
-            Through all waypoints. It is one spline, so that between them it is not exactly this path: least so in the
-            middle, and most next to the first and the last waypoint, at which it does not stop.
+            From the first waypoint to the last exactly this path, and before and after it a quintic each, which takes
+            over position, velocity and acceleration of its end. So a path with ends at rest stops at its first and its
+            last waypoint, and a free or periodic one is joined in motion.
 
         Raises
         ------
         PoseError
             If `pose` is not one pose.
+        PathError
+            If `pose` is turned too far from the path's orientations, or `lead` is no time beside the path's.
         ArgumentError
             If `lead` is not > 0.
+
+        Notes
+        -----
+        A path that is fast at its ends makes a long quintic swing out, by up to some 0.2 of its speed times `lead`.
+
+        Examples
+        --------
+        >>> inner = fx.Trajectory([[0, 0, 1.0, 0, 0, 0], [0.1, 0, 1.1, 0, 0, 0.2]], times=[0.0, 2.0])
+        >>> whole = inner.between([0, 0, 0.9, 0, 0, 0], 1.5)
+        >>> whole.start, whole.duration, bool((whole(0.7).pose.position == inner(0.7).pose.position).all())
+        (-1.5, 5.0, True)
         """
         rest = _single(pose, "pose")
+        self.chart.check(rest, "pose is turned by")
         wanted = positive(lead, "lead", "s")
-        own = self.waypoints
-        poses = Pose(
+        own, joined = self.waypoints, copy(self)
+        joined.waypoints = Pose(
             np.concatenate([rest.position[None], own.position, rest.position[None]]),
             np.concatenate([rest.matrix[None], own.matrix, rest.matrix[None]]),
         )
         times = np.concatenate([[self.times[0] - wanted], self.times, [self.times[-1] + wanted]])
-        weights = np.concatenate([self.weights[:1], self.weights, self.weights[-1:]])
-        return Trajectory(poses, times, weights=weights)
+        joined.times = _lasting(times)
+        joined.weights = np.concatenate([self.weights[:1], self.weights, self.weights[-1:]])
+        joined.ends = "rest"
+        joined._curve = self._curve.between(self.chart.coordinates(rest), wanted)
+        return joined
 
     def __repr__(self) -> str:
         return f"<Trajectory of {len(self.times)} waypoints, {self.duration:.6g} s, ends {self.ends}>"
@@ -209,57 +225,29 @@ def _single(value: PoseLike, name: str) -> Pose:
     return pose
 
 
-def spline(times: Array, values: Array, ends: Ends) -> tuple[Any, Any, Any]:
-    """The interpolating spline of (n, k) values and its first two derivatives. It is linear in the values."""
-    one_of(ends, "ends", get_args(Ends))
-    curve = _interpolated(times, values, ends)
-    return curve, curve.derivative(1), curve.derivative(2)
-
-
-def _interpolated(times: Array, values: Array, ends: Ends) -> Any:
-    from scipy.interpolate import make_interp_spline
-
-    width = values.shape[1:]
-    still = [(1, np.zeros(width)), (2, np.zeros(width))]
-    if ends == "rest":
-        return make_interp_spline(times, values, k=5, bc_type=(still, still))
-    if ends == "free":
-        return make_interp_spline(times, values, k=3, bc_type=(still[1:], still[1:]))
-    return _periodic(times, values)
-
-
-def _periodic(times: Array, values: Array) -> Any:
-    from scipy.interpolate import make_interp_spline
-
-    gap = np.abs(values[-1] - values[0]).max()
-    if gap > 1e-9 * max(1.0, np.abs(values).max()):
-        raise PathError(
-            f"a periodic path must end where it starts; its last waypoint is {gap:.3g} (m or rad) away from its first. "
-            "Repeat the first waypoint at the end."
-        )
-    if len(times) < 3:
-        raise PathError("a periodic path needs at least three waypoints, the last equal to the first")
-    closed = np.concatenate([values[:-1], values[:1]])
-    return make_interp_spline(times, closed, k=5 if len(times) > 5 else 3, bc_type="periodic")
-
-
 def _times(value: ArrayLike, count: int) -> Array:
-    times = numbers(value, "times", (count,))
-    late = np.flatnonzero(np.diff(times) <= 0)
-    if late.size:
-        i = int(late[0])
-        raise PathError(f"times[{i + 1}] is {times[i + 1]:.6g} s, after {times[i]:.6g} s; times must increase.")
-    duration, gaps = times[-1] - times[0], np.diff(times)
-    if not _SHORTEST <= duration <= _LONGEST:
-        raise PathError(
-            f"the path lasts {duration:.3g} s; it must last at least {_SHORTEST:g} s and at most {_LONGEST:g} s. Give "
-            "other times, or leg speeds that lead to them."
-        )
+    times = _lasting(numbers(value, "times", (count,)))
+    gaps = np.diff(times)
     if gaps.min() < _LEAST_GAP * gaps.mean():
         i = int(gaps.argmin())
         raise PathError(
             f"times[{i + 1}] is {gaps[i]:.3g} s after times[{i}], where the mean is {gaps.mean():.3g} s; that is too "
             "soon for a smooth path. Leave one of the two out."
+        )
+    return times
+
+
+def _lasting(times: Array) -> Array:
+    """Times as they are, which increase and make a path of a sensible duration."""
+    late = np.flatnonzero(np.diff(times) <= 0)
+    if late.size:
+        i = int(late[0])
+        raise PathError(f"times[{i + 1}] is {times[i + 1]:.6g} s, after {times[i]:.6g} s; times must increase.")
+    duration = times[-1] - times[0]
+    if not _SHORTEST <= duration <= _LONGEST:
+        raise PathError(
+            f"the path lasts {duration:.3g} s; it must last at least {_SHORTEST:g} s and at most {_LONGEST:g} s. Give "
+            "other times, or leg speeds that lead to them."
         )
     return times
 

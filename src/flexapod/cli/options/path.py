@@ -58,7 +58,7 @@ path_options = common.stack(
         "--home-time",
         type=TIME,
         metavar="S",
-        help="Begin at home and end there, so long before and after the motion of FILE, joined smoothly.",
+        help="Begin and end at home, so long before and after the motion of FILE, which stays as it is.",
     ),
     click.option(
         "--payload",

@@ -76,13 +76,13 @@ def _is_file(options: Options) -> bool:
 
 def _given(hexapod: Hexapod, options: Options) -> PathFindings:
     assert options.file is not None
-    path = waypoints.read(options.file, options.ends, _origin(hexapod, options))  # type: ignore[arg-type]
+    path = given = waypoints.read(options.file, options.ends, _origin(hexapod, options))  # type: ignore[arg-type]
     if options.home_time is not None:
-        path = path.between(_home(hexapod, "--home-time"), options.home_time)
+        path = given.between(_home(hexapod, "--home-time"), options.home_time)
     try:
         index = path_index(hexapod, path, bound=options.bound, joint=options.joint)
     except (SingularPoseError, PoseError) as error:
-        raise type(error)(f"{error}{_hint(hexapod, path, options)}") from error
+        raise type(error)(f"{error}{_hint(hexapod, given, options)}") from error
     loads = path_loads(hexapod, path, joint=options.joint, point=options.point)
     proof = None
     if options.certify:
