@@ -5,6 +5,7 @@ import io
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import flexapod as fx
 
@@ -164,8 +165,14 @@ def test_cases_stand_side_by_side(run, result, motion, tmp_path):
         ("case,mass\n", "there are no rows"),
         ("case,mass\na,-1\n", r"line 2: mass of the payload 'a' is -1.0 kg; it must be finite and >= 0"),
         ("case,mass\na,1\na,2\n", "two payloads are called 'a'"),
-        ("case,mass\ndesign,1\n", "two payloads are called 'design'"),
-        ("mass,ixx,iyy,izz\n1,1,1,5\n", "line 2: inertia of the payload '1' is of no body"),
+        (
+            "case,mass\na,1\ndesign,1\n",
+            "line 3: a payload is called 'design', as the machine without payloads is called",
+        ),
+        (
+            "mass,ixx,iyy,izz\n1,1,1,-5\n",
+            "line 2: inertia of the payload '1' is of no body: its smallest principal moment",
+        ),
         ("case,mass,ixx,iyy,izz\na,0,1,1,1\n", "mass of the payload 'a' is 0 although it has an inertia"),
         ("case,weight\na,1\n", "column 'weight' is unknown"),
         ("case,mass_m\na,1\n", "has the unit 'm'; it may be kg"),
@@ -193,6 +200,42 @@ def test_wrong_payloads_are_told(run, motion, tmp_path, text, words):
 def test_wrong_cases_are_told(build, words):
     with pytest.raises(fx.ArgumentError, match=words):
         build()
+
+
+@pytest.mark.parametrize(
+    ("moments", "warns"),
+    [
+        ((0, 0, 0), False),
+        ((0, 1, 1), False),  # a rod
+        ((1, 1, 2), False),  # a plate
+        ((1, 1, 2.0001), True),  # a plate of few digits
+        ((0, 0, 1), True),
+    ],
+)
+def test_flat_payloads_are_taken_and_what_is_no_body_is_told(moments, warns):
+    """As those of a design: at any size, and however the body is turned."""
+    for seed in range(20):
+        axes = Rotation.random(random_state=seed).as_matrix()
+        inertia = axes @ np.diag(moments) @ axes.T * 10.0 ** (seed % 9 - 5)
+        found = fx.paths.PayloadCase("a", 1.0, inertia=inertia).warnings
+        assert len(found) == warns
+        assert not warns or found[0].startswith("inertia: no rigid body has it; its largest principal moment")
+        if moments[0]:  # the design's own platform, which must have an extent across every axis
+            assert bool(MACHINE.replace({"platform.inertia": inertia}).warnings) == warns
+    loads = fx.paths.payload_loads(MACHINE, PATH, [fx.paths.PayloadCase("a", 1.0, inertia=moments)])
+    assert bool(loads.warning.values[0]) == warns
+    if not warns:
+        by_hand = MACHINE.replace(together(MACHINE, 1.0, (0, 0, 0), np.diag(moments)))
+        np.testing.assert_allclose(loads.leg_force[0], fx.paths.path_loads(by_hand, PATH).leg_force, rtol=1e-9)
+
+
+def test_a_payload_of_few_digits_is_told(result, motion, tmp_path):
+    (tmp_path / "cases.csv").write_text("case,mass,ixx,iyy,izz\nplate,6,0.3333,0.3333,0.6667\n")
+    line = ["path", "motion-base", motion, "--from-home", "--payloads", tmp_path / "cases.csv"]
+    assert [text for text in result(*line)["warnings"] if "plate" in text] == [
+        "With the payload plate: inertia: no rigid body has it; its largest principal moment 0.6667 kg m2 exceeds the sum "
+        "of the other two, 0.6666. Results are computed with it as given."
+    ]  # fmt: skip
 
 
 def test_a_motion_is_joined_to_home(run, result, motion):

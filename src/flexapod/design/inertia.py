@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.conventions import Array
+from flexapod.errors import told_apart
 
 ROUNDING = 1e-9  # of the largest moment: what printing with nine digits changes
 
@@ -37,4 +38,5 @@ def inertia_flaw(inertia: Array, *, solid: bool = False) -> str:
             f"its largest principal moment is {largest:.6g} kg m2 and the other two are together {others:.6g}, as of "
             "nothing that has an extent in all directions"
         )
-    return f"its largest principal moment {largest:.6g} kg m2 exceeds the sum of the other two, {others:.6g}"
+    told, both = told_apart(float(largest), float(others), (6, 6))
+    return f"its largest principal moment {told} kg m2 exceeds the sum of the other two, {both}"

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from flexapod.checks import instance, not_negative, numbers
 from flexapod.conventions import Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.inertia import inertia_flaw
+from flexapod.design.inertia import ROUNDING, inertia_flaw
 from flexapod.design.payload import with_payload
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.inputs import ZERO, PointLike, point_attributes
@@ -46,11 +46,17 @@ class PayloadCase:
     Raises
     ------
     ArgumentError
-        If the name is empty, the mass negative, or no body has the inertia.
+        If the name is empty, or the mass or a principal moment of the inertia negative.
 
     See Also
     --------
     payload_loads : the loads of a path in several such cases.
+
+    Notes
+    -----
+    Flat bodies and rods are bodies too. An inertia whose largest principal moment exceeds the sum of the other two, as
+    rounding to a few digits makes it of a plate, is of none; it is taken as given and told in `warnings`, as that of a
+    design's platform is.
 
     Examples
     --------
@@ -73,12 +79,22 @@ class PayloadCase:
         for name in ("position", "force", "moment"):
             found[name] = numbers(getattr(self, name), f"{name} {what}", (3,))
         inertia = _matrix(self.inertia, f"inertia {what}")
-        if flaw := inertia_flaw(inertia):
-            raise ArgumentError(f"inertia {what} is of no body: {flaw}. Give it about the payload's own centre.")
+        principal = np.linalg.eigvalsh(inertia)
+        if principal[0] < -ROUNDING * principal[2]:
+            raise ArgumentError(
+                f"inertia {what} is of no body: its smallest principal moment is {principal[0]:.3g} kg m2, below zero. "
+                "Check the signs and sizes of its entries; it is taken about the payload's own centre."
+            )
         if inertia.any() and not found["mass"]:
             raise ArgumentError(f"mass {what} is 0 although it has an inertia; it must be > 0.")
         for name, value in {**found, "inertia": inertia}.items():
             object.__setattr__(self, name, value)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is odd about the payload, as `Hexapod.warnings` of a design."""
+        flaw = inertia_flaw(self.inertia)
+        return (f"inertia: no rigid body has it; {flaw}. Results are computed with it as given.",) if flaw else ()
 
 
 def payload_loads(
@@ -111,7 +127,8 @@ def payload_loads(
     -------
     xarray.Dataset
         What `path_loads` gives over `time` (s) and `leg`, with `case` (names) before them, and over `case`: mass (kg)
-        of the payload and least_index (rad/s), the lowest natural frequency on the path.
+        of the payload, least_index (rad/s), the lowest natural frequency on the path, and warning, what is odd about
+        the payload.
 
     Raises
     ------
@@ -150,6 +167,7 @@ def payload_loads(
     names = xr.DataArray([case.name for case in cases], dims="case", name="case")
     together = xr.concat(found, dim=names, combine_attrs="override")
     together["mass"] = ("case", [case.mass for case in cases], in_unit("kg", "mass of the payload"))
+    together["warning"] = ("case", [" ".join(case.warnings) for case in cases])
     together["least_index"] = ("case", least, in_unit("rad/s", "lowest natural frequency on the path"))
     return together.assign_attrs({"design": hexapod.name, "digest": hexapod.digest, **told})
 

@@ -44,7 +44,7 @@ from flexapod.cli.output.results import emit_or_csv
 def command(**given: Any) -> None:
     """Leg forces, deflections and stiffness of DESIGN at rest in many load cases, from --elevation or FILE.
 
-    FILE is CSV with a row for each case. Columns, each if wanted: name; elevation, base_roll (degrees) or gravity_x,
+    FILE is CSV with a row for each case. Columns, each if wanted: case; elevation, base_roll (degrees) or gravity_x,
     gravity_y, gravity_z (m/s2, base frame); force_x, force_y, force_z (N), moment_x, moment_y, moment_z (N m); at_x,
     at_y, at_z (m, platform frame), the point of the force; x, y, z, roll, pitch, yaw (m, degrees), the pose. Titles may
     name other units, as force_x_kN.

@@ -71,7 +71,7 @@ path_options = common.stack(
         "--payloads",
         type=click.Path(path_type=Path, dir_okay=False),
         metavar="CSV",
-        help="Loads with inertia, or forces: columns mass, x, y, z, ixx, ..., force_x, ..., name, each if wanted.",
+        help="Loads with inertia, or forces: columns case, mass, x, y, z, ixx, ..., force_x, ..., each if wanted.",
     ),
     point_option("Point of the platform whose motion is told"),
     click.option(

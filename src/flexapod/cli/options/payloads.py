@@ -13,6 +13,7 @@ from flexapod.errors import ArgumentError
 from flexapod.paths.payloads import PayloadCase
 from flexapod.tables import Table, naming, parse_table, read_text
 
+AS_IT_IS = "design"  #: what the machine without payloads is called beside them
 _INERTIA = {"ixx": (0, 0), "iyy": (1, 1), "izz": (2, 2), "ixy": (0, 1), "ixz": (0, 2), "iyz": (1, 2)}
 _COLUMNS = {
     "mass": "mass",
@@ -29,7 +30,10 @@ _FORM = (
 
 
 def read(given: Iterable[tuple[float, ...]], file: Path | None) -> list[PayloadCase]:
-    """The payloads of the command line and of a file. Raises ArgumentError for what is none, with its line."""
+    """The machine as it is, and the payloads of the command line and of a file; nothing where there are none.
+
+    Raises ArgumentError for what is none, with its line.
+    """
     found = [
         PayloadCase(f"{mass:.6g} kg at {x:.6g} {y:.6g} {z:.6g} m", mass, np.array([x, y, z])) for mass, x, y, z in given
     ]
@@ -37,7 +41,7 @@ def read(given: Iterable[tuple[float, ...]], file: Path | None) -> list[PayloadC
         text = read_text(file)
         with naming(file):
             found += _cases(parse_table(text, {name: name for name in (*_COLUMNS, "case")}, _FORM))
-    return found
+    return [PayloadCase(AS_IT_IS), *found] if found else []
 
 
 def _cases(table: Table) -> list[PayloadCase]:
@@ -57,6 +61,11 @@ def _cases(table: Table) -> list[PayloadCase]:
     found = []
     for k, line in enumerate(table.lines):
         with naming(f"line {line}"):
+            if names[k] == AS_IT_IS:
+                raise ArgumentError(
+                    f"a payload is called {AS_IT_IS!r}, as the machine without payloads is called beside them. Give it "
+                    "another name."
+                )
             found.append(PayloadCase(names[k], float(values["mass"][k]), place[k], inertia[k], force[k], moment[k]))
     return found
 

@@ -19,7 +19,7 @@ from flexapod.paths.analysis import path_index
 from flexapod.paths.leg_speed import LegSpeed
 from flexapod.paths.loads import path_loads
 from flexapod.paths.motor_loads import motor_loads
-from flexapod.paths.payloads import PayloadCase, payload_loads
+from flexapod.paths.payloads import payload_loads
 from flexapod.paths.plan import Plan, plan_slice
 from flexapod.paths.planning import LONGEST, plan_path
 from flexapod.paths.requirements import PathRequirements
@@ -38,8 +38,7 @@ def compute(options: Options, report: Report) -> Study:
     cases = payloads.read(options.payload, options.payloads)
     found = _given(hexapod, options) if _is_file(options) else _planned(hexapod, options, report)
     if cases:
-        asis = PayloadCase("design")
-        side = payload_loads(hexapod, found.path, [asis, *cases], joint=options.joint, point=options.point)
+        side = payload_loads(hexapod, found.path, cases, joint=options.joint, point=options.point)
         found = replace(found, cases=side)
     if hexapod.drive is not None:
         found = _with_motors(hexapod, found, options.hold or 0.0)

@@ -35,7 +35,7 @@ _VECTORS = {
 _ANGLES = ("elevation", "base_roll")
 _FORM = (
     "Give a row for each case, with columns elevation, base_roll (degrees), or gravity_x, gravity_y, gravity_z; "
-    "force_x, ..., moment_x, ..., at_x, ...; x, y, z, roll, pitch, yaw of the pose; each if wanted, and name."
+    "force_x, ..., moment_x, ..., at_x, ...; x, y, z, roll, pitch, yaw of the pose; each if wanted, and case, its name."
 )
 _MOST = 100_000  # cases
 

@@ -174,6 +174,8 @@ def _case_cautions(hexapod: Hexapod, f: PathFindings) -> list[Caution]:
         return []
     found = []
     for name in map(str, f.cases.case.values[1:]):
+        if warning := str(f.cases.warning.sel(case=name).values):
+            found.append(Caution("payload", f"With the payload {name}: {warning}"))
         motors = None if f.case_motors is None else f.case_motors.sel(case=name)
         for one in leg_cautions(hexapod, f.cases.sel(case=name), motors):
             found.append(Caution(one.code, f"With the payload {name}: {one.text}", one.numbers))
