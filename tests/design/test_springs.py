@@ -8,9 +8,12 @@ from tests.helpers.plain import file, plain_machine
 
 import flexapod as fx
 from flexapod import _core
+from flexapod.design import layout
 from flexapod.design.design_file import template
 from flexapod.design.layout import unit_name
 from flexapod.design.packing import PLACES, compliance_slope
+from flexapod.design.schema import KEYS
+from flexapod.design.shorthands import SETS
 from flexapod.optimisation.design_map import DesignMap
 from flexapod.optimisation.ensemble import Ensemble
 
@@ -330,7 +333,20 @@ def test_uncertain_springs_reach_the_core():
         (PLAIN.replace({"home": None}), "legs.joint_stiffness.torsion", r"names no pose.*add \[home\] or"),
         (PLAIN, "legs.joint_rest.position", r"Write the design with \[legs.joint_rest\]"),
         (PLAIN, "legs.series_compliance", "series_compliance is not a key of a design"),
-        (PLAIN, "legs.stiffness_law.kind", "legs.stiffness_law.kind is not a number that a search can change"),
+        (
+            PLAIN,
+            "legs.stiffness_law.kind",
+            "legs.stiffness_law.kind is not a number that a search can change.*: it is text",
+        ),
+        (EVERY, "legs.loss_factor", "stray: it counts in responses, in random vibration and in time"),
+        (
+            EVERY,
+            "legs.joint_stiffness.loss_factor[2]",
+            "stray: it counts in responses, in random vibration and in time",
+        ),
+        (PLAIN, "drive.motor.speeds", "stray: it counts for the motors along a path"),
+        (PLAIN, "points.vertex", "stray: it is a place at which motions are told"),
+        (PLAIN, "limits.leg_rate", "stray: searches keep the limits as the design has them"),
     ],
 )
 def test_what_a_design_does_not_have_does_not_vary(machine, key, words):
@@ -406,3 +422,11 @@ def test_entries_of_a_suspension_have_units_of_their_own():
         "suspension.damping[0]": "",
     }
     assert {key: unit_name(key) for key in found} == found
+
+
+def test_every_number_of_a_design_varies_or_says_what_it_counts_for():
+    left = [key for key in KEYS if key not in layout.EVERY and key not in SETS]
+    assert left
+    for key in left:
+        with pytest.raises(fx.ArgumentError, match=r"may stray: (?!it is text).* Change it in the design"):
+            layout.entries(key)

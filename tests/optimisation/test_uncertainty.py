@@ -276,3 +276,16 @@ def test_poses_beyond_the_limits_do_not_count_unless_all_are_asked_for(result, r
     assert result(*given)["nominal_rad_s"] == pytest.approx(least[False], rel=1e-9)
     assert result(*given, "--all-poses")["nominal_rad_s"] == pytest.approx(least[True], rel=1e-9)
     assert "beyond them left out" in " ".join(run(*given, "--out", tmp_path)[1].split())
+
+
+@pytest.mark.filterwarnings("error")
+def test_what_the_index_does_not_depend_on_has_no_share(result):
+    line = ["robust", "mukherjee-ii", "--samples", 64, "--sensitivity", 16, "--uncertain", "legs.damping.prismatic=10%"]
+    found = result(*line)
+    assert set(found["sobol_total"].values()) == {0.0}
+    assert found["warnings"][0] == "The index does not depend on what is uncertain here: legs.damping.prismatic."
+    some = result(*line, "--uncertain", "legs.stiffness=1e-6%,together")  # little, and much more than rounding
+    assert not any("does not depend" in text for text in some["warnings"])
+    shares = some["sobol_total"]
+    assert shares.pop("legs.stiffness") > 0.5  # of few samples
+    assert max(shares.values()) < 1e-9

@@ -58,6 +58,16 @@ _COUNTED = {
     "legs.stiffness_law.lengths": "node",
     "legs.stiffness_law.stiffnesses": "node",
 }
+#: Keys on which nothing that a search looks at depends, by their beginnings, and what does depend on them.
+_ELSEWHERE = {
+    "drive.": "it counts for the motors along a path, and for no index or constraint",
+    "points.": "it is a place at which motions are told, and no index or constraint depends on it",
+    "limits.": "searches keep the limits as the design has them",
+    **dict.fromkeys(
+        ("legs.loss_factor", "legs.joint_stiffness.loss_factor"),
+        "it counts in responses, in random vibration and in time, and for no index or constraint",
+    ),
+}
 #: What optional keys of a short form that is given are where they are left out.
 _LEFT_OUT = {"circle.height": 0.0, "rod.radius": 0.0, "cubic.center_in_platform": 0.0}
 
@@ -172,7 +182,11 @@ def entries(key: str) -> tuple[NDArray[np.int64], Key, float]:
         raise ArgumentError(f"{key}: {error}") from None
     places = EVERY | _SETS
     if name not in places:
-        raise ArgumentError(f"{key} is not a number that a search can change. There are: {', '.join(sorted(places))}.")
+        why = next((words for start, words in _ELSEWHERE.items() if name.startswith(start)), "it is text")
+        raise ArgumentError(
+            f"{key} is not a number that a search can change or that may stray: {why}. Change it in the design, on the "
+            f"command line with --set {name}=..., and compare."
+        )
     rule = KEYS[name]
     scale = float(to_si(1.0, rule.dimension, unit)) if rule.dimension else 1.0
     index = tuple(slice(None) if i == ":" else int(i) for i in re.findall(r"\[(\d+|:)\]", match[2]))

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 Progress = Callable[[float], object]
 _BLOCK = 2**20  # designs times poses computed at once
+_ROUNDING = 1e-12  # of an index: designs that differ less do not differ
 _QUANTILES = (0.001, 0.01, 0.05, 0.5, 0.95, 0.99)
 
 
@@ -241,6 +242,11 @@ class _Index:
         return found
 
 
+def moves(values: Array) -> bool:
+    """Whether values of many designs differ by more than rounding."""
+    return float(np.std(values)) > _ROUNDING * float(np.abs(values).max())
+
+
 def _sensitivity(ensemble: Ensemble, index: _Index, base: int, seed: int, progress: Progress | None) -> xr.Dataset:
     """First-order and total Sobol indices with 95 % confidence half-widths."""
     import xarray as xr
@@ -251,10 +257,11 @@ def _sensitivity(ensemble: Ensemble, index: _Index, base: int, seed: int, progre
     problem = {"num_vars": p, "names": list(ensemble.names), "bounds": [[0.0, 1.0]] * p}
     u = sample.sample(problem, base, calc_second_order=False, seed=seed)
     found = index(u, progress)
-    spread = found.std()
-    result = analyse.analyze(
-        problem, (found - found.mean()) / (spread if spread > 0 else 1.0), calc_second_order=False, seed=seed + 1
-    )  # SALib takes a seed of 0 for none
+    if moves(found):  # SALib takes a seed of 0 for none
+        scaled = (found - found.mean()) / found.std()
+        result = analyse.analyze(problem, scaled, calc_second_order=False, seed=seed + 1)
+    else:
+        result = dict.fromkeys(("S1", "ST", "S1_conf", "ST_conf"), np.zeros(p))
     axis = ("parameter",)
     return xr.Dataset(
         {

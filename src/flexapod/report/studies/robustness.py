@@ -6,7 +6,8 @@ from typing import Any
 
 from flexapod import plots
 from flexapod.design.hexapod import Hexapod
-from flexapod.optimisation.uncertainty import Robustness
+from flexapod.mechanics.cautions import Caution
+from flexapod.optimisation.uncertainty import Robustness, moves
 from flexapod.pose import PoseLike
 from flexapod.report.numbers import brief, file_name, percent, shown
 from flexapod.report.studies import least_index
@@ -38,9 +39,19 @@ def study(hexapod: Hexapod, found: Robustness, over: str, pose: PoseLike | None 
         data=_data(hexapod, found, over),
         rows=_rows(found),
         sections=[*sections, Section("The worst case", [_worst(found)])],
-        cautions=least_index.cautions(hexapod, pose, found.samples.attrs["joint"], f"The design as it is, {where}"),
+        cautions=[
+            *_cautions(found),
+            *least_index.cautions(hexapod, pose, found.samples.attrs["joint"], f"The design as it is, {where}"),
+        ],
         files={f"{name}.html": None, f"{name}.png": spread.draw},
     )
+
+
+def _cautions(found: Robustness) -> list[Caution]:
+    if moves(found.samples["index"].values):
+        return []
+    words = ", ".join(dict.fromkeys(one.words.partition(",")[0] for one in found.ranges.values()))
+    return [Caution("unmoved", f"The index does not depend on what is uncertain here: {words}.")]
 
 
 def _assumed(found: Robustness) -> Table:
