@@ -1,10 +1,13 @@
 """The command line as a user meets it: numbers against published ones, exit codes, messages, JSON, start-up."""
 
 import json
+import os
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
+import click
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -12,6 +15,7 @@ from tests.helpers.plain import file
 
 import flexapod as fx
 from flexapod.cli import COMMANDS
+from flexapod.cli.options import common
 
 CENTER = ["--pose", "0", "0", "0.085", "0", "0", "0"]
 
@@ -244,6 +248,67 @@ def test_designs_and_keys_complete():
     keys = [item.value for item in Assignment().shell_complete(None, None, "legs.st")]
     assert keys[0] == "legs.stiffness="
     assert all(key.startswith("legs.stiffness") for key in keys)
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [["modes", "{}", "--point", "v"], ["response", "--json", "{}", "--at", "v"], ["modes", "--point", "v", "{}"]],
+)
+def test_points_complete_where_the_design_is_typed(typed, tmp_path):
+    """By the shell's own way through the whole command line."""
+    path = tmp_path / "pointed.toml"
+    path.write_text(fx.load("motion-base").to_toml() + "\n[points]\nvertex_mm = [0, 0, -150]\neye = [0.2, 0, 1.1]\n")
+    words = ["flexapod", *(word.format(path) for word in typed[: typed.index("v") + 1])]
+    environment = {**os.environ, "_FLEXAPOD_COMPLETE": "bash_complete", "COMP_WORDS": " ".join(words), "COMP_CWORD": str(len(words) - 1)}  # fmt: skip
+    done = subprocess.run([str(Path(sys.executable).with_name("flexapod"))], capture_output=True, text=True, timeout=60, env=environment)  # fmt: skip
+    assert (done.stderr, done.stdout.split()) == ("", ["plain,vertex"] if str(path) in words else [])
+
+
+@pytest.mark.parametrize(
+    "point",
+    [
+        ["--point", "-0.1", "0", "25mm"],
+        ["--point=-0.1", "0", "25mm"],
+        ["--point", "-10 cm", "0", "0.025"],
+        ["--point", "p"],
+    ],
+)
+def test_a_point_is_one_word_or_three(result, tmp_path, point):
+    path = tmp_path / "pointed.toml"
+    path.write_text(fx.load("mukherjee-ii").to_toml() + "\n[points]\np = [-0.1, 0, 0.025]\n")
+    found = result("modes", path, *point, "--set", "platform.mass=4")
+    assert found["point_m"] == [-0.1, 0.0, 0.025]
+    assert found == result("modes", *point, path, "--set", "platform.mass=4")
+
+
+@pytest.mark.parametrize(
+    ("point", "words"),
+    [
+        (["--point"], "Option '--point' requires an argument"),
+        (["--point", "1", "2"], "1 2 is no point; it takes three numbers X Y Z, or a NAME"),
+        (["--point", "1", "2", "3kg"], "'3kg' is not a number with a unit of length"),
+        (["--point="], "point is ''"),
+        (["--point", "1", "2", "3", "4"], "Got unexpected extra argument (4)"),
+    ],
+)
+def test_what_is_no_point(run, point, words):
+    code, _, err = run("modes", "mukherjee-ii", *point)
+    assert code == 2
+    assert words in err
+
+
+def test_options_of_files_are_of_one_kind():
+    """Every file that is read is looked for before anything is computed, and told with its option."""
+    kinds = {}
+    for name in COMMANDS:
+        command = import_module(f"flexapod.cli.commands.{name}").command
+        for one in command.params:
+            for kind in getattr(one.type, "types", [one.type]):
+                if isinstance(kind, click.Path):
+                    kinds[name, one.name] = kind is common.GIVEN_FILE
+    written = {place for place, given in kinds.items() if not given}
+    assert written == {("new", "file"), ("optimise", "study")}
+    assert len(kinds) > 10
 
 
 def test_check_says_that_a_pose_is_singular(run):

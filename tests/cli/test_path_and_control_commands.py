@@ -64,7 +64,7 @@ def test_path_of_a_file(result, tmp_path):
         (["path", "mukherjee-i", *FROM, *TO, "--bound", 150], "below the bound of 150 rad/s"),
         (["path", "mukherjee-i", *FROM, *TO, "--bound", 100, "--least", "time"], "least time needs a LegSpeed"),
         (["path", "mukherjee-i", *FROM, *TO, "--bound", 100, "--duration", 1, "--leg-rate", 1], "Give one of them"),
-        (["path", "mukherjee-i", "nowhere.csv"], "cannot be read"),
+        (["path", "mukherjee-i", "nowhere.csv"], "File 'nowhere.csv' does not exist"),
         (["control", "cubic-isolator", "pid", "--kp", 1], "pid needs its gains"),
         (["control", "cubic-isolator", "pid", "--kp", -1e6, "--kd", 1], "the machine is unstable with joint-space PID"),
         (["control", "cubic-isolator", "force", "--gain", 60, "--leak", 0], "needs a leak"),

@@ -99,7 +99,7 @@ def test_one_case_and_limits(run, result):
         (["--elevation", "90", "--set", "gravity=[0,0,0]"], "no gravity that an elevation could turn"),
         (["--elevation", "90:0:2", "--reference", "45"], "names no case; the cases are 90, 0"),
         (["--elevation", "90", "--csv", "--json"], "Give one of them"),
-        (["nowhere.csv"], "cannot be read"),
+        (["nowhere.csv"], "File 'nowhere.csv' does not exist"),
         (["cases.csv", "--elevation", "90"], "both give cases"),
         (["cases.csv", "--pose", "0", "0", "2.4", "0", "0", "0"], "both give the pose"),
         (["wrong.csv"], "column 'wind' is unknown"),

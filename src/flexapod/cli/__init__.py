@@ -16,6 +16,7 @@ import click
 
 from flexapod import output_files
 from flexapod.cli import commands
+from flexapod.cli.options.points import one_word
 from flexapod.cli.output import failures, interrupt, streams
 from flexapod.errors import FlexapodError
 from flexapod.progress import silent
@@ -32,6 +33,12 @@ class _Lazy(click.Group):
         if name not in COMMANDS:
             return None
         return import_module(f"flexapod.cli.commands.{name}").command
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        name, command, left = super().resolve_command(ctx, args)
+        return name, command, left if command is None else one_word(command, left)
 
     def invoke(self, ctx: click.Context) -> int:
         try:

@@ -12,7 +12,7 @@ from flexapod.output_files import write_file
 
 @click.command()
 @common.design_argument
-@click.argument("file", type=click.Path(path_type=Path, dir_okay=False))
+@click.argument("file", type=common.GIVEN_FILE)
 @click.option("--all", "every", is_flag=True, help="Give all assemblies of each set of leg lengths.")
 @common.pose_named("--start", help="Pose that the search of poses begins at (m, degrees). Default: home pose.")
 @common.rotation_options

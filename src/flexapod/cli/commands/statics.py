@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import click
@@ -14,7 +13,7 @@ from flexapod.cli.output.results import emit_or_csv
 
 @click.command()
 @common.design_argument
-@click.argument("file", type=click.Path(path_type=Path, dir_okay=False), required=False)
+@click.argument("file", type=common.GIVEN_FILE, required=False)
 @common.pose_option
 @click.option(
     "--elevation",

@@ -35,7 +35,6 @@ class Share(click.ParamType):
         return share
 
 
-_FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
 claim_options = common.stack(
     click.option(
         "--at-least",
@@ -58,7 +57,11 @@ claim_options = common.stack(
 region_options = common.stack(
     where_options,
     click.option(
-        "--path", "path_file", type=_FILE, metavar="FILE", help="All along a path, as `flexapod path` reads it."
+        "--path",
+        "path_file",
+        type=common.GIVEN_FILE,
+        metavar="FILE",
+        help="All along a path, as `flexapod path` reads it.",
     ),
     click.option(
         "--ends",
@@ -86,7 +89,9 @@ run_options = common.stack(
     threads_option,
     *cluster_options,
     click.option("--resume", is_flag=True, help="Go on with the certificate that the same command began in --out."),
-    click.option("--check", type=_FILE, metavar="FILE", help="Prove the certificate in FILE anew, by other boxes."),
+    click.option(
+        "--check", type=common.GIVEN_FILE, metavar="FILE", help="Prove the certificate in FILE anew, by other boxes."
+    ),
     common.out_option(
         "Where to keep the certificate (JSON), also while it is made, and its page (HTML). Default: here; with --json: "
         "no files."

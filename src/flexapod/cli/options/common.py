@@ -84,6 +84,7 @@ class Output(click.ParamType):
 
 
 DIRECTORY, FILE = Output(check_directory), Output(check_file)
+GIVEN_FILE = click.Path(path_type=Path, exists=True, dir_okay=False)  #: a file that is read
 
 
 class Finite(click.FloatRange):

@@ -50,7 +50,7 @@ drive_options = common.stack(
     ),
     click.option(
         "--recording",
-        type=(click.Choice(tuple(USES)), click.Path(exists=True, dir_okay=False)),
+        type=(click.Choice(tuple(USES)), common.GIVEN_FILE),
         multiple=True,
         metavar="USE FILE",
         help="A CSV file for base, force, moment or leg: columns time and channels, as time,z_um,roll_deg or leg1_mm.",

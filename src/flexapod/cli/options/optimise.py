@@ -69,7 +69,7 @@ optimise_options = common.stack(
     where_options,
     click.option(
         "--mean",
-        type=click.Path(path_type=Path, exists=True, dir_okay=False),
+        type=common.GIVEN_FILE,
         default=None,
         metavar="FILE",
         help="Raise the mean index over the poses of a file (x,y,z,roll,pitch,yaw in m, degrees).",

@@ -49,7 +49,7 @@ class Options:
 
 
 path_options = common.stack(
-    click.argument("file", type=click.Path(path_type=Path, dir_okay=False), required=False),
+    click.argument("file", type=common.GIVEN_FILE, required=False),
     common.pose_named("--from", "start", help="Plan from this pose (m, degrees)."),
     common.pose_named("--to", "goal", help="Plan to this pose (m, degrees)."),
     common.rotation_options,
@@ -69,7 +69,7 @@ path_options = common.stack(
     ),
     click.option(
         "--payloads",
-        type=click.Path(path_type=Path, dir_okay=False),
+        type=common.GIVEN_FILE,
         metavar="CSV",
         help="Loads with inertia, or forces: columns case, mass, x, y, z, ixx, ..., force_x, ..., each if wanted.",
     ),

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 
 from flexapod.cli.options import common
@@ -53,7 +51,7 @@ response_options = common.stack(
     click.option("--steps", type=click.IntRange(2, 100_000), default=100, show_default=True, help="See --amplitude."),
     click.option(
         "--psd",
-        type=click.Path(path_type=Path, exists=True, dir_okay=False),
+        type=common.GIVEN_FILE,
         default=None,
         metavar="CSV",
         help="Spectra of the base for RMS values: column frequency_hz and one or more of x, y, z (m/s2)^2/Hz, roll, "
@@ -62,7 +60,7 @@ response_options = common.stack(
     click.option(
         "--load",
         "loads",
-        type=click.Path(path_type=Path, exists=True, dir_okay=False),
+        type=common.GIVEN_FILE,
         multiple=True,
         metavar="CSV",
         help="Spectra of a random load on the platform: column frequency_hz and one or more of force_x, ... N2/Hz, "

@@ -90,7 +90,7 @@ poses_options = common.stack(
     ),
     click.option(
         "--poses",
-        type=click.Path(path_type=Path, exists=True, dir_okay=False),
+        type=common.GIVEN_FILE,
         default=None,
         help="Poses of a .csv or .npy file: x, y, z (m), roll, pitch, yaw (degrees). A CSV may name other units, as "
         "x_mm, roll_rad; one that --out wrote is read as well.",
