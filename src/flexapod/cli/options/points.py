@@ -22,7 +22,7 @@ class Point(click.ParamType):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> PointGiven:
         if not isinstance(value, str):
-            return tuple(value)  # type: ignore[return-value]
+            return tuple(value)
         words = value.split(_BETWEEN)
         if not NUMBER.fullmatch(words[0].strip()):
             return value
@@ -46,7 +46,8 @@ class Point(click.ParamType):
 def one_word(command: click.Command, given: Sequence[str]) -> list[str]:
     """The words of a command line, those of each point together: an option of click takes one word, or always three."""
     names = {name for one in command.params if isinstance(one.type, Point) for name in one.opts}
-    found, left = [], list(given)
+    found: list[str] = []
+    left = list(given)
     while left:
         word = left.pop(0)
         if word == "--":
