@@ -33,6 +33,7 @@ def test_response_prints_what_the_library_gives(result, arguments, variable, giv
     assert omega[-1] == pytest.approx(2000)
     hexapod = fx.load("mukherjee-ii")
     eta = found["loss_factor"]
+    assert eta == [0.02 if "--loss-factor" in arguments else 0.0] * 6
     expected = fx.transmissibility(hexapod, II, omega=omega, loss_factor=eta)[variable].sel(given)
     for axis in AXES:
         complex_amplitude = np.array(found["amplitude"][axis]) * np.exp(1j * np.array(found["phase_rad"][axis]))

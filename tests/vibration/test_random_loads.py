@@ -179,7 +179,11 @@ def test_the_command_gives_the_library_s_numbers(run, result, tmp_path):
         ),
         ("frequency_hz,force_y_m2/Hz\n1,1\n2,1\n", [], "has the unit 'm2_per_Hz'; it may be"),
         ("frequency_hz,force_y\n1,1\n2,-1\n", [], "line 3, column force_y: -1 is negative"),
-        ("frequency_hz,force_y\n1,1\n2,1\n", ["--at", 0, 0, 0, "--at", 0, 0, 1], "--at gives 2 places for 1 loads"),
+        (
+            "frequency_hz,force_y\n1,1\n2,1\n",
+            ["--at", 0, 0, 0, "--at", 0, 0, 1],
+            "--at gives 2 places for 1 load. Give one for all",
+        ),
     ],
 )
 def test_wrong_files_are_told(run, tmp_path, text, more, words):

@@ -76,9 +76,12 @@ def _random(
         notes += spectra.notes
         base = {"psd": spectra.density, "frequency": spectra.frequency, "of": spectra.of}
     files, places = given["loads"], given["at"] or ((0.0, 0.0, 0.0),)
-    if len(places) not in (1, len(files)) or (given["at"] and not files):
+    if given["at"] and not files:
+        raise click.UsageError("--at is where a load acts, and there is none. Give its spectra with --load.")
+    if len(places) not in (1, len(files)):
         raise click.UsageError(
-            f"--at gives {len(places)} places for {len(files)} loads. Give one for all, or one for each --load in turn."
+            f"--at gives {len(places)} places for {len(files)} load{'s' * (len(files) > 1)}. Give one for all, or one "
+            "for each --load in turn."
         )
     for file, place in zip(files, places * len(files) if len(places) == 1 else places, strict=False):
         spectra = read_load(file)
