@@ -1,14 +1,16 @@
 """Stiffness laws, springs in series, a suspension and losses on the page: in the answers, and in a browser."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from tests.web.acts import turn_to, type_in, wait_for_index
+from tests.web.acts import saved, turn_to, type_in, wait_for_index
 
 import flexapod as fx
 
 pytest.importorskip("starlette")
+from flexapod.design.schema import KEYS
 from flexapod.web import requests
 from flexapod.web.description import described, fields
 from flexapod.web.designs import Source
@@ -48,6 +50,7 @@ def test_the_form_has_every_number_but_short_forms() -> None:
     known = {field["key"]: field for field in fields()}
     for key in ("legs.series_stiffness", "legs.stiffness_law.stroke", "suspension.damping", "legs.joint_rest.position"):
         assert key in known
+    assert {key for key in KEYS if key.startswith("drive.")} <= known.keys()
     assert known["legs.stiffness_law.stroke"]["laws"] == ["hydraulic"]
     assert known["legs.stiffness"]["laws"] == []
     assert known["suspension.stiffness"]["shapes"] == [[6], [6, 6]]
@@ -133,6 +136,48 @@ def test_springs_in_series_and_a_suspension_are_edited(opened: Any) -> None:
     series.fill("")
     series.press("Enter")
     wait_for_index(page, fx.natural_modes(held.replace({"legs.series_stiffness": None}), pose).omega[0])
+
+
+def test_a_drive_is_edited_and_points_are_kept(opened: Any, tmp_path: Path) -> None:
+    motor = {"speeds": [0, 300, 400], "peak_torques": [9, 9, 6], "continuous_torques": [3, 2.5, 2]}
+    drive = {"lead_mm": 5, "efficiency": 0.9, "rotor_inertia_kg_cm2": 0.06, "motor": motor}
+    own = fx.load("mukherjee-ii").replace({"drive": drive, "points": {"vertex": [0, 0, -0.15]}, "name": "driven"})
+    file = tmp_path / "own.toml"
+    own.save(file)
+    page = opened("design=mukherjee-ii&tab=design")
+    page.set_input_files("#design-file", file)
+    page.locator("#design summary", has_text="Drive").click()
+    lead = page.get_by_label("drive.lead m", exact=True)
+    sync_api = pytest.importorskip("playwright.sync_api")
+    sync_api.expect(lead).to_have_value("0.005", timeout=90_000)  # when the file is read
+    lead.fill("0.01")
+    lead.press("Enter")
+    curve = page.get_by_label("drive.motor.peak_torques N m, separated by semicolons")
+    curve.fill("9; 9")
+    curve.press("Enter")
+    wrong = page.locator(".field-row[data-key='drive.motor.peak_torques'] .wrong")
+    wrong.filter(has_text="drive.motor.peak_torques has 2 numbers and drive.motor.speeds 3").wait_for()
+    curve.fill("9; 9; 7")
+    curve.press("Enter")
+    wrong.wait_for(state="hidden")
+    page.wait_for_timeout(600)
+    text = saved(page, lambda: page.get_by_role("button", name="Save TOML").click()).decode()
+    assert fx.Hexapod.from_toml(text) == own.replace({"drive.lead": 0.01, "drive.motor.peak_torques": [9, 9, 7]})
+
+
+def test_a_drive_is_made_in_the_form(opened: Any) -> None:
+    page = opened("design=mukherjee-ii&tab=design")
+    page.locator("#design summary", has_text="Drive").click()
+    for label, text in (("drive.lead m", "0.01"), ("drive.efficiency ", "0.9")):
+        page.get_by_label(label, exact=True).fill(text)
+        page.get_by_label(label, exact=True).press("Enter")
+        if "lead" in label:
+            page.locator(".wrong", has_text="missing: drive.efficiency").wait_for()
+    page.locator(".wrong", has_text="missing: drive.efficiency").wait_for(state="hidden")
+    page.wait_for_timeout(600)
+    text = saved(page, lambda: page.get_by_role("button", name="Save TOML").click()).decode()
+    made = fx.load("mukherjee-ii").replace({"drive": {"lead": 0.01, "efficiency": 0.9}})
+    assert fx.Hexapod.from_toml(text) == made
 
 
 def test_the_box_of_losses_tells_that_they_act(opened: Any) -> None:

@@ -26,15 +26,16 @@ _OPTIONAL = (
     "legs.joint_stiffness.",
     "legs.joint_rest.",
     "suspension.",
+    "drive.",
 )
 
 
 def fields() -> list[Field]:
     """Every key of a design file that holds numbers, with its meaning, unit and shapes, for the form.
 
-    Short forms, points and the drive are changed in the file.
+    Short forms and points are changed in the file.
     """
-    shorthand = re.compile(r"\.(circle|rod)\.|^cubic\.|^drive\.|^legs\.stiffness_law\.area$")
+    shorthand = re.compile(r"\.(circle|rod)\.|^cubic\.|^legs\.stiffness_law\.area$")
     return [
         {
             "key": _field_key(key),

@@ -15,6 +15,7 @@ const GROUPS: [string, string][] = [
   ['legs.', 'Legs'],
   ['suspension.', 'Suspension'],
   ['limits.', 'Limits'],
+  ['drive.', 'Drive'],
   ['home.', 'Home pose'],
 ]
 
