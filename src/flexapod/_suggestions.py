@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from typing import Any, NoReturn, TypeVar
 
 import lazy_loader
@@ -100,6 +101,15 @@ def _at_top(name: str, known: str) -> list[str]:
     """What a word stands for, as it is reached from the top: a known word, or a name but for capitals."""
     if name in WORDS:
         return [WORDS[name]]
+    found = _reached()
+    if known in found:
+        return [found[known]]
+    return [call for one, call in found.items() if one.lower() == known.lower()]
+
+
+@cache
+def _reached() -> dict[str, str]:
+    """Every public name, and how it is reached from the top; found once, since `hasattr` comes here too."""
     top = importlib.import_module(TOP)
     found = {one: one for one in top.__all__}
     for place in top.__all__:
@@ -109,9 +119,7 @@ def _at_top(name: str, known: str) -> list[str]:
             modules = [one for one in names if place != "plots" and _is_module(f"{TOP}.{place}.{one}")]
             inside = {one: f"{place}.{module}.{one}" for module in modules for one in _own(getattr(package, module))}
             found = inside | {one: f"{place}.{one}" for one in names} | found
-    if known in found:
-        return [found[known]]
-    return [call for one, call in found.items() if one.lower() == known.lower()]
+    return found
 
 
 def _own(module: Any) -> list[str]:
