@@ -18,6 +18,9 @@ report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
 paper: build ## the paper reproduced on one page (OUT=...)
 	$(BIN)/flexapod paper --out $(OUT)
 
+# The tests start hundreds of processes, and each worker has all files of tests: none compiles again what another one has.
+export PYTHONDONTWRITEBYTECODE =
+
 # On every core, each file of tests on one: what its tests share is made once. In the order of tests/conftest.py.
 AT_ONCE := -n logical --dist loadfile --no-loadscope-reorder
 
