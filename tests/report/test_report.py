@@ -155,6 +155,28 @@ def test_influences_are_what_small_changes_do():
     assert found["stiffness of all legs + 1 %"].effect == pytest.approx(0.005, rel=1e-12)  # omega ~ sqrt(K)
 
 
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        (None, {"bulk_modulus": "bulk modulus of the oil"}),  # that of the packaged design
+        ({"kind": "screw", "axial_rigidity": 2e8, "fixed": 5e7, "zero_length": 0.5},
+         {"axial_rigidity": "axial rigidity of the legs", "fixed": "fixed stiffness of the legs"}),
+        ({"kind": "table", "lengths": [1.5, 2.5, 4.0], "stiffnesses": [9e6, 8e6, 5e6]},
+         {"stiffnesses": "stiffness of all legs at all lengths"}),
+    ],
+)  # fmt: skip
+def test_influences_of_a_stiffness_law(law, words):
+    h = fx.load("motion-base").replace({} if law is None else {"legs.stiffness_law": law})
+    pose = fx.Pose.from_rpy(0.05, 0.15, 2.4, 0.1, -0.05, 0.1)  # six distinct frequencies
+    found = {one.change: one for one in gather(h, pose).influences if one.group == "stiffness"}
+    assert found.keys() == {f"{name} + 1 %" for name in words.values()}
+    for key, name in words.items():
+        values, part = h.values()[f"legs.stiffness_law.{key}"], 1e-4
+        up, down = (fx.stability_index(h.replace({f"legs.stiffness_law.{key}": values * (1 + s * part)}), pose) for s in (1, -1))  # fmt: skip
+        assert found[f"{name} + 1 %"].effect == pytest.approx(0.01 * (up - down) / (up + down) / part, rel=1e-6)
+    assert sum(one.effect for one in found.values()) == pytest.approx(0.005, rel=1e-9)  # omega ~ sqrt(K)
+
+
 def test_the_effect_on_repeated_modes_is_that_on_their_mean():
     h = plain_machine("precision-positioner")  # threefold symmetry: modes 1 and 2 are one pair
     pose = fx.home_pose(h)
