@@ -153,7 +153,10 @@ def test_the_page_takes_a_design_with_a_drive():
     found = described(Source(DRIVEN.to_toml(), "{}"))
     assert found["digest"] == DRIVEN.digest
     assert "[drive.motor]" in found["toml"]
-    assert not any(field["key"].startswith("drive") for field in fields())  # changed in the file
+    keys = [field["key"] for field in fields()]
+    assert all(key in keys for key in found["values"] if key.startswith("drive."))
+    lighter = described(Source(DRIVEN.to_toml(), '{"platform.mass": 5.0, "drive.lead": 0.004}'))
+    assert fx.Hexapod.from_toml(lighter["toml"]) == DRIVEN.replace({"platform.mass": 5.0, "drive.lead": 0.004})
 
 
 def test_a_table_of_six_stiffnesses_is_no_number_of_each_leg():
