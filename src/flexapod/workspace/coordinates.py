@@ -4,7 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from flexapod.conventions import Array
+from flexapod import _core
+from flexapod.conventions import AXES, Array, JointModel
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.layout import HOME, numbers
+from flexapod.mechanics.inputs import as_joint
+from flexapod.pose import Motion, Pose
 
 
 def twist_of_coordinates(six: Array) -> Array:
@@ -14,3 +19,26 @@ def twist_of_coordinates(six: Array) -> Array:
     jacobian = np.eye(6)
     jacobian[3:, 3:] = [[cy * cp, -sy, 0.0], [sy * cp, cy, 0.0], [-sp, 0.0, 1.0]]
     return jacobian
+
+
+class AtCoordinates:
+    """What the core tells of a machine at x, y, z, roll, pitch, yaw, with derivatives by these six; its home stays."""
+
+    def __init__(self, hexapod: Hexapod, joint: JointModel) -> None:
+        own = numbers(hexapod)
+        self._design, self._still, self._joint = own[: HOME.start], np.zeros((len(AXES), HOME.start)), as_joint(joint)
+        self._home = np.zeros((0, _core.motion_size))
+        if hexapod.home is not None:
+            self._home = Motion(Pose.from_rpy(*own[HOME])).packed[None]
+        self._home_still = np.zeros((len(AXES) if len(self._home) else 0, 6))
+
+    def __call__(self, six: Array) -> _core.DesignDirections:
+        return _core.DesignDirections(
+            design=self._design,
+            joint=self._joint,
+            platform=Motion(Pose.from_rpy(*six)).packed.reshape(1, -1),
+            directions=self._still,
+            displacements=np.ascontiguousarray(twist_of_coordinates(six).T[None]),
+            home=self._home,
+            home_displacements=self._home_still,
+        )

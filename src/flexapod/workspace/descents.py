@@ -7,15 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexapod import _core
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import as_joint, states
+from flexapod.mechanics.inputs import states
 from flexapod.pose import Pose
 from flexapod.workspace.box import Box, Workspace
 from flexapod.workspace.box_minimum import apart, constrained_minimum, smooth_minimum
-from flexapod.workspace.coordinates import twist_of_coordinates
+from flexapod.workspace.coordinates import AtCoordinates
 from flexapod.workspace.limit_margins import LimitMargins
 from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.sampling import low_discrepancy
@@ -33,21 +32,20 @@ class SquaredFrequency:
     """
 
     def __init__(self, hexapod: Hexapod, joint: JointModel, mode: int, *, highest: bool = False) -> None:
-        self.hexapod, self.joint_name, self.joint, self.mode = hexapod, joint, as_joint(joint), mode - 1
+        self.hexapod, self.joint_name, self.mode = hexapod, joint, mode - 1
+        self._at = AtCoordinates(hexapod, joint)
         self.sign = -1.0 if highest else 1.0
         self.scale = 1.0  # largest omega_6 met, rad/s
 
     def __call__(self, six: Array) -> tuple[float, Array]:
         """omega^2 and its derivatives by the coordinates; zero at a pose that no leg can take, which it falls to."""
         try:
-            s = states(self.hexapod, Pose.from_rpy(*six))
+            states(self.hexapod, Pose.from_rpy(*six))
         except PoseError:
             return 0.0, np.zeros(6)
-        omega = _core.natural_modes(self.hexapod.packed, self.joint, s.platform, s.base)[0][0]
-        by_twist = _core.frequency_derivatives(self.hexapod.packed, self.joint, s.platform, s.base)[1]
+        omega, slope = (found[0] for found in self._at(six).frequencies())
         self.scale = max(self.scale, float(omega[-1]))
-        slope = by_twist[0, self.mode] @ twist_of_coordinates(six)
-        return self.sign * float(omega[self.mode] ** 2), self.sign * slope
+        return self.sign * float(omega[self.mode] ** 2), self.sign * slope[self.mode, self.mode]
 
     def swept(self, rows: Array, threads: int) -> Array:
         """The frequency at many poses, rad/s, with the sign of what a search lowers."""

@@ -7,15 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexapod import _core
-from flexapod.conventions import AXES, LEG_PAIRS, LEGS, Array, JointModel
+from flexapod.conventions import LEG_PAIRS, LEGS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.layout import HOME, numbers
 from flexapod.errors import ArgumentError, PoseError
-from flexapod.mechanics.inputs import as_joint
 from flexapod.mechanics.load_limits import force_bounds
-from flexapod.pose import Motion, Pose
-from flexapod.workspace.coordinates import twist_of_coordinates
+from flexapod.workspace.coordinates import AtCoordinates
 from flexapod.workspace.quantities import kernel_limits
 from flexapod.workspace.static_forces import static_forces
 
@@ -51,11 +47,7 @@ class LimitMargins:
     """
 
     def __init__(self, hexapod: Hexapod, only_law: bool = False, joint: JointModel = "universal") -> None:
-        own = numbers(hexapod)
-        self._design, self._still = own[: HOME.start], np.zeros((len(AXES), HOME.start))
-        self._home = np.zeros((0, _core.motion_size))
-        if hexapod.home is not None:
-            self._home = Motion(Pose.from_rpy(*own[HOME])).packed[None]
+        self._at = AtCoordinates(hexapod, joint)
         bounds = [*_law_bounds(hexapod), *([] if only_law else _bounds(hexapod))]
         self.kernel, self.only_law = kernel_limits(hexapod, only_law), only_law
         self.names = tuple(bound.name for bound in bounds)
@@ -63,19 +55,11 @@ class LimitMargins:
         self._bounds, self._sign, self._scale = (
             np.array([getattr(bound, name) for bound in bounds], dtype=float) for name in ("value", "sign", "scale")
         )
-        self._joint, self._of_force = as_joint(joint), self._columns >= _FORCES
+        self._of_force = self._columns >= _FORCES
 
     def __call__(self, six: Array) -> tuple[Array, Array]:
         """Margins (m,), and their derivatives by the six coordinates (m, 6)."""
-        at = _core.DesignDirections(
-            design=self._design,
-            joint=self._joint,
-            platform=Motion(Pose.from_rpy(*six)).packed.reshape(1, -1),
-            directions=self._still,
-            displacements=np.ascontiguousarray(twist_of_coordinates(six).T[None]),
-            home=self._home,
-            home_displacements=np.zeros((len(AXES) if len(self._home) else 0, 6)),
-        )
+        at = self._at(six)
         parts = [*at.legs(), *([static_forces(at)] if self._of_force.any() else [])]
         value = np.concatenate([value[0] for value, _ in parts])[self._columns]
         slope = np.concatenate([slope[0] for _, slope in parts])[self._columns]
