@@ -119,8 +119,8 @@ def test_a_path_from_a_file(result, there):
 
 
 def test_an_optimised_design_is_proved_on_request(run):
-    given = ("optimise", "motion-base", "--vary", "platform.mass=3000:4000", "--trials", 0, "--points", 64,
-             "--verify", 256, *SMALL)  # fmt: skip
+    given = ("optimise", "mukherjee-ii", "--vary", "platform.mass=2:5", "--trials", 0, "--points", 64,
+             "--verify", 256, "--around", "0.005", "1")  # fmt: skip
     found = json.loads(run(*given, "--certify", "--json")[1])
     proof = found["certificate"]
     assert proof["status"] == "proved"
