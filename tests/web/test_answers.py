@@ -10,13 +10,14 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 import pytest
 
 pytest.importorskip("starlette")
+import numpy as np
 from starlette.testclient import TestClient
 from tests.helpers.support import MACHINES
 
 from flexapod.design import design_file
 from flexapod.web import answers, simulation, workspace
 from flexapod.web.app import application
-from flexapod.web.encode import as_json
+from flexapod.web.encode import as_json, float32
 
 TEXTS = {name: design_file.find(name).read_text(encoding="utf-8") for name in MACHINES}
 ASKED = {"design": TEXTS["mukherjee-ii"], "pose": [0.001, 0.0, 0.086, 1.0, 2.0, 3.0]}
@@ -128,6 +129,11 @@ def test_messages_of_jobs_have_their_types(job: Any, spec: dict[str, Any]) -> No
     for message, data in job(ASKED | spec):
         assert isinstance(data, bytes)
         fits(json.loads(as_json(message)), answers.JobMessage)
+
+
+def test_numbers_beyond_those_of_the_page_are_infinite() -> None:
+    told = float32(np.array([1.5, 1e300, -1e300, np.nan]))
+    np.testing.assert_array_equal(np.frombuffer(told, "<f4"), [1.5, np.inf, -np.inf, np.nan])
 
 
 def test_first_and_last_messages_of_jobs_have_their_types(client: TestClient) -> None:

@@ -48,5 +48,9 @@ def frame(message: JobMessage, data: bytes = b"") -> bytes:
 
 
 def float32(array: np.ndarray) -> bytes:
-    """The numbers of an array in the order of its memory (last axis fastest), as little-endian float32."""
-    return np.ascontiguousarray(array, dtype="<f4").tobytes()
+    """The numbers of an array in the order of its memory (last axis fastest), as little-endian float32.
+
+    Those that it has no number for, beyond 3.4e38, are infinite.
+    """
+    with np.errstate(over="ignore"):
+        return np.ascontiguousarray(array, dtype="<f4").tobytes()
