@@ -142,6 +142,21 @@ def rotation_from_vector(vector: ArrayLike) -> Array:
     return np.eye(3) + np.sin(turned) * K + (1 - np.cos(turned)) * K @ K
 
 
+def vector_from_rotation(matrix: Array) -> Array:
+    """Rotation vectors (..., 3) in rad, of length up to pi, of rotation matrices (..., 3, 3), without loading SciPy."""
+    sines = 0.5 * np.stack([matrix[..., k, j] - matrix[..., j, k] for j, k in ((1, 2), (2, 0), (0, 1))], axis=-1)
+    sine, cosine = np.linalg.norm(sines, axis=-1, keepdims=True), 0.5 * (np.trace(matrix, axis1=-2, axis2=-1) - 1.0)
+    angle = np.arctan2(sine, cosine[..., None])
+    near = sines * np.where(sine > 0, angle / np.where(sine > 0, sine, 1.0), 1.0)
+    # Near half a turn the sine has no digits left: the axis is the largest column of (R + R^T) / 2 - cos(angle) 1.
+    outer = 0.5 * (matrix + np.swapaxes(matrix, -1, -2)) - cosine[..., None, None] * np.eye(3)
+    largest = np.argmax(np.diagonal(outer, axis1=-2, axis2=-1), axis=-1)
+    axis = np.take_along_axis(outer, largest[..., None, None], axis=-1)[..., 0]
+    length = np.linalg.norm(axis, axis=-1, keepdims=True)
+    turned = np.where(np.sum(axis * sines, axis=-1, keepdims=True) < 0, -angle, angle)
+    return np.where(cosine[..., None] > -0.9, near, axis * turned / np.where(length > 0, length, 1.0))
+
+
 def orthonormal(matrix: Array) -> Array:
     """The rotation nearest to a matrix that is one to rounding."""
     u, _, vt = np.linalg.svd(matrix)

@@ -5,6 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import flexapod as fx
+from flexapod.rotations import vector_from_rotation
 
 ORDERS = ["xyz", "XYZ", "ZXZ", "zxz", "ZYX", "yxy", "YZX"]
 
@@ -59,3 +60,16 @@ def test_orders_that_are_none(order):
 def test_shapes_that_do_not_fit():
     with pytest.raises(fx.PoseError, match="do not fit"):
         fx.Pose.from_angles(np.zeros((2, 3)), np.zeros((3, 3)))
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-12, 1e-6, 0.3, 2.6, 2.7, 3.0, np.pi - 1e-9, np.pi])
+def test_rotation_vectors_are_those_of_scipy(angle):
+    rng = np.random.default_rng(3)
+    axes = np.concatenate([rng.normal(size=(40, 3)), np.eye(3), -np.eye(3), [[1, 1, 0], [0, -1, 1e-9]]])
+    vectors = angle * axes / np.linalg.norm(axes, axis=1, keepdims=True)
+    turn = Rotation.from_rotvec(vectors)
+    found, expected = vector_from_rotation(turn.as_matrix()), turn.as_rotvec()
+    same = np.abs(found - expected).max(axis=1) <= 1e-15 + 1e-14 * angle
+    half = np.abs(angle - np.pi) < 1e-8  # an axis and its opposite are the same half turn
+    assert np.all(same | (half & (np.abs(found + expected).max(axis=1) < 1e-8)))
+    assert np.abs(vector_from_rotation(turn.as_matrix()[0]) - found[0]).max() == 0

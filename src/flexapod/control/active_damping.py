@@ -8,7 +8,6 @@ from typing import get_args
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.linalg import eigh, null_space
 
 from flexapod.checks import instance, numbers, one_of
 from flexapod.control.closed_loop_poles import least_damping
@@ -21,6 +20,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import response_attributes
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import Linearisation, linearise
+from flexapod.mechanics.symmetric_pencil import pencil_squares
 from flexapod.pose import PoseLike
 
 
@@ -70,15 +70,22 @@ def open_zeros(linear: Linearisation, feedback: Feedback, legs: Sequence[int] = 
     chosen = np.array(sorted(legs)) - 1
     K, H = 0.5 * (linear.K + linear.K.T), linear.H[:, chosen]
     if feedback == "force":
-        square = eigh(K - (H * linear.leg_stiffness[chosen]) @ H.T, linear.M, eigvals_only=True)
-        small = 1e-9 * np.abs(eigh(K, linear.M, eigvals_only=True)).max()
+        square = pencil_squares(K - (H * linear.leg_stiffness[chosen]) @ H.T, linear.M)
+        small = 1e-9 * np.abs(pencil_squares(K, linear.M)).max()
         square = np.where(np.abs(square) < small, 0.0, square)
         with np.errstate(invalid="ignore"):
             return np.sqrt(square)
-    free = null_space(H.T)
+    free = _null_space(H.T)
     if free.shape[1] == 0:
         return np.zeros(0)
-    return np.sqrt(np.maximum(eigh(free.T @ K @ free, free.T @ linear.M @ free, eigvals_only=True), 0.0))
+    return np.sqrt(np.maximum(pencil_squares(free.T @ K @ free, free.T @ linear.M @ free), 0.0))
+
+
+def _null_space(matrix: Array) -> Array:
+    """An orthonormal basis of the x with matrix x = 0, as columns."""
+    _, s, vt = np.linalg.svd(matrix)
+    rank = int(np.sum(s > max(matrix.shape) * np.finfo(float).eps * s.max(initial=0.0)))
+    return vt[rank:].T
 
 
 def root_locus(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import expm
 
 from flexapod.control.linear_controller import Controller, signals
 from flexapod.control.plant import Plant
@@ -78,6 +77,8 @@ def predict(plant: Plant, controller: Controller, base_motion: Excitation, clock
 
 def _ramped(plant: Plant, h: float) -> tuple[Array, Array, Array, Array]:
     """Over a step h: z' = A z + B f + E_0 w(start) + E_1 w(end), the force held and w linear."""
+    from scipy.linalg import expm
+
     whole = np.zeros((42, 42))
     whole[:12] = np.hstack([plant.A, plant.B, plant.E, np.zeros((12, 12))])
     whole[18:30, 30:] = np.eye(12) / h

@@ -12,6 +12,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.inputs import single_pose
 from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.mechanics.plausibility import Caution
+from flexapod.mechanics.symmetric_pencil import pencil_squares
 from flexapod.pose import PoseLike
 from flexapod.showing import in_notebooks
 
@@ -135,8 +136,6 @@ def _misfit(leg: int, length: float, lower: float, upper: float) -> str:
 
 def _first_frequency(length: float, lower: _Rod, upper: _Rod) -> float:
     """First frequency of a pinned beam, rad/s; the lower rod begins at 0, the upper one at the other end."""
-    from scipy.linalg import eigh
-
     steps = np.unique(np.clip([0.0, length - float(upper.length), float(lower.length), length], 0.0, length))
     steps = steps[np.append(True, np.diff(steps) > 1e-9 * length)]
     steps[-1] = length
@@ -151,9 +150,8 @@ def _first_frequency(length: float, lower: _Rod, upper: _Rod) -> float:
         M[place] += sum(float(rod.mass / rod.length) for rod in here) * _mass(b - a)
         K[place] += sum(float(rod.bending) for rod in here) * _stiffness(b - a)
     free = np.delete(np.arange(2 * nodes.size), [0, 2 * nodes.size - 2])  # the ends do not move, but turn
-    last = free.size - 1  # the greatest 1 / omega^2 keeps its digits where the least omega^2 would not
-    inverse = eigh(M[np.ix_(free, free)], K[np.ix_(free, free)], eigvals_only=True, subset_by_index=[last, last])
-    return float(1 / np.sqrt(inverse[0]))
+    inverse = pencil_squares(M[np.ix_(free, free)], K[np.ix_(free, free)])
+    return float(1 / np.sqrt(inverse[-1]))  # the greatest 1 / omega^2 keeps digits that the least omega^2 would not
 
 
 def _mass(h: float) -> Array:

@@ -15,7 +15,7 @@ from flexapod.mechanics.reactions import joint_reactions
 from flexapod.mechanics.springs import axial_stiffness
 from flexapod.mechanics.statics import Equilibrium, hold, static_equilibrium
 from flexapod.pose import Pose
-from flexapod.rotations import skew
+from flexapod.rotations import skew, vector_from_rotation
 
 _TURNS = 25  # of a load in base axes with the platform, until both agree
 _SAME = 1e-13
@@ -68,8 +68,6 @@ def unanswered(status: str) -> Answer:
 
 def answer(case: Case, reference: Case | None, point: Array, section: float, joint: JointModel) -> Answer:
     """The equilibrium of a case whose leg lengths are held, set in another case or without weight and load."""
-    from scipy.spatial.transform import Rotation
-
     if reference is None:
         lengths, zero_force = inverse_kinematics(case.machine, case.pose), np.zeros(6)
     else:
@@ -102,7 +100,7 @@ def answer(case: Case, reference: Case | None, point: Array, section: float, joi
         rest.leg_length,
         lengths,
         moved,
-        Rotation.from_matrix(rest.pose.matrix @ case.pose.matrix.T).as_rotvec(),
+        vector_from_rotation(rest.pose.matrix @ case.pose.matrix.T),
         carried.spherical_force,
         carried.universal_force,
         carried.prismatic_moment,

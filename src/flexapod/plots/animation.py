@@ -27,7 +27,7 @@ from flexapod.output_files import check_file, completed
 from flexapod.plots.style import BASE, FAINT, LEG, PLATFORM, VIEW, entitle, ink, letters, wide
 from flexapod.pose import Pose, PoseLike
 from flexapod.progress import ProgressLike, with_progress
-from flexapod.rotations import rotation_from_vector
+from flexapod.rotations import rotation_from_vector, vector_from_rotation
 
 if TYPE_CHECKING:
     from matplotlib.animation import AbstractMovieWriter
@@ -332,9 +332,7 @@ def _simulated(dataset: xr.Dataset, hexapod: Hexapod, base: Pose) -> tuple[_Film
     told = dataset.displacement.transpose("time", "output").values
     turned = dataset.base_rotation.transpose("time", "axis", "body_axis").values @ base.matrix.T
     moved = dataset.base_position.transpose("time", "axis").values - base.position
-    from scipy.spatial.transform import Rotation
-
-    feet = np.concatenate([moved, Rotation.from_matrix(turned).as_rotvec()], axis=1)
+    feet = np.concatenate([moved, vector_from_rotation(turned)], axis=1)
     start = dataset.isel(time=0)  # its displacement from rest gives rest
     matrix = rotation_from_vector(told[0, 3:]).T @ start.rotation.transpose("axis", "body_axis").values
     arm = matrix @ np.asarray(dataset.attrs.get("point_m", (0.0, 0.0, 0.0)))

@@ -19,6 +19,7 @@ from flexapod.mechanics.kinematics import inverse_kinematics
 from flexapod.mechanics.springs import axial_stiffness, refuse_outside_law
 from flexapod.mechanics.statics import hold
 from flexapod.pose import Motion, Pose, as_pose
+from flexapod.rotations import vector_from_rotation
 from flexapod.simulation.run import Load, SimulationRun, Start
 
 Method = Literal["automatic", "runge_kutta"]
@@ -211,7 +212,7 @@ def _start(start: Start, rest: Pose) -> tuple[Array, Array]:
     motion = start if isinstance(start, Motion) else Motion(as_pose(start, "start"))
     if motion.shape:
         raise PoseError(f"start has batch axes {motion.shape}; a simulation starts from one motion. Index it first.")
-    turn = Pose(np.zeros(3), motion.pose.matrix @ rest.matrix.T).rotation.as_rotvec()
+    turn = vector_from_rotation(motion.pose.matrix @ rest.matrix.T)
     displacement = np.concatenate([motion.pose.position - rest.position, turn])
     return displacement, np.concatenate([motion.velocity, motion.angular_velocity])
 

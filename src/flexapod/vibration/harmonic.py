@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import eigh
 
 from flexapod.checks import floats
 from flexapod.conventions import Array, Complex
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import Linearisation
+from flexapod.mechanics.symmetric_pencil import pencil_modes
 
 MOST_LOSS = 1e30  #: of a loss factor
 _BLOCK = 4096  # frequencies solved at a time: bounds the memory
@@ -88,7 +88,7 @@ class _Modes:
     """The dynamic stiffness and its right-hand sides in undamped modes."""
 
     def __init__(self, linear: Linearisation, losses: ArrayLike) -> None:
-        square, self.shape = eigh(0.5 * (linear.K + linear.K.T), linear.M)
+        square, self.shape = pencil_modes(0.5 * (linear.K + linear.K.T), linear.M)
         left = self.shape.T
         self.square = square
         self.skew = left @ (0.5 * (linear.K - linear.K.T)) @ self.shape  # only a wrench that turns makes K unsymmetric

@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
-from scipy.linalg import eigh, expm
 
 from flexapod.checks import one_of, positive
 from flexapod.conventions import AXES, TWO_PI, Array, Complex, JointModel, in_mixed_units, in_unit, unit_of
@@ -21,6 +20,7 @@ from flexapod.mechanics.cautions import response_attributes
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attributes, single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.point_motion import displacement_at, shift
+from flexapod.mechanics.symmetric_pencil import pencil_modes
 from flexapod.pose import Motion, Pose, PoseLike, unpack
 from flexapod.progress import ProgressLike, with_progress
 from flexapod.rotations import rotation_from_vector
@@ -207,7 +207,7 @@ class _ModalState:
     """States as modal amplitudes: omega_m q and its rate, in which the free motion of every mode is a circle."""
 
     def __init__(self, tangent: Linearisation, losses: Array) -> None:
-        square, shape = eigh(0.5 * (tangent.K + tangent.K.T), tangent.M)
+        square, shape = pencil_modes(0.5 * (tangent.K + tangent.K.T), tangent.M)
         natural = np.sqrt(np.abs(square))
         stiffness, friction = (shape.T @ m @ shape for m in (tangent.K, tangent.C))
         zero = np.zeros((6, 6))
@@ -220,6 +220,8 @@ class _ModalState:
 
     def closing(self, omega: Array) -> Array:
         """(n, 12, 12): the change of start values that closes a period, per closing error, by the tangent."""
+        from scipy.linalg import expm
+
         w = omega[:, None, None]
         free = expm((self.rate + self.lost / w) * (TWO_PI / w))
         return np.linalg.pinv(np.eye(12) - free, rcond=1e-15)

@@ -17,6 +17,7 @@ from flexapod.excitation.piecewise import half_sine_shock, smooth_step
 from flexapod.excitation.recordings import parse_time_series
 from flexapod.excitation.sines import harmonic, sine_sweep
 from flexapod.mechanics.modes import natural_modes
+from flexapod.rotations import vector_from_rotation
 from flexapod.simulation.time_simulation import simulate
 from flexapod.web import requests
 from flexapod.web.answers import Message, SimulationRun
@@ -116,9 +117,7 @@ def _motion(spec: dict[str, Any], duration: float) -> Excitation:
 
 def _rows(data: Any) -> Array:
     """Time, displacements of platform and base, leg lengths and forces, (n, 25)."""
-    from scipy.spatial.transform import Rotation
-
-    turned = Rotation.from_matrix(data["base_rotation"].to_numpy()).as_rotvec()
+    turned = vector_from_rotation(data["base_rotation"].to_numpy())
     parts = [data["displacement"], data["base_position"], turned, data["leg_length"], data["leg_force"]]
     return np.concatenate([data["time"].to_numpy()[:, None], *(np.asarray(part) for part in parts)], axis=1)
 
