@@ -309,6 +309,8 @@ def test_what_cannot_be_run_is_refused(isolator):
         )
     with pytest.raises(fx.ArgumentError, match="duration must be > after"):
         fx.control.simulate_control(isolator, pose, controller=sampled, base_motion=shaken(), duration=1.0, after=2.0)
+    with pytest.raises(fx.ArgumentError, match="at most 10000000 samples are simulated"):
+        fx.control.simulate_control(isolator, pose, controller=sampled, base_motion=shaken(), duration=1e308)
     with pytest.raises(fx.errors.SimulationError, match=r"ended at t = .*: singular"):
         fx.control.simulate_control(
             isolator, pose, controller=sampled, base_motion=harmonic("z", 0.3, 30.0), duration=1.0

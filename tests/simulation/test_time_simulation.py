@@ -621,6 +621,7 @@ def test_a_quiet_recording_is_not_stepped_over():
     [
         ({"duration": 0.0}, ArgumentError, "duration is 0"),
         ({}, ArgumentError, "duration is missing"),
+        ({"duration": 5e-324, "samples": 50}, ArgumentError, "instants are the same"),
         ({"duration": 1.0, "samples": 10**12}, ArgumentError, "samples is 1000000000000; at most 10000000"),
         ({"duration": 1.0, "threads": 0.5}, ArgumentError, "threads is 0.5"),
         ({"duration": 10**400}, ArgumentError, "an integer of 1329 bits"),

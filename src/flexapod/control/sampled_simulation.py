@@ -26,6 +26,7 @@ from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attribute
 from flexapod.mechanics.linearisation import linearise
 from flexapod.pose import Motion, Pose, PoseLike
 from flexapod.progress import ProgressLike, with_progress
+from flexapod.simulation.batch import MOST_ASKED
 from flexapod.simulation.integrator import prepare
 from flexapod.simulation.run import SimulationRun
 
@@ -171,6 +172,11 @@ def _clock(plant: Plant, controller: Controller, duration: float, after: float) 
         raise ArgumentError(
             f"duration is {duration} s and after is {after} s; a sample of {dt:.5g} s must fit, and "
             "duration must be > after >= 0"
+        )
+    if duration > MOST_ASKED * dt:
+        raise ArgumentError(
+            f"duration is {duration:.6g} s, and a sample {dt:.5g} s; at most {MOST_ASKED} samples are simulated. "
+            "Shorten it."
         )
     loop = assess(plant, controller)
     if not loop.stable:

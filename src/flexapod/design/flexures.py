@@ -17,6 +17,7 @@ from flexapod.showing import in_notebooks
 
 RECTANGLE, ROUND = 6 / 5, 10 / 9  # by how much shear strains a section more than if its stress were uniform
 SOFTEST = 1e-100  # Pa, a modulus below which compliances overflow
+LEAST, MOST = 1e-9, 1e3  # m, between which all dimensions of parts that are made lie
 SLENDER = 1e5  # radius over thickness, beyond which a notch is no part that is made
 
 
@@ -416,7 +417,13 @@ def _series(one: Array | float, other: Array | float) -> Array:
 
 
 def _lengths(**values: float) -> list[float]:
-    return [checks.positive(value, name, "m") for name, value in values.items()]
+    found = [checks.positive(value, name, "m") for name, value in values.items()]
+    for name, value in zip(values, found, strict=True):
+        if not LEAST <= value <= MOST:
+            raise ArgumentError(
+                f"{name} is {value:.6g} m; it must be between {LEAST:g} and {MOST:g} m. Check its unit."
+            )
+    return found
 
 
 def _check(material: Material) -> None:

@@ -175,7 +175,10 @@ def _sample_times(times: ArrayLike | None, duration: float | None, samples: int 
         samples = min(MOST_SAMPLES, max(needed, 1)) + 1
     if whole(samples, "samples", 2) > MOST_ASKED:
         raise ArgumentError(f"samples is {samples}; at most {MOST_ASKED} instants are kept. Simulate in parts.")
-    return np.linspace(0.0, end, samples)
+    found = np.linspace(0.0, end, samples)
+    if not (np.diff(found) > 0).all():
+        raise ArgumentError(f"duration is {end:.6g} s, in which {samples} instants are the same. Give a longer one.")
+    return found
 
 
 def _end(runs: Sequence[SimulationRun], duration: float | None) -> float | None:
