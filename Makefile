@@ -129,19 +129,20 @@ $(VENV)/.dist: $(VENV)/.built
 	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[dist]'
 	touch $@
 
-WEB := web/package.json web/package-lock.json web/index.html web/vite.config.ts web/tsconfig.json \
+WEB := web/package.json web/package-lock.json web/index.html web/vite.config.ts web/vite.notebook.config.ts web/tsconfig.json \
        $(wildcard web/src/*/* web/public/*)
 
-web: web/node_modules/.built ## the page's bundle, which is committed: needs Node 20
+web: web/node_modules/.built ## the bundles of the page and of the view for notebooks, which are committed: needs Node 20
 
 web-types: build ## the page's types of the server's answers, from flexapod.web.answers
 	$(BIN)/python web/generate_answers.py
 
-web-check: build web/node_modules/.installed ## lint, types and tests of the page; is the committed bundle what the sources give?
+web-check: build web/node_modules/.installed ## lint, types and tests of the page; are the committed bundles what the sources give?
 	$(BIN)/python web/generate_answers.py --check
 	cd web && npm run lint && npm run types && npm test
-	cd web && npm run build -- --outDir node_modules/.check --emptyOutDir
-	diff -r web/node_modules/.check src/flexapod/web/static
+	cd web && BUILD=node_modules/.check npm run build
+	diff -r web/node_modules/.check/web/static src/flexapod/web/static
+	diff -r web/node_modules/.check/notebook/static src/flexapod/notebook/static
 
 web/node_modules/.installed: web/package.json web/package-lock.json
 	cd web && npm ci

@@ -4,7 +4,7 @@ import { defineConfig } from 'vite'
 export default defineConfig({
   base: './',
   build: {
-    outDir: '../src/flexapod/web/static',
+    outDir: `${process.env.BUILD ?? '../src/flexapod'}/web/static`,
     emptyOutDir: true,
     target: 'es2022',
     modulePreload: false,

@@ -1,6 +1,6 @@
 """Draws the pictures of the manual anew: python docs/images/draw.py [NAME ...], without names all of them.
 
-A picture is drawn with the others of its script. Those of the page and of the tutorial need chromium.
+A picture is drawn with the others of its script. Those of the page, of the view and of the tutorial need chromium.
 """
 
 import subprocess
@@ -37,6 +37,8 @@ PICTURES = {
     "tutorial-map.png": "draw_tutorial.py",
     "tutorial-report.png": "draw_tutorial.py",
     "two-columns.png": "draw_guides.py",
+    "view-dark.png": "draw_view.py",
+    "view-light.png": "draw_view.py",
     "web-dark.png": "draw_page.py",
     "web-light.png": "draw_page.py",
 }

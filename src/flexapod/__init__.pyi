@@ -7,6 +7,7 @@ from . import errors as errors
 from . import excitation as excitation
 from . import interchange as interchange
 from . import mechanics as mechanics
+from . import notebook as notebook
 from . import optimisation as optimisation
 from . import paths as paths
 from . import plots as plots
@@ -58,6 +59,7 @@ from .mechanics.reactions import joint_reactions as joint_reactions
 from .mechanics.sensitivity import frequency_sensitivity as frequency_sensitivity
 from .mechanics.statics import hold as hold
 from .mechanics.statics import static_equilibrium as static_equilibrium
+from .notebook.viewing import view as view
 from .optimisation.design_search import optimise as optimise
 from .optimisation.objectives import LeastIndex as LeastIndex
 from .optimisation.pareto import pareto_front as pareto_front

@@ -18,7 +18,7 @@ import flexapod as fx
 
 CASES = json.loads((Path(__file__).parents[1] / "data" / "golden.json").read_text(encoding="utf-8"))["cases"]
 FILES = ["py.typed", "_core.pyi", "__init__.pyi", "mechanics/__init__.pyi", "design/machines/template.toml"]
-FILES += ["report/page.css", "web/static/index.html"]
+FILES += ["report/page.css", "web/static/index.html", "notebook/static/view.js"]
 
 
 def check_natural_frequencies() -> None:

@@ -39,6 +39,7 @@ ORDER = [
     "paper",
     "report",
     "web",
+    "notebook",
     "cli",
     "__main__",
 ]
@@ -58,7 +59,7 @@ CORE_ORDER = (
     "bindings",
 )
 #: And for those of the page.
-PAGE_ORDER = ("state", "widgets", "charts", "machine3d", "panels", "app")
+PAGE_ORDER = ("state", "widgets", "charts", "machine3d", "snapshot", "notebook", "panels", "app")
 
 FILES = sorted(SOURCE.rglob("*.py"))
 IDS = [str(path.relative_to(SOURCE)) for path in FILES]

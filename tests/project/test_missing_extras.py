@@ -73,6 +73,7 @@ NEEDS = [
     ("pyarrow", "sweep", lambda: saved("sweep.parquet")),
     ("zarr", "sweep", lambda: fx.workspace.SweepStore.create("s.zarr", fx.load("motion-base"), fx.pose_grid(z=[2.4]))),
     ("distributed", "sweep", workers),
+    ("anywidget", "notebook", lambda: fx.view(*isolator())),
     ("imageio_ffmpeg", "video", lambda: fx.animate_mode(*isolator(), 1, "mode.mp4")),
 ]  # fmt: skip
 

@@ -76,6 +76,7 @@ CALLS = {
     "stability_index": fx.stability_index,
     "stepped_sine": lambda h, p: fx.stepped_sine(h, p, omega=[100.0], amplitude=1e-6, axis="z"),
     "transmissibility": lambda h, p: fx.transmissibility(h, p, omega=[1.0]),
+    "view": fx.view,
     "viscous_equivalent": lambda h, p: fx.mechanics.viscous_equivalent(h.replace({"legs.loss_factor": 0.1}), 1.0, p),
     "write_mat": lambda h, p: fx.interchange.write_mat("no-such-folder/machine.mat", h, p),
     "write_mjcf": lambda h, p: fx.interchange.write_mjcf("no-such-folder/machine.xml", h, p),
@@ -104,6 +105,7 @@ PROVOKED = {
         "imageio_ffmpeg", lambda: fx.animate_simulation(fx.simulate(MACHINE, HOME, duration=1e-3), MACHINE, "a.mp4")
     ),
     ("cluster", "ArgumentError"): lambda: fx.workspace.cluster("local", timeout=-1.0).__enter__(),
+    ("view", "MissingExtraError"): without("anywidget", lambda: fx.view(MACHINE)),
     ("h_infinity", "MissingExtraError"): without("slycot", lambda: fx.control.h_infinity(MACHINE, HOME)),
     ("lqg", "MissingExtraError"): without("control", lambda: fx.control.lqg(MACHINE, HOME)),
     ("robustness", "MissingExtraError"): without(

@@ -11,7 +11,6 @@ import flexapod as fx
 
 pytest.importorskip("starlette")
 from flexapod.design.schema import KEYS
-from flexapod.web import requests
 from flexapod.web.description import described, fields
 from flexapod.web.designs import Source
 from flexapod.web.laws import law_choices
@@ -208,6 +207,5 @@ def test_limits_are_those_of_the_joint_model() -> None:
     assert moments[high] > 1.001 * moments[low]
     limited = machine.replace({"limits.universal_moment": float(0.5 * (moments[low] + moments[high]))})
     for joint in (low, high):
-        asked = {"design": limited.to_toml(), "changes": {}, "pose": pose, "joint": joint}
-        limits = snapshot(requests.question(asked))["limits"]
+        limits = snapshot(limited, pose, joint)["limits"]
         assert any("moment" in words for words in limits["exceeded"]) == (joint == high)

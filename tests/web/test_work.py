@@ -21,7 +21,7 @@ import flexapod as fx
 pytest.importorskip("starlette")
 
 from flexapod.design import design_file
-from flexapod.web import pose_ranges, requests, response
+from flexapod.web import pose_ranges, response
 from flexapod.web import worker as work
 from flexapod.web.clients import Client
 from flexapod.web.encode import as_json
@@ -267,7 +267,7 @@ def test_a_pose_that_is_not_stable_at_rest_is_said_to_be(monkeypatch: pytest.Mon
     from flexapod.web import state
 
     heavy = {"platform.mass": 1e7, "platform.mass_center": [0, 0, 0.3]}  # it topples on its springs
-    found = state.snapshot(requests.question(ASKED | {"changes": heavy}))
+    found = state.snapshot(MACHINE.replace(heavy), ASKED["pose"])
     assert "Not stable at rest" in found["grave"][0]
 
 

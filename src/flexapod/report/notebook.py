@@ -17,12 +17,14 @@ from typing import Any
 import numpy as np
 
 from flexapod import plots
-from flexapod.conventions import TWO_PI
+from flexapod.conventions import TWO_PI, JointModel
 from flexapod.design.hexapod import Hexapod
+from flexapod.mechanics.at_rest import pose_state
 from flexapod.mechanics.cautions import other_than_vibration
 from flexapod.mechanics.kinematics import home_pose
 from flexapod.mechanics.linearisation import DampedModes
 from flexapod.mechanics.modes import NaturalModes
+from flexapod.pose import Pose
 from flexapod.report import figures
 from flexapod.report import html as pages
 from flexapod.report.numbers import shown
@@ -101,6 +103,22 @@ def _modes(modes: NaturalModes | DampedModes) -> str:
     seen = modes.omega[modes.omega > 0]
     picture = _drawing(partial(_frequencies, modes), "frequencies") if modes.omega.size == 6 and seen.size else ""
     return f"{_table(Table(columns), name)}{picture}"
+
+
+def at_pose(hexapod: Hexapod, pose: Pose, joint: JointModel) -> str:
+    """A machine at a pose: its drawing, its frequencies, and what to beware of."""
+    state = pose_state(hexapod, pose, joint=joint)
+    picture = _drawing(partial(plots.machine, hexapod, pose), f"{hexapod.name} at {pose}")
+    modes = Table(
+        [
+            Column("mode", [str(k + 1) for k in range(6)]),
+            Column("", state.modes.omega / TWO_PI, "Hz", 5),
+            Column("what moves", [mode.text for mode in state.descriptions]),
+        ]
+    )
+    cautions = "".join(f"<p>{escape(one.text)}</p>" for one in state.cautions)
+    place = escape(str(pose).removeprefix("Pose"))
+    return _page(f"<b>{escape(hexapod.name)}</b> {place}{picture}{_table(modes, 'Natural modes')}{cautions}")
 
 
 #: Types with a view of their own.

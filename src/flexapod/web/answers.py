@@ -86,18 +86,23 @@ class PoseBox(TypedDict):
     high: list[float]
 
 
-class Design(TypedDict):
-    """A design. `values` by key; `laws`: changes to each; `home` in m and degrees; `leg`: mean length at home, m."""
+class Drawn(TypedDict):
+    """What a 3-D view must know of a design: `home` in m and degrees, `leg`: mean length at home, m."""
 
     name: str
+    home: list[float]
+    box: PoseBox
+    leg: float
+
+
+class Design(Drawn):
+    """A design with all its numbers: `values` by key; `laws`: changes to each."""
+
     digest: str
     warnings: list[str]
     values: dict[str, Any]
     laws: dict[str, dict[str, Any]]
     parameters: list[Parameter]
-    home: list[float]
-    box: PoseBox
-    leg: float
     toml: str
 
 

@@ -13,7 +13,6 @@ from flexapod.design.units import printed, si_unit
 from flexapod.web import pose_ranges
 from flexapod.web.answers import Design, Field
 from flexapod.web.designs import Source, built, original
-from flexapod.web.geometry import mean_leg_length
 from flexapod.web.laws import law_choices, law_of
 from flexapod.web.parameters import main_parameters
 
@@ -59,17 +58,13 @@ def _shapes(key: str, shapes: Shapes) -> list[list[int]]:
 def described(source: Source) -> Design:
     """All that the page shows of a design itself. Raises InvalidDesign with every field that is wrong."""
     hexapod = built(source)
-    home = pose_ranges.home(hexapod)
     return {
-        "name": hexapod.name,
+        **pose_ranges.drawn(hexapod),
         "digest": hexapod.digest,
         "warnings": list(hexapod.warnings),
         "values": _values(hexapod),
         "laws": law_choices(hexapod),
         "parameters": main_parameters(hexapod, original(source.text)),
-        "home": home,
-        "box": pose_ranges.box(hexapod),
-        "leg": mean_leg_length(hexapod, home),
         "toml": source.text if source.changes == "{}" else hexapod.to_toml(),
     }
 

@@ -10,6 +10,7 @@ import numpy as np
 from starlette.responses import Response
 
 from flexapod.web.answers import JobMessage
+from flexapod.web.plain import plain
 
 
 class JSONAnswer(Response):
@@ -22,23 +23,8 @@ class JSONAnswer(Response):
 
 
 def as_json(content: Any) -> bytes:
-    """JSON text; the page shows null as a dash."""
-    return json.dumps(_plain(content), allow_nan=False, separators=(",", ":")).encode()
-
-
-def _plain(value: Any) -> Any:
-    """The value with lists for arrays, and None for NaN and infinity."""
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, np.ndarray) and np.isfinite(value).all():
-        return value.tolist()
-    if isinstance(value, np.ndarray | np.generic):
-        value = value.tolist()
-    if isinstance(value, list | tuple):
-        return [_plain(item) for item in value]
-    if isinstance(value, float) and value - value != 0.0:  # NaN, infinity
-        return None
-    return value
+    """JSON text with null for NaN and infinity."""
+    return json.dumps(plain(content), allow_nan=False, separators=(",", ":")).encode()
 
 
 def frame(message: JobMessage, data: bytes = b"") -> bytes:

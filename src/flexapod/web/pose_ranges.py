@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flexapod.design.hexapod import Hexapod
-from flexapod.web.answers import PoseBox
+from flexapod.web.answers import Drawn, PoseBox
 from flexapod.web.geometry import in_degrees, mean_leg_length, mean_radius
 
 
@@ -24,13 +24,19 @@ def home(hexapod: Hexapod) -> list[float]:
     return [x, y, z + height, 0.0, 0.0, 0.0]
 
 
-def box(hexapod: Hexapod) -> PoseBox:
+def drawn(hexapod: Hexapod, at: list[float] | None = None) -> Drawn:
+    """What a 3-D view must know of a design. at: a pose in m and degrees to be home, where it is not the design's."""
+    start = home(hexapod) if at is None else at
+    return {"name": hexapod.name, "home": start, "box": box(hexapod, start), "leg": mean_leg_length(hexapod, start)}
+
+
+def box(hexapod: Hexapod, start: list[float] | None = None) -> PoseBox:
     """Ranges of the pose that the sliders and sweeps start with, m and degrees, around home.
 
     As far as the legs' stroke takes the platform where the design limits it, otherwise a quarter of a leg's length.
     """
-    at = np.array(home(hexapod))
-    reach = 0.25 * mean_leg_length(hexapod, at.tolist())
+    start = home(hexapod) if start is None else start
+    at, reach = np.array(start), 0.25 * mean_leg_length(hexapod, start)
     if hexapod.limits.leg_length is not None:
         pairs = np.asarray(hexapod.limits.leg_length).reshape(-1, 2)
         reach = min(reach, 0.6 * float((pairs[:, 1] - pairs[:, 0]).mean()))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from flexapod.control.sampling_rate import sampling_time
-from flexapod.conventions import LEGS, TWO_PI
+from flexapod.conventions import LEGS, TWO_PI, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.at_rest import PoseState, pose_state
 from flexapod.mechanics.cautions import GRAVE, Tangent
@@ -16,18 +18,21 @@ from flexapod.mechanics.modes import near_repeated
 from flexapod.mechanics.springs import axial_stiffness
 from flexapod.pose import Pose
 from flexapod.web.answers import DampedModes, Geometry, Limits, LoneMode, Snapshot, StaticLegs
-from flexapod.web.requests import Question
+from flexapod.web.geometry import pose_at
 
 
-def snapshot(question: Question) -> Snapshot:
-    """Geometry, frequencies, modes, forces and limits at a pose. Raises PoseError if a leg cannot reach it."""
-    hexapod, pose, joint = question.hexapod, question.pose, question.joint
+def snapshot(hexapod: Hexapod, six: Sequence[float], joint: JointModel = "universal") -> Snapshot:
+    """Geometry, frequencies, modes, forces and limits at a pose. Raises PoseError if a leg cannot reach it.
+
+    six: x, y, z in m, roll, pitch, yaw in degrees.
+    """
+    pose = pose_at(six)
     state = pose_state(hexapod, pose, joint=joint)
     modes = state.modes
     strain = energy_shares(hexapod, pose, joint=joint).strain
     angles = joint_angles(hexapod, pose)
     return {
-        "pose": list(question.six),
+        "pose": list(six),
         "stability": state.stability,
         "geometry": _geometry(hexapod, pose),
         "omega": modes.omega,
@@ -42,10 +47,10 @@ def snapshot(question: Question) -> Snapshot:
         "legs": {
             "universal": np.round(np.degrees(angles.universal), 9) + 0.0,
             "spherical": np.round(np.degrees(angles.spherical), 9) + 0.0,
-            **_static(question, state),
+            **_static(hexapod, pose, state),
         },
         "leg_distance": float(leg_distance(hexapod, pose)),
-        "limits": _limits(question),
+        "limits": _limits(hexapod, pose, joint),
         "grave": [one.text for one in state.cautions if one.code in GRAVE],
         "warnings": [one.text for one in state.cautions if one.code not in (*GRAVE, "limit", "design")],
         "near_repeated": near_repeated(modes.omega),
@@ -64,9 +69,8 @@ def _geometry(hexapod: Hexapod, pose: Pose) -> Geometry:
     }
 
 
-def _static(question: Question, state: PoseState) -> StaticLegs:
+def _static(hexapod: Hexapod, pose: Pose, state: PoseState) -> StaticLegs:
     """Static leg forces at the pose; there are none at a singular one."""
-    hexapod, pose = question.hexapod, question.pose
     if state.linear is None:
         length = inverse_kinematics(hexapod, pose)
         why = next(one.text for one in state.cautions if one.code in ("singular", "unsupported"))
@@ -94,9 +98,9 @@ def _damped(tangent: Tangent) -> DampedModes:
     }
 
 
-def _limits(question: Question) -> Limits:
+def _limits(hexapod: Hexapod, pose: Pose, joint: JointModel) -> Limits:
     """The limits exceeded, in words, all and by leg, and whether the design has limits."""
-    quantities = limit_excess(question.hexapod, question.pose, joint=question.joint)
+    quantities = limit_excess(hexapod, pose, joint=joint)
     words = [word for quantity in quantities for word in quantity.in_words()]
     by_leg = [[word.split(": ", 1)[1] for word in words if word.startswith(f"leg {leg}: ")] for leg in LEGS]
     return {"any": bool(quantities), "ok": not words, "exceeded": words, "by_leg": by_leg}

@@ -16,6 +16,12 @@ from flexapod.web.answers import Message, Refusal
 from flexapod.web.design_errors import InvalidDesign
 from flexapod.web.encode import as_json
 
+
+def _state(asked: dict[str, Any]) -> Mapping[str, Any]:
+    question = requests.question(asked)
+    return state.snapshot(question.hexapod, question.six, question.joint)
+
+
 KINDS: dict[str, Callable[[dict[str, Any]], Iterator[Message]]] = {
     "cloud": workspace.cloud,
     "slice": workspace.slice_map,
@@ -24,7 +30,7 @@ KINDS: dict[str, Callable[[dict[str, Any]], Iterator[Message]]] = {
 }
 QUESTIONS: dict[str, Callable[[dict[str, Any]], Mapping[str, Any]]] = {
     "design": lambda asked: description.described(requests.source(asked)),
-    "state": lambda asked: state.snapshot(requests.question(asked)),
+    "state": _state,
     "response": response.response,
     "shake": response.shake,
 }

@@ -1,8 +1,9 @@
 // The page: header, pose and parameters, 3-D view, panels; and what asks the server when something changes.
 
+import '../widgets/common.css'
 import './style.css'
 import { followPrinting } from '../charts/printing'
-import { beginTheme, onTheme } from '../charts/theme'
+import { beginTheme, onTheme, theme } from '../charts/theme'
 import { Animation } from '../machine3d/animation'
 import { Scene } from '../machine3d/scene'
 import { type DesignPanel, designPanel } from '../panels/design'
@@ -14,6 +15,7 @@ import { responsePanel } from '../panels/response'
 import { timePanel } from '../panels/simulation'
 import { viewPanel } from '../panels/view'
 import { workspacePanel } from '../panels/workspace'
+import { readout } from '../snapshot/readout'
 import { toAddress } from '../state/address'
 import type { Design, Snapshot, Start } from '../state/answers'
 import { answers, get, Live, type Refused } from '../state/api'
@@ -25,7 +27,6 @@ import { tabs } from '../widgets/tabs'
 import { header } from './header'
 import { listenToKeys } from './keys'
 import { awayLine, faultLine, toast } from './notices'
-import { readout } from './readout'
 import { restore, type Tell } from './restore'
 
 /** What shows errors at their fields, and what shows the machine at its pose. */
@@ -56,7 +57,7 @@ function failed(error: Refused): void {
 function build(start: Start): Built {
   const { element, say } = toast()
   const faults = faultLine()
-  const scene = new Scene()
+  const scene = new Scene(theme)
   const animation = new Animation(scene)
   const parameters = parametersPanel()
   const design = designPanel(start.fields, () => store.set({ tab: 'design' }))
@@ -70,8 +71,9 @@ function build(start: Start): Built {
     ['time', 'Time', timePanel(animation)],
     ['design', 'Design', design.element],
   ])
+  store.on(['snapshot'], () => page.snapshot && results.show(page.snapshot))
   const side = h('div', { class: 'side' }, posePanel(), parameters.element)
-  const middle = h('div', { class: 'middle' }, results, viewPanel(scene), refused)
+  const middle = h('div', { class: 'middle' }, results.element, viewPanel(scene), refused)
   const head = h('div', { class: 'head' }, header(start, say), awayLine(say), faults.element)
   document.body.append(head, h('main', {}, side, middle, panels), element)
   listenToKeys()
@@ -80,7 +82,12 @@ function build(start: Start): Built {
     refused.hidden = !page.error
   })
   const question = () => store.question()
-  const state = new Result({ question, ask: () => undefined, live: false }, [results, scene.element, modes, legs])
+  const state = new Result({ question, ask: () => undefined, live: false }, [
+    results.element,
+    scene.element,
+    modes,
+    legs,
+  ])
   return { panels: [parameters, design], state, tell: faults.tell }
 }
 

@@ -1,8 +1,8 @@
 // Axes and colour bars drawn as SVG: on the page over a canvas, and in the figures that are saved.
 
 import { svg } from '../widgets/dom'
+import type { Theme } from './look'
 import { fraction, type Scale, ticks, tickText } from './scale'
-import type { Theme } from './theme'
 
 export interface Box2 {
   left: number

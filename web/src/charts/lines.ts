@@ -5,9 +5,10 @@ import 'uplot/dist/uPlot.min.css'
 import { h } from '../widgets/dom'
 import { sig } from '../widgets/format'
 import { type Lines, lineFigure, type Series } from './line-figure'
+import type { Theme } from './look'
 import { onPrint } from './printing'
 import { type Scale, ticks, tickText } from './scale'
-import { type Theme, theme } from './theme'
+import { theme } from './theme'
 
 export class LinePlot {
   readonly element = h('figure', { class: 'lines', role: 'group' })

@@ -1,6 +1,7 @@
-// Colours of the light and dark theme, for canvases and figures, and colours of categories.
+// The light and dark theme of the whole page, and colours of categories.
 
 import type { Rgb } from './colourmaps'
+import { type Theme, themeOf } from './look'
 
 /** Okabe and Ito's colours for categories, the last three darker so that lines show on white, neighbours far apart. */
 export const ON_LIGHT = ['#0072b2', '#d55e00', '#009e73', '#b8608f', '#b57a00', '#2f90c9']
@@ -9,29 +10,8 @@ export const ON_DARK = ['#4d9bff', '#ff7f2a', '#1fc796', '#e08fc0', '#f2b632', '
 export const categories = (): string[] => (theme().dark ? ON_DARK : ON_LIGHT)
 /** Line styles that tell categories apart without colours: translations solid, rotations dashed. */
 export const DASHES = [[], [], [], [7, 3], [2, 2], [9, 3, 2, 3]]
-export const EXCEEDED = '#d55e00'
 
-export interface Theme {
-  dark: boolean
-  paper: string
-  text: string
-  muted: string
-  grid: string
-  accent: string
-}
-
-export function theme(): Theme {
-  const style = getComputedStyle(document.documentElement)
-  const of = (name: string) => style.getPropertyValue(name).trim()
-  return {
-    dark: document.documentElement.dataset.theme === 'dark',
-    paper: of('--panel'),
-    text: of('--text'),
-    muted: of('--muted'),
-    grid: of('--grid'),
-    accent: of('--accent'),
-  }
-}
+export const theme = (): Theme => themeOf(document.documentElement)
 
 /** The grey of poses beyond the limits. */
 export const beyond = (): Rgb => (theme().dark ? [88, 98, 110] : [201, 206, 213])

@@ -1,7 +1,7 @@
 // The hexapod as meshes: plates, legs of two parts, joints, frames, mass centre. It draws what the server computed.
 
 import * as THREE from 'three'
-import { EXCEEDED, type Theme, theme } from '../charts/theme'
+import { EXCEEDED, type Theme } from '../charts/look'
 import type { Geometry } from '../state/answers'
 import { dispose, frame, label, massCentre, type Phong, phong, pin, plate } from './parts'
 import { noTwist, place, type Twist } from './twist'
@@ -36,14 +36,14 @@ export class Machine {
   private moved: [Twist, Twist] = [noTwist(), noTwist()]
   private labelScale = 0.02
 
-  constructor() {
+  constructor(private readonly theme: () => Theme) {
     this.root.add(this.base, this.platform)
   }
 
   /** Show a pose; the meshes are rebuilt only if the design is another one. Returns whether they were. */
   show(geometry: Geometry, legAtHome: number): boolean {
     const { base, platform, axes, mass_center } = geometry
-    const key = JSON.stringify([base, platform, axes, mass_center, legAtHome, theme().dark])
+    const key = JSON.stringify([base, platform, axes, mass_center, legAtHome, this.theme().dark])
     const rebuilt = key !== this.key
     if (rebuilt) this.build(geometry, legAtHome)
     this.key = key
@@ -129,8 +129,8 @@ export class Machine {
     this.lowerLength = 0.58 * legAtHome
     this.radius = 0.62 * Math.hypot(2 * this.size, legAtHome)
     this.masses.copy(vector(geometry.mass_center))
-    this.buildPlates(theme())
-    this.buildLegs(geometry.axes.map(vector), theme())
+    this.buildPlates(this.theme())
+    this.buildLegs(geometry.axes.map(vector), this.theme())
     this.showLabels(this.labelsShown)
     this.labelSize = this.labelScale
     if (this.colours.length) this.paint(this.colours, this.exceeded)

@@ -1,7 +1,7 @@
 // Parts of the drawn machine: plates, joints, frames, labels.
 
 import * as THREE from 'three'
-import type { Theme } from '../charts/theme'
+import type { Theme } from '../charts/look'
 
 const Y = new THREE.Vector3(0, 1, 0)
 const AXES: [string, THREE.Vector3, number][] = [

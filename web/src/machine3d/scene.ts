@@ -2,10 +2,11 @@
 
 import * as THREE from 'three'
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js'
-import { onTheme, theme } from '../charts/theme'
+import type { Theme } from '../charts/look'
 import { h, perFrame } from '../widgets/dom'
 import { saveCanvas, saveText } from '../widgets/download'
 import { Machine } from './machine'
+import { dispose } from './parts'
 
 export type Standard = 'iso' | 'front' | 'side' | 'top'
 
@@ -36,7 +37,7 @@ function graphics(): Graphics {
 
 export class Scene {
   readonly element = h('div', { class: 'scene' })
-  readonly machine = new Machine()
+  readonly machine: Machine
   private readonly graphics = graphics()
   private readonly world = new THREE.Scene()
   private readonly camera = new THREE.PerspectiveCamera(32, 1, 0.01, 100)
@@ -45,10 +46,13 @@ export class Scene {
   private readonly grid = new THREE.Group()
   private renderer: THREE.WebGLRenderer | null = null
   private controls: OrbitControls | null = null
+  private readonly sizes = new ResizeObserver(() => this.resize())
   private frames = 0
   readonly draw = perFrame(() => this.render())
 
-  constructor() {
+  /** `theme`: the colours of what it stands in. */
+  constructor(private readonly theme: () => Theme) {
+    this.machine = new Machine(theme)
     this.camera.up.set(0, 0, 1)
     this.light.position.set(2, -3, 5)
     this.world.add(this.sky, this.light, this.light.target, this.grid, this.machine.root)
@@ -61,7 +65,6 @@ export class Scene {
         ),
       )
     }
-    onTheme(() => this.paintGround())
   }
 
   private begin(): boolean {
@@ -81,8 +84,29 @@ export class Scene {
     this.controls.addEventListener('end', () => this.tellView())
     canvas.addEventListener('keydown', (event) => this.key(event))
     canvas.addEventListener('webglcontextrestored', this.draw)
-    new ResizeObserver(() => this.resize()).observe(this.element)
+    this.sizes.observe(this.element)
     return true
+  }
+
+  /** Leave the wheel to what the view lies in, unless the view has the focus. */
+  shareWheel(): void {
+    const { renderer, controls } = this
+    if (!renderer || !controls) return
+    controls.enableZoom = false
+    for (const [event, on] of [['focus', true] as const, ['blur', false] as const])
+      renderer.domElement.addEventListener(event, () => {
+        controls.enableZoom = on
+      })
+  }
+
+  /** Give back what the browser has few of. */
+  dispose(): void {
+    this.sizes.disconnect()
+    this.controls?.dispose()
+    dispose(this.world)
+    this.renderer?.dispose()
+    this.renderer?.forceContextLoss()
+    this.renderer = null
   }
 
   private key(event: KeyboardEvent): void {
@@ -123,6 +147,7 @@ export class Scene {
     const places = view.split(',').map(Number)
     const given = places.length === 6
     if (given && this.seen(places)) return
+    this.resize() // the size of now, which is told later
     const from = given ? 'iso' : (view as Standard)
     const points = this.machine.extent()
     const middle = new THREE.Box3().setFromPoints(points)
@@ -171,7 +196,7 @@ export class Scene {
   /** The floor under the base, with grid lines at a power of ten of a metre. */
   paintGround(): void {
     const step = 10 ** Math.floor(Math.log10(this.machine.radius * 0.6))
-    const t = theme()
+    const t = this.theme()
     const lines = new THREE.GridHelper(step * 20, 20, t.grid, t.grid)
     lines.rotation.x = Math.PI / 2
     const z = -0.2 * this.machine.radius
@@ -202,7 +227,7 @@ export class Scene {
 
   /** The view as a picture, with its background. */
   savePng(name: string): void {
-    this.world.background = new THREE.Color(theme().paper)
+    this.world.background = new THREE.Color(this.theme().paper)
     this.render()
     if (this.renderer) saveCanvas(name, this.renderer.domElement)
     this.world.background = null
@@ -215,7 +240,7 @@ export class Scene {
     const { clientWidth, clientHeight } = this.element
     saveText(
       `${name}.svg`,
-      vectorView(this.world, this.camera, clientWidth || 800, clientHeight || 600),
+      vectorView(this.world, this.camera, [clientWidth || 800, clientHeight || 600], this.theme().paper),
       'image/svg+xml',
     )
   }

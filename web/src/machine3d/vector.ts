@@ -1,7 +1,6 @@
 // The 3-D view as SVG: faces painted from far to near, and labels as text.
 
 import * as THREE from 'three'
-import { theme } from '../charts/theme'
 import { svg } from '../widgets/dom'
 
 interface Face {
@@ -11,7 +10,12 @@ interface Face {
 }
 
 /** Faces of all meshes, lit by one direction, sorted by depth. */
-export function vectorView(world: THREE.Scene, camera: THREE.PerspectiveCamera, width: number, height: number): string {
+export function vectorView(
+  world: THREE.Scene,
+  camera: THREE.PerspectiveCamera,
+  [width, height]: [number, number],
+  paper: string,
+): string {
   const faces: Face[] = []
   const texts: SVGTextElement[] = []
   const light = new THREE.Vector3(0.4, -0.6, 1).normalize()
@@ -42,7 +46,7 @@ export function vectorView(world: THREE.Scene, camera: THREE.PerspectiveCamera, 
   })
   faces.sort((a, b) => b.depth - a.depth)
   const figure = svg('svg', { xmlns: 'http://www.w3.org/2000/svg', viewBox: `0 0 ${width} ${height}`, width, height })
-  figure.append(svg('rect', { width, height, fill: theme().paper }))
+  figure.append(svg('rect', { width, height, fill: paper }))
   for (const face of faces)
     figure.append(svg('polygon', { points: face.points, fill: face.fill, stroke: face.fill, 'stroke-width': 0.4 }))
   figure.append(...texts)

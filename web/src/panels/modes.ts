@@ -2,7 +2,7 @@
 
 import { categories } from '../charts/theme'
 import type { Animation } from '../machine3d/animation'
-import { noTwist, reach, twist } from '../machine3d/twist'
+import { drawnSize, paceWords, playButton, playMode, replaceModes } from '../snapshot/mode'
 import { COORDINATES, type LoneMode, type OptionalNumber, type Snapshot } from '../state/answers'
 import { page, store } from '../state/store'
 import { slider } from '../widgets/bound'
@@ -11,9 +11,7 @@ import { csvButton, saveCsv } from '../widgets/download'
 import { percent, sig } from '../widgets/format'
 import { dataTable, row, titleBar } from '../widgets/layout'
 
-const SWINGS = 0.7 // of the animation per second
 const COUPLED = 'below zero where directions are coupled, and another has more than its part'
-const STILL = 'Drawn still, at its greatest displacement: this computer asks for reduced motion.'
 const LEGS = [1, 2, 3, 4, 5, 6]
 const COLUMNS = [
   { name: 'Mode' },
@@ -58,14 +56,7 @@ function loneRow(mode: LoneMode): HTMLElement {
 
 function modeRow(s: Snapshot, i: number): HTMLElement {
   const chosen = i === page.mode
-  const label = `Animate mode ${i + 1}`
-  const attributes = {
-    'data-mode': i,
-    'aria-pressed': String(chosen),
-    'aria-label': label,
-    title: `${label} (key ${i + 1})`,
-  }
-  const play = h('button', { type: 'button', class: 'play', ...attributes }, `${chosen ? '■' : '▶'} ${i + 1}`)
+  const play = playButton(i, chosen, ` (key ${i + 1})`)
   const damped = dampedWords(s.damped?.frequency[i], s.damped?.ratio[i])
   const element = row(play, [sig(s.omega[i]), sig(s.frequency[i]), ...damped])
   element.append(h('td', { class: 'words' }, s.modes[i].text))
@@ -88,16 +79,9 @@ function bars(label: string, names: readonly string[], shares: OptionalNumber[],
 
 /** What a mode is made of, and how it is drawn. */
 function details(s: Snapshot, mode: number, drawn: number, still: boolean): HTMLElement[] {
-  const slower = (s.frequency[mode] ?? 0) / SWINGS
-  const pace = slower >= 1 ? `${sig(slower, 3)} times slower than` : 'about as fast as'
-  const largest = `The greatest joint displacement drawn is ${sig(1000 * drawn, 3)} mm.`
   return [
     h('p', {}, h('strong', {}, `Mode ${mode + 1}: `), s.modes[mode].text, '.'),
-    h(
-      'p',
-      { class: 'hint' },
-      `${still ? STILL : `Drawn at ${SWINGS} swings a second, ${pace} the machine.`} ${largest}`,
-    ),
+    h('p', { class: 'hint' }, paceWords(s, mode, drawn, still)),
     h(
       'div',
       { class: 'pair' },
@@ -109,14 +93,6 @@ function details(s: Snapshot, mode: number, drawn: number, still: boolean): HTML
       ),
     ),
   ]
-}
-
-/** Largest displacement drawn, m, and the factor of the mode's shape; `share`: 0 to 1. */
-function drawnSize({ geometry, shape }: Snapshot, mode: number, share: number): [number, number] {
-  const { platform, matrix } = geometry
-  const turned = platform.map((p) => matrix.map((r) => r[0] * p[0] + r[1] * p[1] + r[2] * p[2]))
-  const drawn = share * 0.6 * Math.max(...platform.map((p) => Math.hypot(p[0], p[1], p[2])))
-  return [drawn, drawn / (reach(shape[mode], turned) || 1)]
 }
 
 /** Plays the chosen mode, and says what it is made of. */
@@ -132,10 +108,9 @@ function player(animation: Animation): { amplitude: HTMLElement; detail: HTMLEle
       words.textContent = '–'
       return
     }
-    const [drawn, scale] = drawnSize(s, mode, page.drawn)
+    const drawn = drawnSize(s, page.drawn)
     words.textContent = `${sig(1000 * drawn, 3)} mm`
-    const swing = (t: number) => scale * Math.sin(2 * Math.PI * SWINGS * t)
-    animation.swing('mode', (t) => [twist(s.shape[mode], swing(t)), noTwist()], SWINGS)
+    playMode(animation, s, mode, drawn)
     detail.replaceChildren(...details(s, mode, drawn, animation.reduced))
   }
   store.on(['drawn'], play)
@@ -159,9 +134,7 @@ export function modesPanel(animation: Animation): HTMLElement {
   const table = () => {
     const s = page.snapshot
     if (!s) return
-    const focused = document.activeElement instanceof HTMLElement ? document.activeElement.dataset.mode : undefined
-    body.replaceChildren(...s.omega.map((_, i) => modeRow(s, i)), ...(s.damped?.alone ?? []).map(loneRow))
-    if (focused) body.querySelector<HTMLElement>(`[data-mode="${focused}"]`)?.focus()
+    replaceModes(body, [...s.omega.map((_, i) => modeRow(s, i)), ...(s.damped?.alone ?? []).map(loneRow)])
   }
   store.on(['snapshot', 'mode'], () => {
     table()

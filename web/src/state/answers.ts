@@ -63,17 +63,25 @@ export interface PoseBox {
   high: number[]
 }
 
-/** A design. `values` by key; `laws`: changes to each; `home` in m and degrees; `leg`: mean length at home, m. */
+/** What a 3-D view must know of a design: `home` in m and degrees, `leg`: mean length at home, m. */
+export interface Drawn {
+  name: string
+  home: number[]
+  box: PoseBox
+  leg: number
+}
+
+/** A design with all its numbers: `values` by key; `laws`: changes to each. */
 export interface Design {
   name: string
+  home: number[]
+  box: PoseBox
+  leg: number
   digest: string
   warnings: string[]
   values: Record<string, unknown>
   laws: Record<string, Record<string, unknown>>
   parameters: Parameter[]
-  home: number[]
-  box: PoseBox
-  leg: number
   toml: string
 }
 

@@ -1,7 +1,6 @@
-// The main results, always in view, and spoken when they settle.
+// The main results at a pose, spoken when they settle.
 
 import type { Snapshot } from '../state/answers'
-import { page, store } from '../state/store'
 import { h, settled, status } from '../widgets/dom'
 import { sig } from '../widgets/format'
 
@@ -30,37 +29,40 @@ function limits({ limits: { any, ok, exceeded } }: Snapshot): string {
   return ok ? 'within' : `${exceeded.length} exceeded`
 }
 
-let spokenBefore: string[] = []
-
-/** The main numbers; and the state at rest and how many limits are exceeded, if these have changed. */
-function spokenWords(s: Snapshot): string {
-  const numbers = `Index ${sig(s.index, 4)} radians per second, condition number ${sig(s.condition, 3)}.`
-  const states = [`At rest: ${s.stability}.`, s.limits.any ? `Limits: ${limits(s)}.` : '']
-  const news = states.filter((words, i) => words !== spokenBefore[i])
-  spokenBefore = states
-  return [...news, numbers].filter(Boolean).join(' ')
+/** Says the main numbers; and the state at rest and how many limits are exceeded, if these have changed. */
+function speaker(): (s: Snapshot) => string {
+  let before: string[] = []
+  return (s) => {
+    const numbers = `Index ${sig(s.index, 4)} radians per second, condition number ${sig(s.condition, 3)}.`
+    const states = [`At rest: ${s.stability}.`, s.limits.any ? `Limits: ${limits(s)}.` : '']
+    const news = states.filter((words, i) => words !== before[i])
+    before = states
+    return [...news, numbers].filter(Boolean).join(' ')
+  }
 }
 
-export function readout(): HTMLElement {
+export function readout(): { element: HTMLElement; show(s: Snapshot): void } {
   const cells = RESULTS.map(({ name, id, unit, text }) => {
     const value = h('output', { id })
     const title = h('span', { class: 'name' }, name, unit && `, ${unit}`)
     return { id, text, value, element: h('div', { class: 'figure' }, title, value) }
   })
   const spoken = status({ class: 'hidden' })
+  const words = speaker()
+  let shown: Snapshot | null = null
   const speak = settled(900, () => {
-    if (page.snapshot) spoken.textContent = spokenWords(page.snapshot)
+    if (shown) spoken.textContent = words(shown)
   })
-  store.on(['snapshot'], () => {
-    const s = page.snapshot
-    if (!s) return
+  const show = (s: Snapshot) => {
+    shown = s
     for (const { id, text, value, element } of cells) {
       value.textContent = text(s)
       element.classList.toggle('exceeded', id === 'limits' && !s.limits.ok)
       element.classList.toggle('grave', id === 'stability' && s.stability !== 'stable')
     }
     speak()
-  })
+  }
   const elements = cells.map((cell) => cell.element)
-  return h('div', { class: 'readout', role: 'group', 'aria-label': 'Main results' }, ...elements, spoken)
+  const element = h('div', { class: 'readout', role: 'group', 'aria-label': 'Main results' }, ...elements, spoken)
+  return { element, show }
 }

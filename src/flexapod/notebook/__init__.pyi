@@ -1,0 +1,1 @@
+from .viewing import view as view
