@@ -57,7 +57,7 @@ def view(hexapod: Hexapod, pose: PoseLike | None = None, *, joint: JointModel = 
     >>> view = fx.view(fx.load("motion-base"))
     >>> view.pose = [0.1, 0, 2.4, 0, 0.1, 0]
     >>> view.pose
-    Pose(x=0.1 y=0 z=2.4 m, roll=0 pitch=5.73 yaw=0 deg)
+    Pose(x=0.1 y=0 z=2.4 m, roll=0 pitch=5.7296 yaw=0 deg)
     >>> view.mode = 1  # moves from now on
     """
     start = single_pose(hexapod, pose)

@@ -11,7 +11,7 @@ function lightText(element: Element): boolean {
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue > 127
 }
 
-/** Give `host` the theme of `around`, now and when that changes. Calls `changed` after it, and first once it is on the page. */
+/** Give `host` the theme of `around`, once it is on the page and when that changes; each time `changed` is called. */
 export function followSurroundings(around: Element, host: HTMLElement, changed: () => void): () => void {
   const look = () => {
     if (!host.isConnected) return

@@ -14,8 +14,8 @@ import { modesPart } from './modes'
 
 const PATIENCE = 1500 // ms for an answer
 const SILENT =
-  'No answer yet: the kernel is busy, or there is none behind this page. The machine and its numbers are those of the ' +
-  'last pose that was computed.'
+  'No answer yet: the kernel is busy, or there is none behind this page. The machine and its numbers are those of ' +
+  'the last pose that was computed.'
 const LAST = 'The machine and its numbers are those of the last pose that it could take.'
 const UNITS = [
   ['mm', 'mm'],
