@@ -10,10 +10,10 @@ import pytest
 from tests.web.acts import turn_to, type_in
 
 SOURCES = Path(__file__).parents[2] / "web" / "src"
-STYLE = (SOURCES / "app" / "style.css").read_text(encoding="utf-8")
+STYLE = (SOURCES / "widgets" / "common.css").read_text(encoding="utf-8")
 THEME = (SOURCES / "charts" / "theme.ts").read_text(encoding="utf-8")
 TABS = ("Modes", "Legs", "Workspace", "Response", "Time", "Design")
-SCHEMES = {"light": ":root {", "dark": ":root[data-theme='dark'] {"}
+SCHEMES = {"light": ":root, :host {", "dark": ":root[data-theme='dark'], :host([data-theme='dark']) {"}
 
 
 def palette(scheme: str) -> dict[str, str]:
