@@ -29,6 +29,7 @@ DESIGN_LAYOUT: tuple[Field, ...]
 MOTION_LAYOUT: tuple[Field, ...]
 PIECE: list[Any]  # a piece of an excitation, as numpy.dtype takes it
 design_size: int
+stray_numbers: int  # of a design, and of its payload's place
 plain_size: int  # the first numbers of a design, which a machine without laws, joint springs and suspension needs
 motion_size: int
 
@@ -85,6 +86,15 @@ class CertificateKind(Enum):
     regular = 1
     condition = 2
     limits = 3
+
+class BrokenLimit(Enum):
+    length = 0
+    universal_joint = 1
+    spherical_joint = 2
+    distance = 3
+    moment_in_the_universal_joint = 4
+    moment_in_the_spherical_joint = 5
+    stiffness_law = 6
 
 class CertificateStatus(Enum):
     proved = 0
@@ -386,7 +396,9 @@ class CertificateOptions:
 
     `gap` > 0: the level is a value that some pose has, and what is proved lies that share from the worst that is seen.
     `limits`: boxes that break one are left out. `cut`: where boxes are cut, 0.3 to 0.7 of the side. `strays`: (n,
-    design_size), what each of n variables from -1 to 1 adds to the numbers of the design.
+    stray_numbers), what each of n variables from -1 to 1 adds to the numbers of the design and to its payload's place.
+    `payload`: (4,), where something strays, mass and place of a load beside the design's. `home`: (12,) or none, the
+    pose at which joints are in the middle, wherever they are.
     """
 
     @overload
@@ -402,6 +414,8 @@ class CertificateOptions:
         threads: int,
         cut: float,
         strays: _A,
+        payload: _A,
+        home: _A,
     ) -> None: ...
     gap: float
     limits: SweepLimits | None
@@ -422,7 +436,7 @@ class Certification:
     @property
     def at(self, /) -> _A: ...  # (12,), its pose; of a refuted one the pose that refutes
     @property
-    def broken(self, /) -> int: ...  # limits: length, universal angle, spherical angle, distance; else -1
+    def broken(self, /) -> int: ...  # limits: a `BrokenLimit`; else -1
     @property
     def leg(self, /) -> int: ...  # or pair of legs; -1
     @property

@@ -169,7 +169,6 @@ def test_uncertain_numbers_without_a_worst_end_are_refused():
     for wrong in (
         fx.Uncertain("legs.upper.mass_center[0][0]", 0.01),
         fx.Uncertain("platform.inertia[0][1]", 1.0, relative=False),
-        fx.optimisation.Payload((0, 5), ((0, 1), 0, 0)),
     ):
         with pytest.raises(fx.ArgumentError, match="neither rises nor falls"):
             fx.certify(BASE, SMALL, uncertain=wrong)

@@ -6,7 +6,8 @@ from tests.helpers.drawn import sprung, with_law
 from tests.helpers.plain import plain_machine
 
 import flexapod as fx
-from flexapod.certificates import file
+from flexapod.certificates import file, largest
+from flexapod.errors import OutputError
 
 BASE = plain_machine("motion-base")
 HOME = fx.home_pose(BASE)
@@ -131,3 +132,31 @@ def test_a_target_that_no_pose_has_is_refuted_at_once():
     assert found.status == "refuted"
     assert found.boxes == 0
     assert found.upper == pytest.approx(float(fx.stability_index(BOTH, found.pose)), rel=1e-9)
+
+
+def test_the_largest_box_of_a_law_takes_few_searches(monkeypatch):
+    """Corners tell where a box leaves the range of a law; the searches for the worst pose are what takes long."""
+    design, searches = fx.load("motion-base").replace({"limits": None}), []
+    original = largest.least_index
+    monkeypatch.setattr(largest, "least_index", lambda *given: searches.append(given) or original(*given))
+    shape = fx.Workspace.about_home(0.05, 0.05)
+    found = fx.certified_box(design, shape, 20.0, tolerance=0.1)
+    assert len(searches) <= 3
+    assert found.certificate.proved
+    length, law = fx.inverse_kinematics(design, found.pose), design.legs.stiffness_law
+    assert ((length < law.range[:, 0]) | (length > law.range[:, 1])).any(), "beyond it no pose has an index"
+    assert found.scale <= found.refuted <= 1.2 * found.scale
+    swept = fx.sweep(design, fx.random_poses(found.box, 4000), quantities="omega_1")
+    assert float(swept.omega_1.min()) >= 20.0
+
+
+def test_a_search_for_a_box_is_not_gone_on_with_for_other_ranges(tmp_path):
+    path, shape = tmp_path / "largest.json", fx.Workspace.about_home(0.02, 0.02)
+    places = fx.Uncertain("base.joints[0]", 1e-4, relative=False)
+    given = {"tolerance": 0.3, "path": path}
+    found = fx.certified_box(BASE, shape, 27.0, uncertain=places, **given)
+    again = fx.certified_box(BASE, shape, 27.0, uncertain=places, resume=True, **given)
+    assert again.scale == found.scale
+    for other in ((), fx.Uncertain("base.joints[0]", 2e-4, relative=False)):
+        with pytest.raises(OutputError, match="uncertain places differ"):
+            fx.certified_box(BASE, shape, 27.0, uncertain=other, resume=True, **given)

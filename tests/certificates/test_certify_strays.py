@@ -40,7 +40,15 @@ def uncertain(amount, *keys):
 
 def options(reach):
     return _core.CertificateOptions(
-        gap=0.0, limits=None, seconds=np.inf, max_boxes=np.inf, threads=1, cut=0.5, strays=reach
+        gap=0.0,
+        limits=None,
+        seconds=np.inf,
+        max_boxes=np.inf,
+        threads=1,
+        cut=0.5,
+        strays=reach,
+        payload=np.zeros(4),
+        home=np.zeros(0),
     )
 
 
@@ -228,6 +236,6 @@ def test_what_cannot_be_proved_over_ranges_is_refused():
             np.zeros((1, 6, 2)),
             _core.CertificateKind.index,
             1.0,
-            options(np.ones((1, _core.design_size))),
+            options(np.ones((1, _core.stray_numbers))),
             None,
         )

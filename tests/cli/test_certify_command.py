@@ -93,7 +93,7 @@ def test_places_that_stray_are_proved_and_checked(result, run, there):
     assert found["digest"] == plain["digest"]
     kept = there / "proof" / "motion-base-certificate.json"
     assert run("certify", "--check", kept)[0] == 0
-    assert "places stray" in (there / "proof" / "motion-base-certificate.html").read_text()
+    assert "coordinates stray" in (there / "proof" / "motion-base-certificate.html").read_text()
     assert (
         result("certify", "motion-base", *SMALL, "--regular", "--uncertain", "base.joints_mm=1")["status"] == "proved"
     )
@@ -179,7 +179,7 @@ def test_the_page_says_what_is_proved_and_how_to_check_it(run, there):
         (("motion-base", "--largest", "--at-least", "4"), "needs a shape"),
         (("motion-base", "--limits", "--within-limits"), "true of every machine"),
         (("motion-base", "--regular", "--payload", "0:5"), "depend on geometry alone"),
-        (("motion-base", "--limits", "--uncertain", "base.joints=0.001"), "limits are those of one design"),
+        (("motion-base", "--limits", "--uncertain", "legs.stiffness_law.bulk_modulus=5%"), "places of joints alone"),
         (("motion-base", "--box", "z=2.5:2.4"), "the least comes first"),
         (("motion-base", "--uncertain", "base.universal_axes[0][0]=0.01", *SMALL), "neither rises nor falls"),
         (("motion-base", "--resume", "--json"), "Give --out DIR"),

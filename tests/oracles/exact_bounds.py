@@ -15,10 +15,11 @@ from flexapod.design.stiffness_laws import HydraulicLaw, ScrewLaw
 ctx.prec = 80
 
 
-def proved(hexapod, box, level: float, most: int = 2000, reach: float = 0.0) -> int | None:
+def proved(hexapod, box, level: float, most: int = 2000, reach: float = 0.0, load=None) -> int | None:
     """Boxes that it took to prove omega_1 >= level over a box (6, 2); None where `most` were not enough.
 
-    reach: how far each coordinate of the joints and of the platform's mass centre may be from the design's, m.
+    reach: how far each coordinate of the joints and of the platform's mass centre may be from the design's, m. load: mass
+    (kg) of a point on the platform and the ends of its place (3, 2), m.
     """
     t, open_boxes, looked = arb(float(level)) ** 2, [np.asarray(box, float)], 0
     while open_boxes:
@@ -26,7 +27,7 @@ def proved(hexapod, box, level: float, most: int = 2000, reach: float = 0.0) -> 
         looked += 1
         if looked > most:
             return None
-        if not _positive(hexapod, here, t, reach):
+        if not _positive(hexapod, here, t, reach, load):
             share = (here[:, 1] - here[:, 0]) / (box[:, 1] - box[:, 0])
             axis = int(np.argmax(share))
             middle = here[axis].mean()
@@ -38,10 +39,11 @@ def proved(hexapod, box, level: float, most: int = 2000, reach: float = 0.0) -> 
     return looked
 
 
-def _positive(hexapod, box, t, reach) -> bool:
+def _positive(hexapod, box, t, reach, load) -> bool:
     balls = [_ball(low, high) for low, high in box]
     middle = [arb(float(x)) for x in box.mean(axis=1)]
-    centre, slopes = _matrix(hexapod, middle, t, reach)[0], _matrix(hexapod, balls, t, reach)[1]
+    centre = _matrix(hexapod, middle, t, reach, load)[0]
+    slopes = _matrix(hexapod, balls, t, reach, load)[1]
     A = centre
     for ball, point, slope in zip(balls, middle, slopes, strict=True):
         A = A + slope * (ball - point)
@@ -120,7 +122,7 @@ def _times(rows, v):
     return [_dot(row, v) for row in rows]
 
 
-def _matrix(hexapod, coordinates, t, reach):
+def _matrix(hexapod, coordinates, t, reach, load):
     """K - t J in base axes, and its derivatives by the coordinates."""
     x = []
     for i, value in enumerate(coordinates):
@@ -139,6 +141,10 @@ def _matrix(hexapod, coordinates, t, reach):
         hexapod.platform_mass,
         hexapod.platform_inertia,
     )
+    if load is not None:
+        mass, ends = load
+        at = [_Jet(_ball(low, high)) for low, high in ends]
+        _add_body(A, -t, [_jet(0.0)] * 3, _times(R, at), R, mass, np.zeros((3, 3)))
     for i in range(6):
         q = _times(R, _vector(hexapod.platform_joints[i], reach))
         S = [a + b - c for a, b, c in zip(x[:3], q, _vector(hexapod.base_joints[i], reach), strict=True)]

@@ -12,16 +12,20 @@
 namespace flexapod {
 namespace {
 
-using certify_task::Kind, certify_task::Task;
+using certify_task::BrokenLimit, certify_task::Kind, certify_task::Task;
 using sweep_task::Limits;
 
 struct Options : CertifyOptions {
   std::optional<Limits> limits;
-  std::vector<double> strays;  // rows of a design's numbers
+  std::vector<double> strays{};  // rows of the numbers that may
+  std::array<double, 4> payload{};
+  std::vector<double> home{};  // none, or of a pose
 
-  void set_strays(const Input& given) {
-    if (given.size() % design_size != 0) throw std::invalid_argument("strays must have shape (n, design_size)");
+  void set_strays(const Input& given, const Input& load, const Input& middle) {
+    if (given.size() % stray_numbers != 0) throw std::invalid_argument("strays must have shape (n, stray_numbers)");
     strays.assign(given.data(), given.data() + given.size());
+    std::copy_n(rows(load, 1, 4, "payload"), 4, payload.begin());
+    if (middle.size() > 0) home.assign(rows(middle, 1, 12, "home"), middle.data() + 12);
   }
 };
 
@@ -34,7 +38,9 @@ Task task_of(const Input& design, Joint joint, Kind kind) {
 Certification run(Task task, double level, const Options& options, std::vector<certify_task::Box> boxes,
                   const nb::object& progress) {
   task.limits = options.limits ? &*options.limits : nullptr;
-  task.reach = options.strays.data(), task.strays = static_cast<int>(options.strays.size() / design_size);
+  task.reach = options.strays.data(), task.strays = static_cast<int>(options.strays.size() / stray_numbers);
+  std::ranges::copy(options.payload, task.payload);
+  task.home = options.home.empty() ? nullptr : options.home.data();
   check_strays(task);
   if (task.kind == Kind::limits && task.limits == nullptr) throw std::invalid_argument("limits are not given");
   CertifySearch search(kernels().certify, task, level, options, std::move(boxes));
@@ -67,11 +73,12 @@ void bind_options(nb::module_& m) {
   options.def(
       "__init__",
       [](Options* self, double gap, const std::optional<Limits>& limits, double seconds, double max_boxes, int threads,
-         double cut, const Input& strays) {
-        new (self) Options{{gap, seconds, max_boxes, threads, cut}, limits, {}};
-        self->set_strays(strays);
+         double cut, const Input& strays, const Input& payload, const Input& home) {
+        new (self) Options{{gap, seconds, max_boxes, threads, cut}, limits};
+        self->set_strays(strays, payload, home);
       },
-      nb::kw_only(), "gap"_a, "limits"_a.none(), "seconds"_a, "max_boxes"_a, "threads"_a, "cut"_a, "strays"_a);
+      nb::kw_only(), "gap"_a, "limits"_a.none(), "seconds"_a, "max_boxes"_a, "threads"_a, "cut"_a, "strays"_a,
+      "payload"_a, "home"_a);
   options.def_rw("gap", &Options::gap)
       .def_rw("limits", &Options::limits, nb::arg().none())
       .def_rw("seconds", &Options::seconds)
@@ -83,6 +90,7 @@ void bind_options(nb::module_& m) {
 }  // namespace
 
 void bind_certify(nb::module_& m) {
+  m.attr("stray_numbers") = stray_numbers;
   nb::enum_<Kind>(m, "CertificateKind")
       .value("index", Kind::index)
       .value("regular", Kind::regular)
@@ -92,6 +100,9 @@ void bind_certify(nb::module_& m) {
       .value("proved", CertificateStatus::proved)
       .value("refuted", CertificateStatus::refuted)
       .value("undecided", CertificateStatus::undecided);
+  nb::enum_<BrokenLimit> broken(m, "BrokenLimit");
+#define FLEXAPOD_VALUE(name) broken.value(#name, BrokenLimit::name);
+  FLEXAPOD_BROKEN_LIMITS(FLEXAPOD_VALUE)
   bind_options(m);
   nb::class_<Certification> result(m, "Certification");
   result.def_ro("status", &Certification::status)

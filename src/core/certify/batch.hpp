@@ -6,6 +6,7 @@
 
 #include "certify/search.hpp"
 #include "certify/strays.hpp"
+#include "model/leg_distance.hpp"
 
 namespace flexapod {
 
@@ -53,15 +54,36 @@ struct Certification {
   }
 };
 
+/// Throws where legs share a joint that strays from itself: how far they are apart would begin anew.
+inline void check_shared(const certify_task::Task& task, const Design<double>& design) {
+  const SharedJoints shared(design);
+  const auto together = [&](const Vec3<double>& one, const Vec3<double>& other) {
+    for (int s = 0; s < task.strays; ++s) {
+      const double* const row = task.reach + s * stray_numbers;
+      if (!std::equal(row + number_of(design, one), row + number_of(design, one) + 3, row + number_of(design, other)))
+        return false;
+    }
+    return true;
+  };
+  for_leg_pairs([&](int pair, int i, int j) {
+    if ((shared.base[pair] && !together(design.b[i], design.b[j])) ||
+        (shared.platform[pair] && !together(design.p[i], design.p[j])))
+      throw std::invalid_argument("legs " + std::to_string(i) + " and " + std::to_string(j) +
+                                  " share a joint, and its places stray apart");
+  });
+}
+
 /// Throws where numbers are to stray that may not.
 inline void check_strays(const certify_task::Task& task) {
   if (task.strays > certify_task::most_strays)
     throw std::invalid_argument("at most " + std::to_string(certify_task::most_strays) + " numbers may stray");
-  if (task.strays > 0 && task.limits != nullptr) throw std::invalid_argument("limits are for designs without strays");
+  if (task.strays > 0 && task.limits != nullptr && task.kind != certify_task::Kind::limits)
+    throw std::invalid_argument("which poses count may not stray");
   const auto& design = *reinterpret_cast<const Design<double>*>(task.design);
-  for (int k = 0; k < task.strays * design_size; ++k)
-    if (!(task.reach[k] == 0.0 || (std::isfinite(task.reach[k]) && may_stray(design, k % design_size))))
-      throw std::invalid_argument("number " + std::to_string(k % design_size) + " of the design may not stray");
+  for (int k = 0; k < task.strays * stray_numbers; ++k)
+    if (!(task.reach[k] == 0.0 || (std::isfinite(task.reach[k]) && may_stray(design, k % stray_numbers))))
+      throw std::invalid_argument("number " + std::to_string(k % stray_numbers) + " of the design may not stray");
+  if (task.strays > 0 && task.limits != nullptr && task.limits->leg_distance > 0.0) check_shared(task, design);
 }
 
 /// Gives each box its share of the volume, in those of `sides` coordinates that any box has a width in.

@@ -9,43 +9,44 @@
 
 namespace flexapod {
 
-/// What a centre may break. The last is no limit of the design.
-enum BrokenLimit {
-  length_limit,
-  universal_limit,
-  spherical_limit,
-  distance_limit,
-  universal_moment_limit,
-  spherical_moment_limit,
-  stiffness_law
-};
+using certify_task::BrokenLimit;
 
-/// All limits over the boxes of all lanes. Values are by the legs' length or without a unit.
-template <class T> class LimitModels {
+/// All limits over the boxes of all lanes, and over what strays. Values are by the legs' length or without a unit.
+/// Place: the type of the design's places.
+template <class T, class Place = double> class LimitModels {
   using Lane = typename T::Number;
   static constexpr int n = T::variables;
 
  public:
-  LimitModels(const sweep_task::Limits& limits, const Machine<double>& machine, const Pose<T>& base)
+  /// places: a design, or what has its places. home: where joints are in the middle, if that strays with them.
+  template <class Places>
+  LimitModels(const sweep_task::Limits& limits, const Pose<double>* home, const Machine<double>& machine,
+              const Places& places, const Pose<T>& base)
       : design_(machine.design) {
-    const Geometry<T, double> g(design_, base);
+    const Geometry<T, Place> g(places, base);
     for (int i = 0; i < 6; ++i) {
       const T L2 = dot(g.S[i], g.S[i]), L = sqrt(L2);
       const auto* const ends = limits.length[i];
-      if (ends[0] > 0.0) add(length_limit, i, L2 - ends[0] * ends[0] * (1.0 + tiny), L2.c[0]);
-      if (ends[1] < 1e150) add(length_limit, i, ends[1] * ends[1] * (1.0 - tiny) - L2, L2.c[0]);
-      const Vec3<double> below = direction(limits.neutral[0][i]), above = direction(limits.neutral[1][i]);
+      if (ends[0] > 0.0) add(BrokenLimit::length, i, L2 - ends[0] * ends[0] * (1.0 + tiny), L2.c[0]);
+      if (ends[1] < 1e150) add(BrokenLimit::length, i, ends[1] * ends[1] * (1.0 - tiny) - L2, L2.c[0]);
+      Vec3<Place> below(direction(limits.neutral[0][i])), above(direction(limits.neutral[1][i]));
+      if constexpr (!std::is_same_v<Place, double>)
+        if (home != nullptr) {
+          below = home->t + home->R * places.p[i] - places.b[i];
+          above = transposed(home->R, below);
+        }
       if (limits.universal_angle < pi)
-        add(universal_limit, i, dot(base.R * below, g.S[i]) - cosine(limits.universal_angle, below) * L, L.c[0]);
+        add(BrokenLimit::universal_joint, i, dot(base.R * below, g.S[i]) - cosine(limits.universal_angle, below) * L,
+            L.c[0]);
       if (limits.spherical_angle < pi)
-        add(spherical_limit, i, dot(above, g.S[i]) - cosine(limits.spherical_angle, above) * L, L.c[0]);
-      if (machine.features.joints) moments(limits, machine, i, g, base.R, L);
+        add(BrokenLimit::spherical_joint, i, dot(above, g.S[i]) - cosine(limits.spherical_angle, above) * L, L.c[0]);
+      if (machine.features.joints) moments(limits, machine, places, i, g, base.R, L);
     }
-    if (limits.leg_distance > 0.0) distances(g, base.R, limits.leg_distance);
+    if (limits.leg_distance > 0.0) distances(places, g, base.R, limits.leg_distance);
   }
 
   /// Where limits are what is to be proved, whether they are; else whether the box is outside of one, and the first that
-  /// the centre breaks.
+  /// the centre breaks. Where what strays is too much at the centre already, no box about it can be proved.
   void judge(int l, bool required, certify_task::Finding& f) const {
     const Item* worst = nullptr;
     bool broken = false, kept = true;
@@ -53,8 +54,10 @@ template <class T> class LimitModels {
       const Item& item = items_[i];
       if (worst == nullptr || lane_of(item.least, l) < lane_of(worst->least, l)) worst = &item;
       kept = kept && lane_of(item.least, l) >= 0.0;
+      if (required && !f.hopeless && lane_of(item.centre - item.straying, l) < -tiny) f.hopeless = true;
       if (lane_of(item.most, l) < -tiny && !required) f.verdict = certify_task::Verdict::outside;
-      if (lane_of(item.centre, l) < -tiny && !broken) broken = true, f.limit = item.limit, f.leg = item.leg;
+      if (lane_of(item.centre, l) < -tiny && !broken)
+        broken = true, f.limit = static_cast<int>(item.limit), f.leg = item.leg;
     }
     if (!required) return;
     if (broken) f.verdict = certify_task::Verdict::broken;
@@ -67,8 +70,10 @@ template <class T> class LimitModels {
  private:
   static constexpr double tiny = 0x1p-44, pi = 3.14159265358979323846;
   struct Item {
-    int limit, leg;
+    BrokenLimit limit;
+    int leg;
     Lane least, most, centre;  // bounds, and the value at the centre
+    Lane straying;             // how far that may stray
     Lane bend[n];              // by u_i
   };
   const Design<double>& design_;
@@ -77,24 +82,24 @@ template <class T> class LimitModels {
 
   static Vec3<double> direction(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
   /// Of the greatest angle, times the length of the direction; not too small.
-  static double cosine(double angle, const Vec3<double>& direction) {
+  static Place cosine(double angle, const Vec3<Place>& direction) {
     return (std::cos(angle) + 0x1p-50) * norm(direction) * (1.0 + 0x1p-50);
   }
 
-  void add(int limit, int leg, const T& value, const Lane& unit) {
+  void add(BrokenLimit limit, int leg, const T& value, const Lane& unit) {
     Item& item = start(limit, leg);
     bounds(value, item.least, item.most, item.bend);
-    item.centre = value.c[0];
+    item.centre = value.c[0], item.straying = value.norm(T::terms, T::count);
     scale(item, unit);
   }
-  Item& start(int limit, int leg) {
+  Item& start(BrokenLimit limit, int leg) {
     Item& item = items_[count_++];
-    item.limit = limit, item.leg = leg;
+    item.limit = limit, item.leg = leg, item.straying = Lane(0.0);
     return item;
   }
   static void scale(Item& item, const Lane& unit) {
     const Lane factor = 1.0 / unit;
-    item.least *= factor, item.most *= factor, item.centre *= factor;
+    item.least *= factor, item.most *= factor, item.centre *= factor, item.straying *= factor;
     for (Lane& bend : item.bend) bend *= factor;
   }
 
@@ -104,7 +109,8 @@ template <class T> class LimitModels {
     const Lane zero(0.0);
     Lane low = a.c[0], high = a.c[0], size = abs(a.c[0]) + a.r;
     for (int i = 0; i < n; ++i) bend[i] = zero;
-    for (int k = 1; k < T::count; ++k) {
+    for (int k = T::terms; k < T::count; ++k) size += abs(a.c[k]), low -= abs(a.c[k]), high += abs(a.c[k]);
+    for (int k = 1; k < T::terms; ++k) {
       bool square = m.degree[k] == 2;
       for (int i = 0; i < n; ++i) {
         square = square && m.power[k][i] != 1;
@@ -120,31 +126,37 @@ template <class T> class LimitModels {
 
   /// Of the springs in a leg's joints, in the exact joint model: about both axes of the universal joint together, and of
   /// the bending at the platform, which is an angle.
-  void moments(const sweep_task::Limits& limits, const Machine<double>& machine, int i, const Geometry<T, double>& g,
-               const Mat3<T>& base, const T& L) {
+  template <class Places>
+  void moments(const sweep_task::Limits& limits, const Machine<double>& machine, const Places& places, int i,
+               const Geometry<T, Place>& g, const Mat3<T>& base, const T& L) {
     const LegSprings<double>& k = design_.springs[i];
-    const JointRest<double>& rest = machine.rest[i];
+    const JointRest<Place> rest = [&] {
+      if constexpr (std::is_same_v<Place, double>) return machine.rest[i];
+      else return JointRest<Place>(places, rest_pose(design_), i);
+    }();
     if (limits.universal_moment < 1e150) {
       const LegAxes<T> leg(g.S[i], g.k[i], Joint::universal);
       const UniversalAngles<T> angle(rest, leg, g.k[i], base);
       const T first = k.k_u[0] * angle.first, second = k.k_u[1] * angle.second;
       const double square = limits.universal_moment * limits.universal_moment;
-      add(universal_moment_limit, i, square * (1.0 - tiny) - first * first - second * second, Lane(square));
+      add(BrokenLimit::moment_in_the_universal_joint, i, square * (1.0 - tiny) - first * first - second * second,
+          Lane(square));
     }
-    const Vec3<double>& neutral = rest.in_platform.row[0];
+    const Vec3<Place>& neutral = rest.in_platform.row[0];
     if (limits.spherical_moment < pi * k.k_s)
-      add(spherical_moment_limit, i, dot(neutral, g.S[i]) - cosine(limits.spherical_moment / k.k_s, neutral) * L,
-          L.c[0]);
+      add(BrokenLimit::moment_in_the_spherical_joint, i,
+          dot(neutral, g.S[i]) - cosine(limits.spherical_moment / k.k_s, neutral) * L, L.c[0]);
   }
 
-  void distances(const Geometry<T, double>& g, const Mat3<T>& base, double limit) {
+  template <class Places>
+  void distances(const Places& places, const Geometry<T, Place>& g, const Mat3<T>& base, double limit) {
     const SharedJoints shared(design_);
     for_leg_pairs([&](int pair, int i, int j) {
-      const LegPair legs{g.S[i], g.S[j], base * (design_.b[i] - design_.b[j]), design_.p[i] - design_.p[j]};
+      const LegPair legs{g.S[i], g.S[j], base * (places.b[i] - places.b[j]), places.p[i] - places.p[j]};
       const auto between = [&](int s, int s_last, int t, int t_last) {
-        apart(legs, base, s, s_last, t, t_last, limit, start(distance_limit, pair));
+        apart(legs, base, s, s_last, t, t_last, limit, start(BrokenLimit::distance, pair));
       };
-      if (shared.base[pair] && shared.platform[pair]) add(distance_limit, pair, T(-1.0), Lane(1.0));
+      if (shared.base[pair] && shared.platform[pair]) add(BrokenLimit::distance, pair, T(-1.0), Lane(1.0));
       else if (shared.base[pair]) between(1, 1, 0, 1), between(0, 1, 1, 1);
       else if (shared.platform[pair]) between(0, 0, 0, 1), between(0, 1, 0, 0);
       else between(0, 1, 0, 1);
@@ -155,7 +167,7 @@ template <class T> class LimitModels {
   struct LegPair {
     const Vec3<T>&first, &second;
     Vec3<T> below;
-    Vec3<double> above;
+    Vec3<Place> above;
   };
 
   /// The parts s to s_last of the first leg and t to t_last of the second, whole or one end, are as far apart as their
@@ -183,6 +195,7 @@ template <class T> class LimitModels {
     bounds(dot(two, two) - limit * limit, least, item.most, bend);
     item.most *= 1.0 / limit;
     item.centre = norm(gap) - limit;
+    if constexpr (T::count > T::terms) item.straying = dot(w, two).norm(T::terms, T::count);
     scale(item, Lane(limit));
   }
   template <class W>
@@ -193,7 +206,7 @@ template <class T> class LimitModels {
     for (int u = s; u <= s_last; ++u)
       for (int v = t; v <= t_last; ++v) {
         const T end = u == 0 && v == 0   ? dot(w, legs.below)
-                      : u == 1 && v == 1 ? dot(w, constant(legs.above))
+                      : u == 1 && v == 1 ? T(dot(w, Vec3<T>(legs.above)))
                       : u == 1           ? dot(w, legs.below + legs.first)
                                          : dot(w, legs.below - legs.second);
         Lane least, most, bend[n];
@@ -203,7 +216,6 @@ template <class T> class LimitModels {
         first = false;
       }
   }
-  static Vec3<T> constant(const Vec3<double>& v) { return {T(v.x), T(v.y), T(v.z)}; }
   static Vec3<Lane> centre(const Vec3<T>& v) { return {v.x.c[0], v.y.c[0], v.z.c[0]}; }
   /// A part that is a point: its parameter does not matter, but is a number.
   static Vec3<Lane> nudged(const Vec3<Lane>& a) { return {a.x + 1e-150, a.y, a.z}; }

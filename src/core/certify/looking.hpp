@@ -37,18 +37,22 @@ template <class Lane, int n, int strays = 0, class Rules = Sound> class Looking 
  public:
   using T = Taylor<Lane, n, 3, Rules, strays>;
   using Settled = Taylor<Lane, n, 3, Rules>;
-  using Low = Taylor<Lane, n, 2, Rules>;                     // of limits
+  using Low = Taylor<Lane, n, 2, Rules, strays>;             // of limits
   using Place = std::conditional_t<strays == 0, double, T>;  // of a joint
+  using LowPlace = std::conditional_t<strays == 0, double, Low>;
   using Places = std::conditional_t<strays == 0, const Design<double>&, const StrayingPlaces<T>>;
+  using LowPlaces = std::conditional_t<strays == 0, const Design<double>&, const StrayingPlaces<Low>>;
 
   explicit Looking(const Task& task)
       : task_(task),
         machine_(*reinterpret_cast<const Design<double>*>(task.design), task.joint),
-        places_([this]() -> Places {
-          if constexpr (strays == 0) return machine_.design;
-          else return {machine_.design, task_};
+        places_(places<Places>()),
+        low_places_(places<LowPlaces>()),
+        platform_([this]() -> Mat6<Place> {
+          if constexpr (strays == 0) return platform_inertia(places_, Mat3<double>::identity()).matrix();
+          else return loaded_platform<T>(places_, task_.payload[0]);
         }()),
-        platform_(platform_inertia(places_, Mat3<Place>::identity()).matrix()),
+        home_(home_of(task)),
         size_(mean_radius(machine_.design)),
         law_(task.kind == Kind::index && machine_.features.law != Law::constant),
         others_(task.kind == Kind::index && machine_.features.others()),
@@ -73,7 +77,9 @@ template <class Lane, int n, int strays = 0, class Rules = Sound> class Looking 
   const Task task_;
   const Machine<double> machine_;
   const Places places_;
+  const LowPlaces low_places_;
   const Mat6<Place> platform_;
+  const Pose<double> home_;
   const double size_;
   const bool law_, others_, within_law_;  // what of the springs counts; whether limits keep lengths in the law's range
   const Box* boxes_[Lane::lanes];
@@ -84,6 +90,19 @@ template <class Lane, int n, int strays = 0, class Rules = Sound> class Looking 
   MatrixModel<Settled> A_;
   mask_t<Lane> hopeless_;
   HalvingTest<Lane, n, Rules> test_;
+
+  template <class Chosen> Chosen places() const {
+    if constexpr (strays == 0) return machine_.design;
+    else return {machine_.design, task_};
+  }
+  static Pose<double> home_of(const Task& task) {
+    Pose<double> home{};
+    const double* at = task.home;
+    if (at == nullptr) return home;
+    for (Vec3<double>* row : {&home.t, &home.R.row[0], &home.R.row[1], &home.R.row[2]})
+      *row = {at[0], at[1], at[2]}, at += 3;
+    return home;
+  }
 
   Finding start(int l) const {
     Finding f{
@@ -108,11 +127,9 @@ template <class Lane, int n, int strays = 0, class Rules = Sound> class Looking 
   double width(const Box& box, int i) const { return (box.high[i] - box.low[i]) / (i < 3 ? size_ : 1.0); }
 
   /// True where limits leave nothing to be looked at.
-  bool judge_limits(const Pose<T>& base, int count, Finding* found)
-    requires(strays == 0)
-  {
-    const Pose<Low> low = cut(base);
-    LimitModels<Low> limits(*task_.limits, machine_, low);
+  bool judge_limits(const Pose<T>& base, int count, Finding* found) const {
+    const LimitModels<Low, LowPlace> limits(*task_.limits, task_.home == nullptr ? nullptr : &home_, machine_,
+                                            low_places_, cut(base));
     bool all = true;
     for (int l = 0; l < count; ++l) {
       limits.judge(l, task_.kind == Kind::limits, found[l]);
@@ -120,7 +137,6 @@ template <class Lane, int n, int strays = 0, class Rules = Sound> class Looking 
     }
     return all || task_.kind == Kind::limits;
   }
-  bool judge_limits(const Pose<T>&, int, Finding*) { return false; }
 
   static Pose<Low> cut(const Pose<T>& pose) {
     const auto vector = [](const Vec3<T>& v) {
@@ -199,7 +215,7 @@ template <class Lane, int n, int strays = 0, class Rules = Sound> class Looking 
       for (int l = 0; l < count; ++l)
         if (lane_of(beyond_law_[i], l) > 0.0 && found[l].limit < 0) {
           found[l].verdict = Verdict::broken, found[l].value = std::numeric_limits<double>::quiet_NaN();
-          found[l].limit = stiffness_law, found[l].leg = i;
+          found[l].limit = static_cast<int>(BrokenLimit::stiffness_law), found[l].leg = i;
         }
   }
 

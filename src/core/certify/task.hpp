@@ -33,14 +33,30 @@ struct Task {
   core_enums::Joint joint;
   Kind kind;
   const sweep_task::Limits* limits;  // null: none
-  // Numbers of the design that stray: what each of `strays` variables from -1 to 1 adds to them. Without limits only.
-  const double* reach;  // (strays, numbers of a design)
+  // Numbers that stray: what each of `strays` variables from -1 to 1 adds to those of the design and to the place of its
+  // payload. Limits are then what is to be proved, or none.
+  const double* reach;  // (strays, numbers of a design and 3)
   int strays;
+  double payload[4];   // where something strays: mass and place of a load on the platform beside the design's
+  const double* home;  // (12,), position and matrix: where joints are in the middle; null: their middle does not stray
   // A path: polynomials of a piece's parameter for position and rotation vector e, R = exp(e) middle; null for boxes.
   const double* pieces;  // (pieces, 6, powers), the lowest power first
   int powers;
   double middle[9];  // by rows
 };
+
+// LIMIT(name): what a pose may break, in words with underscores. The last is no limit of the design.
+#define FLEXAPOD_BROKEN_LIMITS(LIMIT)  \
+  LIMIT(length)                        \
+  LIMIT(universal_joint)               \
+  LIMIT(spherical_joint)               \
+  LIMIT(distance)                      \
+  LIMIT(moment_in_the_universal_joint) \
+  LIMIT(moment_in_the_spherical_joint) \
+  LIMIT(stiffness_law)
+#define FLEXAPOD_NAMED(name) name,
+enum class BrokenLimit { FLEXAPOD_BROKEN_LIMITS(FLEXAPOD_NAMED) };
+#undef FLEXAPOD_NAMED
 
 enum class Verdict {
   proved,

@@ -14,8 +14,9 @@ template <class T> struct JointRest {
   T tilt;                        // of the leg out of the plane normal to its universal axis, rad
 
   JointRest() = default;
-  JointRest(const Design<T>& d, int i) {
-    const Pose<T> rest = rest_pose(d);
+  JointRest(const Design<T>& d, int i) : JointRest(d, rest_pose(d), i) {}
+  /// d: a design, or what has its places.
+  template <class D, class U> JointRest(const D& d, const Pose<U>& rest, int i) {
     const LegAxes<T> leg(rest.t + rest.R * d.p[i] - d.b[i], d.k[i], Joint::universal);
     in_base = leg.axes;
     for (int r = 0; r < 3; ++r) in_platform.row[r] = transposed(rest.R, leg.axes.row[r]);

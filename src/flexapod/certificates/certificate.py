@@ -52,6 +52,8 @@ class Certificate:
     strays : tuple of Stray
         Places of the design that may lie anywhere in a range, each by a variable from -1 to 1; `hexapod` is in the
         middle.
+    payload : tuple of float
+        Mass (kg) and place (m) of a load on the platform beside that of `hexapod`, (4,); none where nothing strays.
     strayed : tuple of float
         The values of these variables in the design that is the most adverse known at `pose`; none where all are 0.
     lower, upper : float
@@ -92,6 +94,7 @@ class Certificate:
     assumed: tuple[str, ...]
     nominal: str
     strays: tuple[Stray, ...]
+    payload: tuple[float, ...]
     strayed: tuple[float, ...]
     lower: float
     upper: float
@@ -112,7 +115,7 @@ class Certificate:
     @property
     def adverse(self) -> Hexapod:
         """The design, of all that the certificate is about, that has the most adverse value known, at `pose`."""
-        return strayed(self.hexapod, self.strays, self.strayed)
+        return strayed(self.hexapod, self.strays, self.strayed, self.payload)
 
     @property
     def on_path(self) -> bool:

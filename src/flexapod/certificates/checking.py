@@ -91,6 +91,7 @@ def check_certificate(
         given.place,
         limits,
         strays=given.strays,
+        payload=given.payload,
         cut=CUT,
         threads=setup.threads,
     )
@@ -112,7 +113,14 @@ def _level(given: Certificate) -> float:
 def _made(given: Certificate, level: float, found: Standing) -> Certificate:
     """The certificate of the check; the pose is that of the one that is checked, unless another breaks it."""
     asked = Question(
-        given.hexapod, given.joint, given.place, given.within_limits, given.nominal, given.assumed, given.strays
+        given.hexapod,
+        given.joint,
+        given.place,
+        given.within_limits,
+        given.nominal,
+        given.assumed,
+        given.strays,
+        given.payload,
     )
     bound = level if given.claim in ("index", "condition") else None
     made = proving.certificate(asked, given.claim, bound, given.gap, found)
@@ -156,7 +164,7 @@ def _inside(place: Place, pose: np.ndarray) -> bool:
 def _breaks(given: Certificate) -> bool:
     assert given.pose is not None
     if given.claim == "limits":
-        return not check_limits(given.hexapod, given.pose, joint=given.joint).ok
+        return not check_limits(given.adverse, given.pose, joint=given.joint).ok
     if given.claim == "index" and given.broken:
         return bool(np.isnan(evaluate(given.adverse, given.pose[None], ("omega_1",), given.joint, 1)["omega_1"][0]))
     if given.claim == "index" and given.wanted is not None:

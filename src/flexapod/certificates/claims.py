@@ -15,7 +15,9 @@ from flexapod.certificates.question import (
     checked_level,
     limited,
     question,
+    refuse_all_but_places,
     refuse_moments,
+    refuse_parted_joints,
 )
 from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
@@ -106,6 +108,7 @@ def certify_limits(
     region: Asked = None,
     *,
     joint: JointModel = "universal",
+    uncertain: Uncertainty = (),
     time_limit: float | None = None,
     threads: int | None = None,
     cluster: Cluster | None = None,
@@ -124,6 +127,8 @@ def certify_limits(
         Where, as for `certify`. Default: the home pose.
     joint : {"universal", "spin_free"}, optional
         Joint model, which only moments in universal joints depend on; these are proved in the exact one.
+    uncertain : Uncertain or sequence of them, optional
+        Places of joints that stray: every design in their ranges keeps its limits.
     time_limit, threads, cluster, path, resume, progress, stop : optional
         As for `certify`.
 
@@ -137,7 +142,9 @@ def certify_limits(
     DesignError
         If `hexapod` is not a Hexapod.
     ArgumentError
-        If the design has no limits, one that is not proved in this joint model, or a number is invalid.
+        If the design has no limits, one that is not proved in this joint model, something else than places is
+        uncertain, legs share a joint that strays for each of them while their distance is limited, or a number is
+        invalid.
     PoseError
         If the region is none.
     OutputError
@@ -151,7 +158,8 @@ def certify_limits(
     -----
     Lengths of legs, angles of joints, distances of legs and moments of springs in joints are enclosed over boxes as the
     index is, see `certify`. The limits are those of `check_limits`: the range of a stiffness law is one of them, and
-    moments are those of the exact joint model.
+    moments are those of the exact joint model. Where joints stray, so do the directions from which angles are measured:
+    those of the legs at the home pose, and where springs are unstressed.
 
     Examples
     --------
@@ -159,7 +167,9 @@ def certify_limits(
     >>> fx.certify_limits(machine, fx.Workspace.about_home(0.05, 0.05)).status
     'proved'
     """
-    asked = question(hexapod, region, joint)
+    asked = question(hexapod, region, joint, uncertain)
+    refuse_all_but_places(hexapod, uncertain)
+    refuse_parted_joints(asked)
     if not limited(hexapod):
         raise ArgumentError(f"{hexapod.name!r} has no limits, so that there is nothing to prove. Add [limits] to it.")
     refuse_force_limits(hexapod)

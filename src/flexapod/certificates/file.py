@@ -26,6 +26,7 @@ from flexapod.workspace.store.integrity import sealed
 FORMAT = "flexapod certificate"
 VERSION = 1
 _WITH_STRAYS = 2  # what reads version 1 only would check the design in the middle of the ranges
+_WITH_PAYLOAD = 3  # and what reads version 2 only would leave out the payload
 _NUMBERS = ("wanted", "gap", "lower", "upper", "level", "share_left", "share_outside", "seconds")
 _PLAIN = ("claim", "status", "joint", "within_limits", "nominal", "broken", "boxes")
 
@@ -47,7 +48,7 @@ def data_of(certificate: Certificate) -> dict[str, Any]:
     design = certificate.hexapod
     return {
         "format": FORMAT,
-        "version": _WITH_STRAYS if certificate.strays else VERSION,
+        "version": _WITH_PAYLOAD if certificate.payload else _WITH_STRAYS if certificate.strays else VERSION,
         "source": f"flexapod {__version__}",
         **{name: getattr(certificate, name) for name in _PLAIN},
         **{name: _plain(getattr(certificate, name)) for name in _NUMBERS},
@@ -57,6 +58,7 @@ def data_of(certificate: Certificate) -> dict[str, Any]:
             if certificate.strays
             else {}
         ),
+        **({"payload": list(certificate.payload)} if certificate.payload else {}),
         "pose": None if certificate.pose is None else certificate.pose.tolist(),
         "region": region_data(certificate.place),
         "left": _packed(certificate.left),
@@ -126,9 +128,9 @@ def read_data(place: Path, kind: str) -> dict[str, Any]:
         raise _none(place, "it is no JSON") from error
     if not isinstance(data, dict) or data.get("format") != kind:
         raise _none(place, f"its format is not {kind!r}")
-    if data.get("version") not in (VERSION, _WITH_STRAYS):
+    if data.get("version") not in (VERSION, _WITH_STRAYS, _WITH_PAYLOAD):
         raise OutputError(
-            f"{place} is of version {data.get('version')!r}; this Flexapod reads versions up to {_WITH_STRAYS}."
+            f"{place} is of version {data.get('version')!r}; this Flexapod reads versions up to {_WITH_PAYLOAD}."
         )
     if sealed(data)["sum"] != data.get("sum"):
         raise OutputError(
@@ -155,6 +157,7 @@ def certificate_of(data: Mapping[str, Any]) -> Certificate:
         place=place,
         assumed=tuple(map(str, data["assumed"])),
         strays=strays,
+        payload=_payload(data.get("payload", [])),
         strayed=_strayed(data.get("strayed", []), len(strays)),
         pose=None if data["pose"] is None else np.array(data["pose"], dtype=np.float64).reshape(6),
         left=_unpacked(data["left"], place.parts.shape[1:]),
@@ -167,6 +170,13 @@ def _strayed(values: list[float], count: int) -> tuple[float, ...]:
     found = tuple(map(float, values))
     if len(found) not in (0, count) or not all(-1 <= value <= 1 for value in found):
         raise ValueError("the values of its strays are not from -1 to 1 each")
+    return found
+
+
+def _payload(values: list[float]) -> tuple[float, ...]:
+    found = tuple(map(float, values))
+    if len(found) not in (0, 4) or not np.isfinite(found).all() or (found and found[0] < 0):
+        raise ValueError("its payload is no mass and place")
     return found
 
 

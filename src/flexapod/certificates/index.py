@@ -51,9 +51,9 @@ def certify(
     within_limits : bool, optional
         Whether only poses within the design's limits count. Default: all do.
     uncertain : Uncertain, Payload or sequence of them, optional
-        Stiffnesses, masses, moments of inertia, payloads, and places of joints and of the platform's mass centre that
-        stray: the bound holds for every design in their ranges. How close it comes is limited by how far places stray,
-        so that `gap` may not be reached.
+        Stiffnesses, masses, moments of inertia, payloads and their places, and places of joints and of the platform's
+        mass centre that stray: the bound holds for every design in their ranges. How close it comes is limited by how
+        far places stray, so that `gap` may not be reached.
     time_limit : float, optional
         How long to try, s; then the best bound that is proved is given.
     threads : int, optional

@@ -8,15 +8,14 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
-from flexapod.certificates.question import Question, known_poses, none_known
+from flexapod.certificates.question import Question, known_poses, none_known, rotated
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.strays import strayed
-from flexapod.errors import ArgumentError, DesignError
+from flexapod.mechanics.joint_limits import check_limits
 from flexapod.workspace.box import Box, Workspace
 from flexapod.workspace.descents import BoxSearch, SquaredFrequency
-from flexapod.workspace.limit_margins import margins_to_keep, none_within
-from flexapod.workspace.proof import Boxes, six_of
+from flexapod.workspace.limit_margins import LimitMargins, margins_to_keep, none_within
+from flexapod.workspace.proof import Boxes, Place, six_of
 from flexapod.workspace.quantities import evaluate
 from flexapod.workspace.worst import worst_pose
 
@@ -48,7 +47,7 @@ def _most_adverse(
     question: Question, threads: int, quantity: Quantity, search: Callable[[Question, int], Known]
 ) -> Known:
     """What a search finds for the design as it is, and for one whose strays are as adverse as may be at that pose."""
-    found = search(question, threads)
+    found = search(of_strays(question), threads)
     if not question.strays or found.singular:
         return found
     for _ in range(_ROUNDS):
@@ -67,16 +66,9 @@ def worse_of(quantity: Quantity, value: float, than: float) -> bool:
     return value < than if quantity == "omega_1" else value > than
 
 
-def of_strays(question: Question, values: tuple[float, ...]) -> Question:
-    """The question of the one design whose strays have these values. Raises ArgumentError where it is none."""
-    return replace(question, hexapod=_design(question, values), strays=())
-
-
-def _design(question: Question, values: tuple[float, ...]) -> Hexapod:
-    try:
-        return strayed(question.hexapod, question.strays, values)
-    except DesignError as error:
-        raise ArgumentError(f"what is uncertain leads to what is no hexapod: {error}") from error
+def of_strays(question: Question, values: tuple[float, ...] = ()) -> Question:
+    """The question of the one design whose strays have these values, none: 0. Raises ArgumentError where it is none."""
+    return replace(question, hexapod=question.design(values), strays=(), payload=())
 
 
 def strayed_from(question: Question, known: Known, quantity: Quantity) -> Known:
@@ -94,7 +86,7 @@ def strayed_from(question: Question, known: Known, quantity: Quantity) -> Known:
 
 
 def _value(question: Question, values: tuple[float, ...], pose: Array, quantity: Quantity) -> float:
-    design = _design(question, values)
+    design = question.design(values)
     return float(evaluate(design, pose[None], (quantity,), question.joint, 1)[quantity][0])
 
 
@@ -180,6 +172,39 @@ def _of_poses(question: Question, rows: Array, quantity: str, threads: int) -> K
     return Known(float(values[at]), rows[at], quantity == "omega_1" and found_singular(found, at))
 
 
+def least_of_corners(question: Question, box: Box, threads: int) -> Known:
+    """The least index at a box's corners; where all poses count, 0 of one that is outside the range of a law."""
+    ends = [np.unique([low, high]) for low, high in zip(box.low, box.high, strict=True)]
+    rows = np.stack(np.meshgrid(*ends, indexing="ij"), axis=-1).reshape(-1, len(ends))
+    design = question.design()
+    wanted = ("omega_1", *(("within_limits",) if question.within_limits else ()))
+    found = evaluate(design, rows, wanted, question.joint, threads)
+    values = np.nan_to_num(found["omega_1"])
+    if question.within_limits:
+        values = np.where(found["within_limits"], values, np.inf)
+    at = int(values.argmin())
+    return Known(float(values[at]), rows[at])
+
+
+def beyond_limits(question: Question, parts: Array) -> tuple[Known, str] | None:
+    """A pose in one of some parts, with strays at which it breaks a limit, and the limit; None where none is found.
+
+    Pose and strays are at the ends to which the slopes in the middle point.
+    """
+    ends = np.vstack([np.zeros(len(question.strays)), np.eye(len(question.strays))])
+    of_designs = [LimitMargins(question.design(values), joint=question.joint) for values in ends]
+    for part in parts:
+        six, half = middle_of(question.place, part)
+        (margins, slopes), *others = [of_design(six) for of_design in of_designs]
+        moved = np.array([values for values, _ in others]) - margins
+        worst = int((margins - np.abs(moved).sum(axis=0) - np.abs(slopes) @ half).argmin())
+        strays = tuple(np.where(moved[:, worst] > 0, -1.0, 1.0).tolist())
+        at = six - np.sign(slopes[worst]) * half
+        if not check_limits(question.design(strays), at, joint=question.joint).ok:
+            return Known(float("nan"), at, strayed=strays), of_designs[0].names[worst]
+    return None
+
+
 def found_singular(found: dict[str, Array], at: int) -> bool:
     """Whether a pose of a sweep is singular."""
     return bool(found["status"][at] == 1)
@@ -202,6 +227,15 @@ def lowered(question: Question, at: Array) -> Known:
     limits = margins_to_keep(question.hexapod, not question.within_limits, question.joint)
     end = BoxSearch(index, box, limits, 1, 0, 1).descend(six)
     return min(Known(index.root(six), six), Known(index.root(end), end), key=lambda one: one.value)
+
+
+def middle_of(place: Place, part: Array) -> tuple[Array, Array]:
+    """x, y, z, roll, pitch, yaw in the middle of a part of a region, and half its widths: none on a path."""
+    if isinstance(place, Boxes):
+        return part.mean(axis=1), np.ptp(part, axis=1) / 2
+    piece, low, high = part
+    six = np.array([np.polynomial.polynomial.polyval((low + high) / 2, one) for one in place.pieces[int(piece)]])
+    return six_of(rotated(six[None], place.middle)[0], np.zeros((1, 6, 2))), np.zeros(len(six))
 
 
 def six_numbers_of(pose: Array, question: Question) -> Array:

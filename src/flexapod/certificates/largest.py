@@ -13,12 +13,13 @@ import numpy as np
 from flexapod.certificates import largest_file
 from flexapod.certificates.certificate import Certificate
 from flexapod.certificates.index import certify
-from flexapod.certificates.known import least_index
+from flexapod.certificates.known import Known, least_index, least_of_corners
 from flexapod.certificates.largest_file import Progress
 from flexapod.certificates.question import Uncertainty, question
 from flexapod.checks import positive, thread_count
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.strays import data_of
 from flexapod.errors import ArgumentError, PoseError
 from flexapod.mechanics.inputs import as_hexapod, as_joint
 from flexapod.output_files import check_file, output_path
@@ -230,6 +231,7 @@ class _Search:
             "shape": [self._middle.tolist(), self._half.tolist()],
             "bound": self._at_least,
             "within_limits": asked.within_limits,
+            "uncertain places": [data_of(asked.strays), list(asked.payload)],
         }
 
     def begun(self, tolerance: float) -> Progress:
@@ -249,11 +251,18 @@ class _Search:
                 f"the middle of the box has an index of {self._least(0.0)[0]:.6g} rad/s, less than the bound of "
                 f"{self._at_least:.6g}: no box about it keeps that. Move the box, or give a lower bound."
             )
-        low, high, pose = 0.0, min(1.0, self.greatest), None
-        while (found := self._least(high))[0] >= self._at_least:
-            low, high = high, min(2 * high, self.greatest)
-            if low >= self.greatest:
-                return float("inf"), None
+        near = self._refuted_by_corners(tolerance)
+        if near is None:
+            low, high = 0.0, min(1.0, self.greatest)
+            while (found := self._least(high))[0] >= self._at_least:
+                low, high = high, min(2 * high, self.greatest)
+                if low >= self.greatest:
+                    return float("inf"), None
+        else:
+            low, high = 0.0, (1 - tolerance) * near[0]
+            found = self._least(high)
+            if found[0] >= self._at_least:
+                return near
         pose = found[1]
         while high - low > tolerance * high:
             middle = (low + high) / 2
@@ -263,6 +272,25 @@ class _Search:
             else:
                 low = middle
         return high, pose
+
+    def _refuted_by_corners(self, tolerance: float) -> tuple[float, Array] | None:
+        """About the least scale at which a corner is below the bound, and the corner: no search is needed for it."""
+        low, high = 0.0, min(1.0, self.greatest)
+        while (corner := self._corner(high)).value >= self._at_least:
+            low, high = high, min(2 * high, self.greatest)
+            if low >= self.greatest:
+                return None
+        while high - low > tolerance * high:
+            middle = (low + high) / 2
+            if (other := self._corner(middle)).value < self._at_least:
+                high, corner = middle, other
+            else:
+                low = middle
+        return high, corner.pose
+
+    def _corner(self, scale: float) -> Known:
+        box = self.box(scale)
+        return least_of_corners(question(self._hexapod, box, **self._given), box, self._threads)
 
     def _least(self, scale: float) -> tuple[float, Array]:
         region = self.box(scale) if scale > 0 else self._middle

@@ -10,9 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
+from flexapod import _core
 from flexapod.certificates import file
 from flexapod.certificates.certificate import Certificate, Claim
-from flexapod.certificates.known import Known, lowered, six_numbers_of, strayed_from
+from flexapod.certificates.known import Known, beyond_limits, lowered, of_strays, six_numbers_of, strayed_from
 from flexapod.certificates.question import Question
 from flexapod.checks import positive, thread_count
 from flexapod.conventions import LEG_PAIRS, LEGS
@@ -22,16 +23,7 @@ from flexapod.workspace.proof import Standing, Watch, closest, run
 from flexapod.workspace.store.dask_cluster import Cluster
 
 KEEP = 60.0  # s between two times that a certificate is written
-#: What a pose may break, in the order of the core's `BrokenLimit`.
-_LIMITED = (
-    "length",
-    "universal joint",
-    "spherical joint",
-    "distance",
-    "moment in the universal joint",
-    "moment in the spherical joint",
-    "stiffness law",
-)
+_TRIED = 100  # parts that are left, of which it is seen whether a limit breaks in them
 _UNKNOWN = np.full(12, np.nan)
 _CLOSE = 1e-9  # relative, of numbers that went through a file or a root
 
@@ -150,7 +142,7 @@ def _earlier(asked: Question, claim: Claim, wanted: float | None, gap: float, se
         "bound": found.wanted,
         "gap": found.gap,
         "within_limits": found.within_limits,
-        "uncertain places": found.strays,
+        "uncertain places": (found.strays, found.payload),
     }
     other = [name for name, value in given.items() if there[name] != value]
     if other:
@@ -170,7 +162,7 @@ def _identity(asked: Question, claim: Claim, wanted: float | None, gap: float) -
         "bound": wanted,
         "gap": gap,
         "within_limits": asked.within_limits,
-        "uncertain places": asked.strays,
+        "uncertain places": (asked.strays, asked.payload),
     }
 
 
@@ -192,15 +184,29 @@ class _Keeper:
         asked, claim = self._of[:2]
         met = len(standing.at) == len(_UNKNOWN) and bool(np.isfinite(standing.at).all())  # by the prover
         if claim == "index" and standing.status != "undecided" and met and standing.broken < 0:
-            better = lowered(asked, standing.at)
+            better = lowered(of_strays(asked), standing.at)
             if asked.strays:
                 better = strayed_from(asked, better, "omega_1")
             if better.value < standing.value:
                 standing = replace(standing, value=better.value, at=better.pose, strayed=better.strayed)
+        words = ""
+        if claim == "limits" and standing.status == "undecided" and asked.strays:
+            standing, words = _strayed_beyond(asked, standing)
         found = certificate(*self._of, standing)
+        if words:
+            found = replace(found, broken=words)
         if self._path is not None:
             file.write_certificate(found, self._path)
         return found
+
+
+def _strayed_beyond(asked: Question, standing: Standing) -> tuple[Standing, str]:
+    """The standing with a design of the ranges and a pose that break a limit, and its words, if a part has such."""
+    beyond = beyond_limits(asked, standing.left[:_TRIED])
+    if beyond is not None:
+        found, words = beyond
+        return replace(standing, status="refuted", at=found.pose, strayed=found.strayed), words
+    return standing, ""
 
 
 def certificate(asked: Question, claim: Claim, wanted: float | None, gap: float, standing: Standing) -> Certificate:
@@ -223,6 +229,7 @@ def certificate(asked: Question, claim: Claim, wanted: float | None, gap: float,
         assumed=asked.assumed,
         nominal=asked.nominal,
         strays=asked.strays,
+        payload=asked.payload,
         strayed=standing.strayed,
         lower=lower,
         upper=upper,
@@ -241,7 +248,8 @@ def _broken_limit(standing: Standing) -> str:
     """The limit that a pose breaks, in words."""
     if standing.broken < 0:
         return ""
-    if _LIMITED[standing.broken] == "distance":
+    limit = _core.BrokenLimit(standing.broken)
+    if limit is _core.BrokenLimit.distance:
         i, j = LEG_PAIRS[standing.leg]
         return f"distance of legs {LEGS[i]} and {LEGS[j]}"
-    return f"{_LIMITED[standing.broken]} of leg {LEGS[standing.leg]}"
+    return f"{limit.name.replace('_', ' ')} of leg {LEGS[standing.leg]}"

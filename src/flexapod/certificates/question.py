@@ -9,9 +9,10 @@ from typing import Protocol, TypeAlias, runtime_checkable
 import numpy as np
 
 from flexapod.checks import number, positive
-from flexapod.conventions import Array, JointModel
+from flexapod.conventions import LEG_PAIRS, LEGS, Array, JointModel
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.strays import MOST, Stray
+from flexapod.design.packing import PLACES
+from flexapod.design.strays import MOST, Stray, rows_of, strayed
 from flexapod.errors import ArgumentError, DesignError, PoseError, shown
 from flexapod.mechanics.inputs import as_hexapod, as_joint
 from flexapod.pose import Pose
@@ -43,6 +44,15 @@ class Straying(Protocol):
 
 
 @runtime_checkable
+class Carried(Straying, Protocol):
+    """A load on the platform beside that of the design, such as `fx.optimisation.Payload`."""
+
+    def load(self, hexapod: Hexapod) -> tuple[float, ...]:
+        """Its greatest mass, kg, and the middle of its place, m, (4,)."""
+        ...
+
+
+@runtime_checkable
 class PolynomialCurve(Curve, Protocol):
     """A path whose pieces are polynomials, such as `fx.Trajectory`."""
 
@@ -60,8 +70,9 @@ Uncertainty: TypeAlias = "Straying | Iterable[Straying]"
 class Question:
     """A design at its worst, and where; within_limits: whether only poses within its limits count.
 
-    nominal: the digest of the design as it was given. assumed: what is uncertain, in words. strays: what of the design
-    may lie anywhere in a range.
+    nominal: the digest of the design as it was given. assumed: what is uncertain, in words. strays: what may lie
+    anywhere in a range. payload: where something strays, mass (kg) and place (m) of a load beside the design's, (4,),
+    or nothing.
     """
 
     hexapod: Hexapod
@@ -71,11 +82,28 @@ class Question:
     nominal: str
     assumed: tuple[str, ...]
     strays: tuple[Stray, ...] = ()
+    payload: tuple[float, ...] = ()
+
+    def design(self, values: Sequence[float] = ()) -> Hexapod:
+        """The design whose strays have values from -1 to 1, none: 0. Raises ArgumentError where it is none."""
+        try:
+            return strayed(self.hexapod, self.strays, values, self.payload)
+        except DesignError as error:
+            raise ArgumentError(f"what is uncertain leads to what is no hexapod: {error}") from error
 
     def prover(self, kind: str, threads: int, limits: bool | None = None) -> Prover:
         """The prover of a claim, a name of `_core.CertificateKind`."""
         limits = self.within_limits if limits is None else limits
-        return Prover(self.hexapod, self.joint, kind, self.place, limits, strays=self.strays, threads=threads)
+        return Prover(
+            self.hexapod,
+            self.joint,
+            kind,
+            self.place,
+            limits,
+            strays=self.strays,
+            payload=self.payload,
+            threads=threads,
+        )
 
 
 def question(
@@ -96,17 +124,70 @@ def question(
     if within_limits:
         refuse_force_limits(hexapod)
         refuse_moments(hexapod, joint)
-    worst, assumed, strays = hexapod, [], []  # type: tuple[Hexapod, list[str], list[Stray]]
-    for one in [uncertain] if isinstance(uncertain, Straying) else uncertain:
+    given = listed(uncertain)
+    worst, strays, payload = _ranges(hexapod, given)
+    _check_strays(strays, within_limits)
+    words = tuple(one.words for one in given)
+    return Question(worst, joint, place, within_limits, hexapod.digest, words, tuple(strays), payload)
+
+
+def listed(uncertain: Uncertainty) -> list[Straying]:
+    """What is uncertain, one by one. Raises ArgumentError for what is no such thing."""
+    given: list[Straying] = [uncertain] if isinstance(uncertain, Straying) else list(uncertain)
+    for one in given:
         if not isinstance(one, Straying):
             raise ArgumentError(f"uncertain holds {shown(one)}; give fx.Uncertain or fx.optimisation.Payload.")
-        more = one.strays(worst)
-        if not more:
+    return given
+
+
+def _ranges(hexapod: Hexapod, given: list[Straying]) -> tuple[Hexapod, list[Stray], tuple[float, ...]]:
+    """The design at its worst, what strays, and a payload that is no part of the design because something does."""
+    worst, strays = hexapod, []  # type: tuple[Hexapod, list[Stray]]
+    loads = [one for one in given if isinstance(one, Carried)]
+    for one in given:
+        more = one.strays(hexapod)
+        if not more and one not in loads:
             worst = _at_worst(one, worst)
         strays += more
-        assumed.append(one.words)
-    _check_strays(strays, within_limits)
-    return Question(worst, joint, place, within_limits, hexapod.digest, tuple(assumed), tuple(strays))
+    if strays and len(loads) > 1:
+        raise ArgumentError(
+            f"uncertain holds {len(loads)} payloads; beside places that stray, one is proved. Put the others into the "
+            "design (platform.mass, platform.mass_center, platform.inertia)."
+        )
+    if strays:
+        return worst, strays, loads[0].load(hexapod) if loads else ()
+    for load in loads:
+        worst = _at_worst(load, worst)
+    return worst, [], ()
+
+
+def refuse_all_but_places(hexapod: Hexapod, uncertain: Uncertainty) -> None:
+    """Raises ArgumentError for what is uncertain beside places: limits have no worst end of it."""
+    for one in listed(uncertain):
+        if isinstance(one, Carried) or not one.strays(hexapod):
+            raise ArgumentError(
+                f"{one.words}: limits are proved over uncertain places of joints alone. Leave it out, or certify the "
+                "limits of several designs."
+            )
+
+
+def refuse_parted_joints(asked: Question) -> None:
+    """Raises ArgumentError where legs share a joint that strays from itself: they would be two legs that touch."""
+    hexapod = asked.hexapod
+    if hexapod.limits.leg_distance is None or not asked.strays:
+        return
+    rows = rows_of(asked.strays)
+    for plate, joints in (("base", hexapod.base_joints), ("platform", hexapod.platform_joints)):
+        numbers = PLACES[f"{plate}.joints"]
+        extent = np.ptp(joints, axis=0).max()
+        for i, j in LEG_PAIRS:
+            shared = np.abs(joints[i] - joints[j]).max() <= 1e-9 * extent
+            if shared and (rows[:, numbers[i]] != rows[:, numbers[j]]).any():
+                raise ArgumentError(
+                    f"legs {LEGS[i]} and {LEGS[j]} share a joint of the {plate}, whose place is uncertain for each of "
+                    "them, and the design limits their distance (limits.leg_distance). Leave that limit out, or let "
+                    "all coordinates of the key stray together (each is False)."
+                )
 
 
 def _check_strays(strays: list[Stray], within_limits: bool) -> None:

@@ -21,9 +21,9 @@ from .objectives import MeanIndex as MeanIndex
 from .objectives import Objective as Objective
 from .pareto import ParetoFront as ParetoFront
 from .pareto import pareto_front as pareto_front
+from .payload_range import Payload as Payload
 from .requirements import Constraint as Constraint
 from .requirements import Requirement as Requirement
-from .uncertain_parameters import Payload as Payload
 from .uncertain_parameters import Uncertain as Uncertain
 from .uncertain_parameters import UncertainParameter as UncertainParameter
 from .uncertain_parameters import UncertainRange as UncertainRange

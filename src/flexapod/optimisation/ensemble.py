@@ -13,7 +13,8 @@ from flexapod.design.layout import FULL, HOME, describe, with_short_forms
 from flexapod.design.payload import add_payload
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.inputs import as_hexapod
-from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, UncertainRange, quantile
+from flexapod.optimisation.payload_range import Payload
+from flexapod.optimisation.uncertain_parameters import Uncertain, UncertainRange, quantile
 
 
 class Ensemble:

@@ -6,15 +6,13 @@ from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from flexapod.checks import not_negative, number, numbers, one_of, positive, several
-from flexapod.conventions import TRANSLATIONS, Array
+from flexapod.checks import one_of, positive
+from flexapod.conventions import Array
 from flexapod.design import layout
 from flexapod.design.form_numbers import with_numbers
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import entries
-from flexapod.design.payload import with_payload
 from flexapod.design.strays import KEYS, Stray
 from flexapod.errors import ArgumentError
 from flexapod.optimisation.worst_ends import side_of
@@ -200,96 +198,6 @@ class Uncertain:
 
 
 @in_notebooks
-@dataclass(frozen=True)
-class Payload:
-    """A load on the platform beyond that of the design: a point mass, uniformly distributed.
-
-    Parameters
-    ----------
-    mass : tuple of float
-        Smallest and largest mass, kg.
-    position : tuple, optional
-        Three coordinates in the platform frame, m: each a number, or a pair (smallest, largest).
-
-    Examples
-    --------
-    >>> payload = fx.optimisation.Payload((0, 5), (0.0, 0.0, (0.1, 0.2)))
-    """
-
-    mass: tuple[float, float]
-    position: tuple[ArrayLike, ArrayLike, ArrayLike] = (0.0, 0.0, 0.0)
-
-    def parameters(self, hexapod: Hexapod) -> list[UncertainParameter]:
-        """Make the independent parameters for a design.
-
-        Parameters
-        ----------
-        hexapod : Hexapod
-            The design.
-
-        Returns
-        -------
-        list of UncertainParameter
-            The mass and the three coordinates.
-
-        Raises
-        ------
-        ArgumentError
-            If the mass is negative, or a range does not ascend.
-        """
-        if not (several(self.mass) and several(self.position)) or len(self.mass) != 2 or len(self.position) != 3:
-            raise ArgumentError("a payload has a mass (least, largest) in kg and a position of three coordinates in m.")
-        low, high = (not_negative(mass, "the payload's mass", "kg") for mass in self.mass)
-        if not low <= high:
-            raise ArgumentError(f"the payload's mass is from {low} to {high} kg; it must be >= 0, the least first.")
-        found = [_of_payload("mass", np.array([low, high], dtype=np.float64), "kg")]
-        for axis, given in zip(TRANSLATIONS, self.position, strict=True):
-            name = f"the payload's {axis}"
-            pair = numbers(given, name, (2,)) if several(given) else np.full(2, number(given, name, "m"))
-            if not pair[0] <= pair[1]:
-                raise ArgumentError(f"the payload's {axis} is {given!r} m; it must be a number, or (least, most).")
-            found.append(_of_payload(axis, np.array(pair), "m"))
-        return found
-
-    def strays(self, hexapod: Hexapod) -> list[Stray]:
-        """None: see `at_worst`."""
-        return []
-
-    @property
-    def words(self) -> str:
-        """What is assumed, for readers: "a payload of 0 to 5 kg at (0, 0, 0.1) m"."""
-        place = ", ".join(f"{a:.6g}" for a in np.asarray([np.max(axis) for axis in self.position]))
-        return f"a payload of {self.mass[0]:.6g} to {self.mass[1]:.6g} kg at ({place}) m"
-
-    def at_worst(self, hexapod: Hexapod) -> Hexapod:
-        """Make the design with the largest payload, under which the index is least at every pose.
-
-        Parameters
-        ----------
-        hexapod : Hexapod
-            The design.
-
-        Returns
-        -------
-        Hexapod
-            The design whose platform carries the payload.
-
-        Raises
-        ------
-        ArgumentError
-            If its place is uncertain: the index neither rises nor falls with that at every pose.
-        """
-        mass, *place = self.parameters(hexapod)
-        if moving := [one.words for one in place if not one.fixed]:
-            raise ArgumentError(
-                f"{moving[0]} is uncertain, and the index neither rises nor falls with it at every pose. Give one "
-                "place, and certify several."
-            )
-        at = np.array([one.width[0] for one in place])
-        return with_payload(hexapod, float(mass.width[1]), at, np.zeros((3, 3)))
-
-
-@in_notebooks
 class UncertainRange(NamedTuple):
     """What was assumed of an uncertain parameter, in the unit of its key.
 
@@ -351,11 +259,6 @@ class UncertainParameter:
     def fixed(self) -> bool:
         """Whether its range is a single number."""
         return self.index is None and self.width[0] == self.width[1]
-
-
-def _of_payload(name: str, pair: Array, unit_name: str) -> UncertainParameter:
-    name = f"payload.{name}"
-    return UncertainParameter(name, "uniform", None, pair, 0.0, name, unit_name=unit_name)
 
 
 def quantile(distribution: str, u: Array, spread: float) -> Array:

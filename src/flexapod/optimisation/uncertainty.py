@@ -17,7 +17,8 @@ from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.mechanics.joint_limits import check_limits
 from flexapod.optimisation.ensemble import Ensemble
-from flexapod.optimisation.uncertain_parameters import Payload, Uncertain, UncertainRange
+from flexapod.optimisation.payload_range import Payload
+from flexapod.optimisation.uncertain_parameters import Uncertain, UncertainRange
 from flexapod.optimisation.worst_case import worst_case
 from flexapod.optional import needed
 from flexapod.pose import Pose

@@ -113,7 +113,8 @@ class Prover:
     """What is to be proved of a design, and where. kind: a name of `_core.CertificateKind`.
 
     limits: whether the design's limits are what is proved, or what poses must be within to count. only_law: of these,
-    the range of a stiffness law alone. strays: what of the design may lie anywhere in a range.
+    the range of a stiffness law alone. strays: what may lie anywhere in a range. payload: where something strays, mass
+    (kg) and place (m) of a load beside the design's, (4,), or nothing.
     """
 
     hexapod: Hexapod
@@ -123,6 +124,7 @@ class Prover:
     limits: bool = False
     only_law: bool = False
     strays: tuple[Stray, ...] = ()
+    payload: tuple[float, ...] = ()
     cut: float = CUT
     threads: int = 1
 
@@ -138,6 +140,8 @@ class Prover:
             threads=self.threads,
             cut=self.cut,
             strays=rows_of(self.strays),
+            payload=np.array(self.payload or np.zeros(4)),
+            home=np.zeros(0) if self.hexapod.home is None else self.hexapod.home.packed,
         )
         found = self.place.prove(
             self.hexapod.packed,

@@ -81,7 +81,11 @@ region_options = common.stack(
     ),
     click.option("--payload", metavar="LEAST:LARGEST", help="Mass (kg) of a load on the platform beyond the design's."),
     click.option(
-        "--payload-at", nargs=3, default=("0", "0", "0"), metavar="X Y Z", help="Where it is in the platform frame (m)."
+        "--payload-at",
+        nargs=3,
+        default=("0", "0", "0"),
+        metavar="X Y Z",
+        help="Where it is in the platform frame (m): numbers, or ranges LEAST:LARGEST, for all of which the bound is.",
     ),
 )
 run_options = common.stack(

@@ -19,7 +19,7 @@ from flexapod.cli.options.certify import Options
 from flexapod.cli.output.interrupt import Stopping
 from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
-from flexapod.optimisation.uncertain_parameters import Payload
+from flexapod.optimisation.payload_range import Payload
 from flexapod.output_files import make_directory
 from flexapod.report.numbers import file_name
 from flexapod.report.studies.certificate import study
@@ -74,10 +74,6 @@ def _check_claim(options: Options) -> None:
         raise click.UsageError("--largest needs the bound that the box is to keep. Give --at-least.")
     if any(claims[1:]) and options.payload:
         raise click.UsageError("--payload is for the index: other claims depend on geometry alone.")
-    if options.limits and options.uncertain:
-        raise click.UsageError(
-            "--uncertain is for the index, --regular and --condition; limits are those of one design."
-        )
     if options.limits and options.within_limits:
         raise click.UsageError("--limits with --within-limits is true of every machine. Leave one of them out.")
     if options.largest and (options.scheduler or options.path_file or options.pose):
@@ -111,7 +107,7 @@ def _certified(hexapod: Hexapod, options: Options, path: Path | None, watch: dic
     with cluster(options.scheduler, options.timeout) if options.scheduler else nullcontext() as workers:
         given = {**watch, "path": path, "resume": options.resume, "cluster": workers}
         if options.limits:
-            return certify_limits(hexapod, region, joint=options.joint, **given)
+            return certify_limits(hexapod, region, joint=options.joint, uncertain=_uncertain(options), **given)
         given |= {"within_limits": options.within_limits, "uncertain": _uncertain(options)}
         if options.regular:
             return certify_regular(hexapod, region, **given)

@@ -10,7 +10,7 @@ import click
 from flexapod.cli.options import common, problem
 from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
-from flexapod.optimisation.uncertain_parameters import Payload
+from flexapod.optimisation.payload_range import Payload
 from flexapod.optimisation.uncertainty import robustness
 from flexapod.report.studies.robustness import study
 from flexapod.report.study import Study

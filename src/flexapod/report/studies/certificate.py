@@ -22,10 +22,18 @@ _TITLES = {
     "condition": "Condition number",
     "limits": "Limits kept",
 }
-_LEAVES_OUT = (
-    "Other poses than those of the region, other modes than the lowest, and what happens in fast motion.",
-    "What the model leaves out: plates are rigid, joints have no play, and the frequency is that of the undamped small "
+_OTHER = {
+    "index": "Other poses than those of the region, other modes than the lowest, and what happens in fast motion. What "
+    "the model leaves out: plates are rigid, joints have no play, and the frequency is that of the undamped small "
     "vibration about a pose, in which weight and preload do not count.",
+    "limits": "Other poses than those of the region, forces in the legs, and limits of a motion (rates, accelerations, "
+    "power). What the model leaves out: plates and legs are rigid, and joints have no play.",
+}
+_GEOMETRY = (
+    "Other poses than those of the region, and stiffness and mass, on which this does not depend. What the model "
+    "leaves out: plates and legs are rigid, and joints have no play."
+)
+_LEAVES_OUT = (
     "How well the numbers of the design fit the machine: they count as exact, but for what is said to be uncertain.",
     "Faults of the processor or the compiler. The proof allows for the rounding of every operation.",
 )
@@ -55,7 +63,8 @@ def _rows(found: Certificate, largest: CertifiedBox | None) -> list[Row]:
     if found.within_limits:
         rows.append(Row("Beyond the limits", percent(found.share_outside, 1), "of the volume, left out"))
     if found.status == "undecided":
-        rows.append(Row("Not decided", percent(found.share_left, 2), f"of the volume, {len(found.left)} parts"))
+        parts = f"{len(found.left)} part{'' if len(found.left) == 1 else 's'}"
+        rows.append(Row("Not decided", percent(found.share_left, 2), f"of the volume, {parts}"))
     rows.append(Row("Looked at", str(found.boxes), f"{_parts(found)} in {brief(found.seconds, 3)} s"))
     return rows
 
@@ -74,7 +83,7 @@ def _bounds(found: Certificate) -> list[Row]:
         return [
             Row("Proved at every pose", found.lower or None, proved if found.lower else "nothing", 6),
             Row("Least that is known", found.upper, known, 6),
-            Row("Gap between them", percent(found.reached, 2)),
+            *([Row("Gap between them", percent(found.reached, 2))] if found.lower else []),
         ]
     if found.claim == "condition":
         most = found.upper if np.isfinite(found.upper) else None
@@ -90,11 +99,10 @@ def _bounds(found: Certificate) -> list[Row]:
 
 def _sections(found: Certificate, name: str, checked: bool) -> list[Section]:
     model = _model(found)
-    assumed = f"It holds for every design in the ranges of {'; '.join(found.assumed)}." if found.assumed else ""
+    assumed = f"It is about every design in the ranges of {'; '.join(found.assumed)}." if found.assumed else ""
     words = [model, *filter(None, [" ".join(filter(None, [assumed, _straying(found)]))])]
-    left = (
-        [Table(_box_columns(found.left), _more(found.left), on="page")] if len(found.left) and not found.on_path else []
-    )
+    listed = found.status == "undecided" and not found.on_path
+    left = [Table(_box_columns(found.left), _more(found.left), on="page")] if listed else []
     again = (
         f"With Flexapod installed, the command \u201cflexapod certify --check {name}.json\u201d proves the same anew "
         "by boxes that are cut elsewhere. The file holds the design, the region, the model and the bound, and a sum "
@@ -104,12 +112,16 @@ def _sections(found: Certificate, name: str, checked: bool) -> list[Section]:
         Section("What is claimed", [_facts(found)], words),
         Section("The region", [_region(found)]),
         *([Section("What is not decided", left)] if left else []),
-        Section("What it does not cover", [], [" ".join(_LEAVES_OUT)]),
+        Section("What it does not cover", [], [" ".join((_OTHER.get(found.claim, _GEOMETRY), *_LEAVES_OUT))]),
     ]
     return sections if checked else [*sections, Section("Check it again", [], [again])]
 
 
 def _model(found: Certificate) -> str:
+    if found.claim in ("regular", "condition"):
+        return "Rigid plates and legs, joints without play; what is claimed depends on their geometry alone."
+    if found.claim == "limits":
+        return "Rigid plates and legs, joints without play, springs in the joints as the design has them."
     joint = {"universal": "exact universal joints", "spin_free": "legs that do not spin (the paper's)"}[found.joint]
     legs = found.hexapod.legs
     law = "" if legs.stiffness_law is None else f", stiff by a law of their length ({legs.stiffness_law.kind.name})"
@@ -129,9 +141,10 @@ def _straying(found: Certificate) -> str:
     if not found.strays:
         return ""
     furthest = max(max(one.reach) for one in found.strays)
+    ends = " The most adverse value known is of one with coordinates at the ends of their ranges."
     return (
-        f"{len(found.strays)} places stray independently, by {furthest * 1000:.4g} mm at most; the design with the "
-        "digest is in the middle. The most adverse value known is of one with places at the ends of their ranges."
+        f"{len(found.strays)} coordinates stray independently, by {furthest * 1000:.4g} mm at most; the design with "
+        f"the digest is in the middle.{ends if found.strayed else ''}"
     )
 
 
