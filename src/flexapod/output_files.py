@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import stat
+import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, nullcontext, suppress
 from os import PathLike
@@ -44,13 +45,16 @@ def passing(path: Path) -> Iterator[Path]:
         yield path
     finally:
         _remove(path)
-        _passing.discard(path)
+    _passing.discard(path)
 
 
 def remove_passing() -> None:
-    """Take away what an interrupt left that came just before it was to be removed."""
-    while _passing:
-        _remove(_passing.pop())
+    """Take away what an interrupt left: it came before it was to be removed, or while another thread wrote in it."""
+    for pause in (0.0, 0.05, 0.2) if _passing else ():
+        time.sleep(pause)
+        for path in _passing:
+            _remove(path)
+    _passing.clear()
 
 
 def _remove(path: Path) -> None:

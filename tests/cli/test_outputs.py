@@ -5,6 +5,8 @@ import re
 import shutil
 import signal
 import threading
+import time
+import weakref
 from importlib import import_module
 
 import pytest
@@ -128,6 +130,37 @@ def test_signals_end_a_command_with_their_code(number, code, run, monkeypatch, t
     assert '"kind": "Interrupted"' in err or '"kind": "Terminated"' in err
     assert signal.getsignal(signal.SIGTERM) is before
     assert not (tmp_path / "here").exists()
+
+
+@pytest.mark.usefixtures("interruptible")
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_is_not_lost_in_a_callback(number, code, run, monkeypatch):
+    import flexapod.cli.studies.simulate as study
+
+    class Thing:
+        pass
+
+    def simulate(*args, **kwargs):
+        thing = Thing()
+        kept = weakref.ref(thing, lambda _: signal.raise_signal(number))  # Python lets no exception out of here
+        del thing
+        time.sleep(10)
+        return kept
+
+    monkeypatch.setattr(study, "simulate", simulate)
+    found, _, err = run("simulate", "cubic-isolator", "--duration", "1")
+    assert found == code
+    assert "ignored" not in err
+
+
+def test_what_another_thread_puts_back_after_an_interrupt_is_removed(tmp_path):
+    making = tmp_path / ".making"
+    with pytest.raises(KeyboardInterrupt), output_files.passing(making):
+        raise KeyboardInterrupt
+    making.mkdir()
+    (making / "late").write_text("x")
+    output_files.remove_passing()
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.usefixtures("interruptible")

@@ -332,6 +332,7 @@ FORCE = fx.excitation.flat_spectrum(3.0, 10.0, 90.0, quantity="force")
         (lambda: np.nan * fx.harmonic("x", 1.0, 1.0), "factor of an excitation is nan"),
         (lambda: fx.harmonic("x", 1.0, 1.0).evaluate("now"), "times is 'now'"),
         (lambda: fx.harmonic("x", 1.0, 1.0).on({"y": "z"}), "axes takes 'x' to None"),
+        (lambda: fx.harmonic("x", 1.0, 1.0).on({"x": np.zeros(3)}), "axes takes 'x' to array"),
         (lambda: fx.excitation.polynomial("x", "t"), "coefficients is 't'"),
         (lambda: fx.random_motion("x", None), "spectrum is None"),
         (lambda: fx.excitation.flat_spectrum(1e200, 1.0, 2.0), "rms is 1e.200; it must be at most"),

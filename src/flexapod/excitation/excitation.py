@@ -198,7 +198,7 @@ class Excitation:
             Old axis to new axis.
         """
         instance(axes, Mapping, "axes", "from old axis to new axis")
-        missing = [channel for channel in self.channels if axes.get(channel) not in AXES + LEGS]
+        missing = [channel for channel in self.channels if not _is_axis(axes.get(channel))]
         if missing:
             raise ArgumentError(
                 f"axes takes {missing[0]!r} to {shown(axes.get(missing[0]))}; give each axis a new one."
@@ -287,8 +287,12 @@ def check_use(excitation: Excitation, argument: str) -> None:
             )
 
 
+def _is_axis(name: Any) -> bool:
+    return isinstance(name, str) and name in AXES + LEGS
+
+
 def one_term(axis: str, kind: TermKind, numbers: Array, **given: Any) -> Excitation:
     """An excitation of one function of time; given: fields of `Term`. Raises ArgumentError for an unknown axis."""
-    if not isinstance(axis, str) or axis not in AXES + LEGS:
+    if not _is_axis(axis):
         raise ArgumentError(f"axis is {shown(axis)}; it must be one of {', '.join(AXES)}, or a leg '1' to '6'.")
     return Excitation((Term(axis, kind, numbers, **given),))

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -41,11 +43,24 @@ def terminable() -> Iterator[None]:
     def end(number: int, frame: FrameType | None) -> None:
         raise Terminated
 
-    before = signal.signal(signal.SIGTERM, end)
+    before, shown = signal.signal(signal.SIGTERM, end), sys.unraisablehook
+    sys.unraisablehook = lambda lost: None if _comes_again(lost.exc_type) else shown(lost)
     try:
         yield
     finally:
+        sys.unraisablehook = shown
         signal.signal(signal.SIGTERM, before)
+
+
+def _comes_again(lost: type[BaseException]) -> bool:
+    """Send a signal anew whose exception rose where Python lets none out, as in the callback of a weak reference."""
+    number = {Terminated: signal.SIGTERM, KeyboardInterrupt: signal.SIGINT}.get(lost)
+    if number is None:
+        return False
+    again = threading.Timer(0.02, os.kill, (os.getpid(), number))
+    again.daemon = True
+    again.start()
+    return True
 
 
 class Stopping:
