@@ -53,7 +53,9 @@ def files_of(folder):
 
 
 #: What differs between two runs of a command: dates, times, and names that stand for nothing.
-_OF_THE_RUN = re.compile(rb"<dc:date>[^<]*|Created on: [^\0]*|\b[mp][0-9a-f]{10}\b|\d+(\.\d+)? s\b")
+_OF_THE_RUN = re.compile(
+    rb"<dc:date>[^<]*|Created on: [^\0]*|\b[mp][0-9a-f]{10}\b|\d+(\.\d+)? s\b|\"(seconds|sum)\": [^,\n]*"
+)
 
 
 def same(found, whole):

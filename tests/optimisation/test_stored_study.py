@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 
 import flexapod as fx
+from flexapod.optimisation import study_file
 from flexapod.optimisation.global_search import Study
 from flexapod.optimisation.problem import Problem
 from flexapod.optimisation.study_file import open_storage
@@ -200,6 +201,24 @@ def test_a_study_file_is_there_as_a_whole_or_not_at_all(tmp_path, monkeypatch):
     open_storage(file).engine.dispose()
     assert seen == [1, "wal"]
     assert [path.name for path in tmp_path.iterdir()] == ["new.db"]
+
+
+def test_a_study_file_that_another_process_made_meanwhile_stays(tmp_path):
+    file = tmp_path / "s.db"
+    study = Study(problem(), file, samples=16)
+    before = file.stat().st_ino
+    study_file._make(file)  # by who looked before it was there
+    assert file.stat().st_ino == before
+    assert study.finished() == []
+
+
+def test_nothing_stays_beside_a_study_file(tmp_path):
+    file, p = tmp_path / "s.db", problem()
+    study = Study(p, file, samples=16)
+    study.run(2, lambda x: ((a := p.assess_at(x, 16)), (a.index,)))
+    assert list(tmp_path.iterdir()) == [file]
+    assert len(study.finished()) == 2
+    assert list(tmp_path.iterdir()) == [file]
 
 
 def test_threads_that_make_one_study_file_at_once_share_it(tmp_path):

@@ -57,7 +57,7 @@ class Study:
         self.problem, self.seed, self.samples = problem, seed, samples
         self.file = None if file is None else Path(file)
         self._told = {**problem.describe(), "searched for": aim, "poses per trial": samples, "seed": seed}
-        storage = open_storage(self.file)
+        self._storage = storage = open_storage(self.file)
         self._name = f"flexapod {problem.hexapod.name} {_digest(self._told)}"
         self._space = {
             p.name: optuna.distributions.FloatDistribution(p.low, p.high, log=p.log) for p in problem.map.parameters
@@ -112,10 +112,29 @@ class Study:
         stop: Stop | None = None,
     ) -> None:
         """Goes on until `trials` are finished, by all processes together."""
+        try:
+            self._go_on(trials, evaluate, progress, on_trial, stop)
+        finally:
+            self._let_go()
+
+    def _let_go(self) -> None:
+        """Closes the file until it is used again: SQLite then keeps nothing beside it."""
+        if self._storage is not None:
+            self._storage.remove_session()
+            self._storage.engine.dispose()
+
+    def _go_on(
+        self,
+        trials: int,
+        evaluate: Callable[[Array], tuple[Assessment, tuple[float, ...]]],
+        progress: Progress | None,
+        on_trial: OnTrial | None,
+        stop: Stop | None,
+    ) -> None:
         optuna = optuna_package()
         with told(self.file):
             while not (stop is not None and stop()):
-                done = self.finished()
+                done = self._finished()
                 if progress is not None:
                     progress(min(1.0, len(done) / trials))
                 if on_trial is not None:
@@ -150,6 +169,12 @@ class Study:
 
     def finished(self) -> list[Trial]:
         """In order of their numbers."""
+        try:
+            return self._finished()
+        finally:
+            self._let_go()
+
+    def _finished(self) -> list[Trial]:
         optuna = optuna_package()
         with told(self.file):
             trials = self._study.get_trials(deepcopy=False, states=(optuna.trial.TrialState.COMPLETE,))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sqlite3
 from collections.abc import Iterator
-from contextlib import closing, contextmanager, suppress
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -82,14 +82,11 @@ def _make(file: Path) -> None:
         _storage(making).engine.dispose()
         with closing(sqlite3.connect(making)) as connection:
             connection.execute("PRAGMA journal_mode=WAL")  # a reader does not hold a writer up
-        if file.exists():  # and is empty
-            os.replace(making, file)
-            return
         try:
-            with suppress(FileExistsError):  # another process was first
-                os.link(making, file)
-        except OSError:  # a disk without hard links
-            os.replace(making, file)
+            os.link(making, file)
+        except OSError:  # a file is there, or the disk has no hard links
+            if not _begins(file):  # none, or an empty one; else another process was first
+                os.replace(making, file)
 
 
 def _storage(file: Path) -> Any:
