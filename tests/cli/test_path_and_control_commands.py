@@ -78,6 +78,14 @@ def test_what_is_wrong_is_said(run, arguments, words):
     assert words in err
 
 
+@pytest.mark.parametrize(("gain", "creeps"), [(26.4, True), (13.0, False)])
+def test_a_gain_that_nearly_takes_the_stiffness_away_is_told(run, gain, creeps):
+    code, out, err = run("control", "cubic-isolator", "force", "--gain", gain)
+    assert code == 0
+    assert ("decays only in" in out + err) is creeps
+    assert run("control", "cubic-isolator", "force", "--gain", 26.8)[0] == 2
+
+
 @pytest.mark.parametrize(
     ("rows", "words"),
     [

@@ -32,6 +32,9 @@ class Fact(NamedTuple):
     unit: str = ""
 
 
+_CREEP = 0.02  # of the lowest natural frequency: slower decay comes of stiffness that the law takes away
+
+
 @dataclass(frozen=True)
 class ControlFindings:
     """What was computed about a control law.
@@ -94,6 +97,22 @@ def _drawing(name: str, title: str, plot: str, data: xr.Dataset | None, words: s
     return Drawing(name, title, lambda: getattr(plots.control, plot)(data, **given), words)
 
 
+def _creeping(f: ControlFindings) -> list[Caution]:
+    """A decentralised law that nearly takes the static stiffness away, as force feedback can, has a pole near zero."""
+    pole = f.sampled.pole
+    still = np.abs(pole.imag) < 1e-3 * np.abs(pole.real)
+    slow = pole[still & (pole.real < 0) & (pole.real > -_CREEP * f.sampled.omega[0])]
+    if f.gain is None or not slow.size:
+        return []
+    rate = float(-slow.real.max())
+    text = (
+        f"A motion without oscillation decays only in {1 / rate:.3g} s (a pole at -{rate:.3g} rad/s, which no damping "
+        f"ratio shows): a gain not far above {f.gain:.4g} takes the stiffness away, and the platform falls over. Take "
+        "a smaller --gain."
+    )
+    return [Caution("creep", text, {"rate": rate, "gain": f.gain})]
+
+
 def cautions(f: ControlFindings) -> list[Caution]:
     """What to beware of in the loop."""
     found = [Caution("model", f.assumptions)]
@@ -112,6 +131,7 @@ def cautions(f: ControlFindings) -> list[Caution]:
             "may vibrate more than without control."
         )
         found.append(Caution("near_frequency", text, {"poles": len(f.sampled.near)}))
+    found += _creeping(f)
     if f.run is not None and f.run.attrs["saturated"] > 0:
         share = f.run.attrs["saturated"]
         found.append(Caution("saturated", f"The actuators were at their limit in {share:.1%} of the samples.",
