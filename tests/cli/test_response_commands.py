@@ -222,3 +222,16 @@ def test_figures_say_what_they_show():
     assert random.axes[0].get_ylabel() == "density, (m/s²)²/Hz"
     assert random.axes[-1].get_xlabel() == "frequency, Hz"
     assert len(random.axes) == 2  # no empty half for the rotations
+
+
+@pytest.mark.parametrize(("first", "last", "modes"), [(0.5, 80, 0), (5, 80, 5), (0.5, 1, 6)])
+def test_modes_outside_the_band_of_a_spectrum_are_told(result, tmp_path, first, last, modes):
+    omega = fx.linearise(fx.load("cubic-isolator")).modes().omega / (2 * np.pi)
+    file = tmp_path / "sound.csv"
+    file.write_text(f"frequency_hz,force_z_N2/Hz\n{first},1e-6\n{last},1e-6\n")
+    told = result("response", "cubic-isolator", "--points", 5, "--load", file)["warnings"]
+    outside = omega[(omega < first) | (omega > last)]
+    assert (len(outside), len(told)) == (modes, min(modes, 1))
+    if modes:
+        listed = told[0].partition("there lie modes, at ")[2].partition(" Hz")[0].split(", ")
+        assert np.array(listed, float) == pytest.approx(outside, rel=5e-3)  # with losses a little lower

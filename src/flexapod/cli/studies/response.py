@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import click
@@ -12,8 +13,8 @@ from rich.console import Console
 from rich.progress import Progress
 
 from flexapod.cli.options.quantities import read
-from flexapod.cli.options.spectra import read_load, read_spectra
-from flexapod.conventions import AXES, LEGS, ROTATIONS, Array
+from flexapod.cli.options.spectra import Spectra, read_load, read_spectra
+from flexapod.conventions import AXES, LEGS, ROTATIONS, TWO_PI, Array, Complex
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import linearise
@@ -44,7 +45,7 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
     options = {key: given[key] for key in ("point", "loss_factor", "joint")}
     response = transmissibility(hexapod, pose, omega=grid_around(poles, *ends, given["points"]), **options)
     stepped = None if given["amplitude"] is None else _stepped(hexapod, pose, given, (low, high), quiet)
-    random, notes = _random(hexapod, pose, given, options)
+    random, notes = _random(hexapod, pose, given, options, poles)
     found = ResponseFindings(
         hexapod=hexapod,
         pose=pose,
@@ -66,14 +67,14 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
 
 
 def _random(
-    hexapod: Hexapod, pose: Pose, given: dict[str, Any], options: dict[str, Any]
+    hexapod: Hexapod, pose: Pose, given: dict[str, Any], options: dict[str, Any], poles: Complex
 ) -> tuple[xr.Dataset | None, list[str]]:
     """The response to random motion of the base and random loads, where either is given, and what to say of them."""
     base: dict[str, Any] = {}
     loads, notes = [], []
     if given["psd"] is not None:
         spectra = read_spectra(given["psd"])
-        notes += spectra.notes
+        notes += [*spectra.notes, *_outside(given["psd"], spectra, poles)]
         base = {"psd": spectra.density, "frequency": spectra.frequency, "of": spectra.of}
     files, places = given["loads"], given["at"] or ((0.0, 0.0, 0.0),)
     if given["at"] and not files:
@@ -85,11 +86,24 @@ def _random(
         )
     for file, place in zip(files, places * len(files) if len(places) == 1 else places, strict=False):
         spectra = read_load(file)
-        notes += spectra.notes
+        notes += [*spectra.notes, *_outside(file, spectra, poles)]
         loads.append(RandomLoad(spectra.density, frequency=spectra.frequency, point=place, name=file.stem))
     if not base and not loads:
         return None, notes
     return random_response(hexapod, pose, loads=loads, **base, **options), notes
+
+
+def _outside(file: Path, spectra: Spectra, poles: Complex) -> list[str]:
+    """That a file says nothing of frequencies at which the machine vibrates, where it does not."""
+    natural, (low, high) = np.sort(poles.imag[poles.imag > 0]) / TWO_PI, spectra.frequency[[0, -1]]
+    missed = natural[(natural < low) | (natural > high)]
+    if not missed.size:
+        return []
+    told = ", ".join(f"{f:.4g}" for f in missed)
+    return [
+        f"{file} is from {low:.4g} to {high:.4g} Hz; outside it counts as no excitation, and there lie modes, at "
+        f"{told} Hz. Where they are excited too, more moves than is told here: extend the spectra."
+    ]
 
 
 def _check(given: dict[str, Any]) -> None:
