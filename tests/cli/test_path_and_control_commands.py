@@ -166,3 +166,28 @@ def test_control_without_a_run_says_nothing_of_one(run, tmp_path):
     assert "chosen gain" in page
     assert ">zeros<" not in page
     assert "Pose(" not in out
+
+
+@pytest.mark.parametrize(
+    ("column", "unit", "told"),
+    [("x", "m/s\u00b2", True), ("roll", "rad/s\u00b2", True), ("smooth", "", False), ("few", "", False)],
+)
+def test_rest_at_the_ends_of_a_motion_that_goes_on_is_told(run, tmp_path, column, unit, told):
+    t = np.linspace(0.0, 4.0, 7 if column == "few" else 81)
+    rows = np.zeros((t.size, 7))
+    rows[:, 0] = t
+    sine = np.sin(np.pi * t)  # 0.1 m or 5 degrees
+    smooth = 0.1 * (t / 4) ** 3 * (10 - 15 * t / 4 + 6 * (t / 4) ** 2)
+    rows[:, 4 if column == "roll" else 1] = {"roll": 5 * sine, "smooth": smooth}.get(column, 0.1 * sine)
+    file = tmp_path / "way.csv"
+    np.savetxt(file, rows, delimiter=",", header="t,x,y,z,roll,pitch,yaw", comments="")
+    code, out, err = run("path", "motion-base", file, "--from-home")
+    assert code == 0
+    assert ("a motion that goes on" in out + err) is told
+    if told:
+        true = np.pi**2 * (0.1 if column == "x" else np.radians(5))
+        free = (out + err).partition(" with free ends")[0].split()[-2:]
+        assert free[1] == unit
+        assert float(free[0]) == pytest.approx(true, rel=0.02)
+    code, out, err = run("path", "motion-base", file, "--from-home", "--ends", "free")
+    assert "a motion that goes on" not in out + err

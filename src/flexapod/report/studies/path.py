@@ -10,12 +10,14 @@ import xarray as xr
 
 from flexapod import plots
 from flexapod.certificates.certificate import Certificate
+from flexapod.conventions import printed_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import told_apart
 from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.load_limits import load_excess
 from flexapod.paths.analysis import PathIndex
 from flexapod.paths.plan import Plan
+from flexapod.paths.rest import RestCost
 from flexapod.paths.trajectory import Trajectory
 from flexapod.report.numbers import DASH, pose_numbers, pose_words, shown
 from flexapod.report.studies import least_index, path_legs, path_motors, path_point
@@ -33,7 +35,8 @@ _PLANE = (
 class PathFindings:
     """What was computed about a path. size: m that a radian counts as. beside, plan, plane: of a planned path.
 
-    cases: with each payload. motors, case_motors: of a design with a drive, as it is and with each payload."""
+    cases: with each payload. motors, case_motors: of a design with a drive, as it is and with each payload. rest: what
+    rest at the ends of a path that was given adds to its accelerations."""
 
     path: Trajectory
     along: PathIndex
@@ -46,6 +49,7 @@ class PathFindings:
     cases: xr.Dataset | None = None
     motors: xr.Dataset | None = None
     case_motors: xr.Dataset | None = None
+    rest: RestCost | None = None
 
 
 def study(hexapod: Hexapod, f: PathFindings, waypoints: str | None = None) -> Study:
@@ -129,7 +133,7 @@ def _order(drawing: Drawing) -> int:
 
 def cautions(f: PathFindings) -> list[Caution]:
     """What to beware of on the path."""
-    found = []
+    found = [] if f.rest is None else [_of_rest(f.rest)]
     if f.along.below and f.along.bound is not None:
         spans = ", ".join(f"{a:.4g} to {b:.4g} s" for a, b in f.along.below)
         text = f"The index lies below the bound of {f.along.bound:.5g} rad/s from {spans}."
@@ -140,6 +144,16 @@ def cautions(f: PathFindings) -> list[Caution]:
         text = f"The path leaves the design's limits for {outside.mean():.0%} of it, first at {first:.4g} s."
         found.append(Caution("limit", text, {"share": float(outside.mean()), "first": first}))
     return found
+
+
+def _of_rest(cost: RestCost) -> Caution:
+    unit = printed_unit(cost.unit)
+    text = (
+        "The waypoints are those of a motion that goes on at their ends, and the path begins and ends at rest: its "
+        f"greatest acceleration is {cost.rest:.3g} {unit}, and {cost.free:.3g} {unit} with free ends. If the "
+        "motion is cut out of a longer one, give --ends free, or --ends periodic."
+    )
+    return Caution("rest", text, {"rest": cost.rest, "free": cost.free})
 
 
 def leg_cautions(hexapod: Hexapod, loads: xr.Dataset, motors: xr.Dataset | None) -> list[Caution]:
