@@ -55,8 +55,10 @@ def _pair(ax: Axes, pair: PairTravel, first: AxisTravel, second: AxisTravel) -> 
     ax.axvline(0, color=FAINT, lw=wide(0.4), zorder=0)
     ax.set(xlabel=f"{pair.axes[0]}, {_shown(pair.axes[0])[1]}", ylabel=f"{pair.axes[1]}, {_shown(pair.axes[1])[1]}")
     dress(ax)
-    if across(ax) < 1.5:
+    if across(ax) < 1.5:  # room for two numbers side by side; home is marked
         ax.locator_params(nbins=2)
+        ax.tick_params(axis="x", labelsize="small")
+        ax.xaxis.set_major_formatter(lambda value, _: f"{value:g}".replace("-", "\u2212") if value else "")
 
 
 def _shown(axis: str) -> tuple[float, str]:
