@@ -141,10 +141,11 @@ def root_locus(dataset: xr.Dataset, chosen: float | None = None, *, figure: Figu
     left.set(
         xlim=(-top, 0.06 * top), ylim=(-0.02 * top, top), xlabel="real part, rad/s", ylabel="imaginary part, rad/s"
     )
+    wide_enough = left.bbox.width > 4 * page.dpi
     left.legend(
         loc="upper center",
-        bbox_to_anchor=(0.5, -0.16),
-        ncols=4 if left.bbox.width > 4 * page.dpi else 2,
+        bbox_to_anchor=(0.5, -0.16 if wide_enough else -0.24),  # below the axis title
+        ncols=4 if wide_enough else 2,
         fontsize=letters(),
         frameon=False,
     )

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.conventions import TWO_PI, Array
 from flexapod.mechanics.cautions import GROWS, other_than_vibration
-from flexapod.plots.style import FAINT, PLATFORM, STRETCHED, ink, letters, new_axes, wide
+from flexapod.plots.style import FAINT, PLATFORM, STRETCHED, across, ink, letters, new_axes, wide
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,10 +64,7 @@ def frequencies(
             loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False, labelcolor=ink(), fontsize=letters()
         )
     _logarithmic(ax, hz)
-    names = (
-        [f"mode {i}" for i in y] if labels is None else [f"{i}  {label}" for i, label in zip(y, labels, strict=True)]
-    )
-    ax.set_yticks(y, names, color=ink())
+    ax.set_yticks(y, _names(ax, y, labels), color=ink())
     ax.set_ylim(6.6, 0.4)
     ax.set_xlabel("natural frequency, Hz", color=ink())
     for side in ("top", "right", "left"):
@@ -76,6 +73,18 @@ def frequencies(
     ax.tick_params(axis="y", length=0)
     ax.tick_params(axis="x", which="both", color=FAINT, labelcolor=ink())
     return ax
+
+
+def _names(ax: Axes, rows: NDArray[np.int64], labels: Sequence[str] | None) -> list[str]:
+    """What stands beside each row. Where a figure is narrow, words go above the lines instead, and numbers beside."""
+    if labels is None:
+        return [f"mode {i}" for i in rows]
+    if across(ax) >= _WIDE:
+        return [f"{i}  {label}" for i, label in zip(rows, labels, strict=True)]
+    for row, label in zip(rows, labels, strict=True):
+        where = ax.get_yaxis_transform()
+        ax.text(0.0, row - 0.2, label, transform=where, color=ink(), fontsize=letters(), va="bottom")
+    return [str(i) for i in rows]
 
 
 def _tangent(ax: Axes, rows: NDArray[np.int64], tangent: NDArray[Any]) -> Array:
@@ -94,6 +103,7 @@ def _tangent(ax: Axes, rows: NDArray[np.int64], tangent: NDArray[Any]) -> Array:
     return hz
 
 
+_WIDE = 5.0  # inches, in which words of 40 letters leave room for the frequencies beside them
 _STEPS = ((1,), (1, 3), (1, 2, 5), (1, 1.5, 2, 3, 4, 5, 7))  # within a decade, from few to many
 
 
