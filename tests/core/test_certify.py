@@ -408,7 +408,7 @@ def path(hexapod, rng):
         + 0.08 * rng.uniform(-1, 1, (5, 6)) * np.r_[3 * [size(hexapod)], 1, 1, 1]
     )
     trajectory = fx.Trajectory(waypoints, np.arange(5.0))
-    spline = trajectory._splines[0]
+    spline = trajectory._curve.splines[0]
     columns = [PPoly.from_spline(BSpline(spline.t, column, spline.k)) for column in spline.c.T]
     lengths = np.diff(columns[0].x)
     powers = np.stack([column.c[::-1, lengths > 0].T for column in columns], axis=1)

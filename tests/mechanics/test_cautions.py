@@ -24,12 +24,12 @@ from flexapod.report import gather
 )
 def test_report_and_page_give_the_same_cautions(name, yaw, code):
     pytest.importorskip("starlette")
-    from flexapod.web import requests, state
+    from flexapod.web.state import snapshot
 
     hexapod = plain_machine(name)
     six = [*fx.home_pose(hexapod).position, 0.0, 0.0, yaw]
     found = gather(hexapod, fx.Pose.from_rpy(*six[:3], 0, 0, np.radians(yaw)))
-    shown = state.snapshot(requests.question({"design": hexapod.to_toml(), "pose": six}))
+    shown = snapshot(hexapod, six)
     said = [*shown["grave"], *shown["warnings"]]
     assert said == [one.text for one in found.cautions if one.code not in ("limit", "design")]
     assert code in [one.code for one in found.cautions] if code else not said or "singular" not in said[0]
@@ -70,11 +70,10 @@ def test_a_leg_along_its_axis_is_named_everywhere(result, run, tmp_path, monkeyp
         assert found[0].text in " ".join(out.split())
     assert result("check", file)["ok"] is False
     assert found[0].text in result("modes", file)["warnings"]
-    requests = pytest.importorskip("flexapod.web.requests")
-    from flexapod.web import state
+    pytest.importorskip("starlette")
+    from flexapod.web.state import snapshot
 
-    six = [*hexapod.home.position, 0, 0, 0]
-    assert found[0].text in state.snapshot(requests.question({"design": hexapod.to_toml(), "pose": six}))["warnings"]
+    assert found[0].text in snapshot(hexapod, [*hexapod.home.position, 0, 0, 0])["warnings"]
 
 
 def test_a_sweep_names_the_leg_behind_its_least_index(run, tmp_path):
