@@ -19,11 +19,11 @@ def pencil_modes(K: Array, M: Array) -> tuple[Array, Array]:
 
 def pencil_squares(K: Array, M: Array) -> Array:
     """The squares of the frequencies alone (n,), rising."""
-    return np.linalg.eigvalsh(_standard(K, M)[1])
+    return np.asarray(np.linalg.eigvalsh(_standard(K, M)[1]), dtype=np.float64)
 
 
 def _standard(K: Array, M: Array) -> tuple[Array, Array]:
     """The Cholesky factor L of M, and L^-1 K L^-T."""
-    factor = np.linalg.cholesky(M)
+    factor = np.asarray(np.linalg.cholesky(M), dtype=np.float64)
     half = np.linalg.solve(factor, K)
-    return factor, np.linalg.solve(factor, half.T)
+    return factor, np.asarray(np.linalg.solve(factor, half.T), dtype=np.float64)
