@@ -154,6 +154,8 @@ CASES = [
     (lambda: optimised(MASS, constraints=["mass"]), A, "constraints holds 'mass', which is no constraint"),
     (lambda: optimised(MASS, start={"mass": 25}), A, "start names 'mass', which is no variable. There are: platform.m"),
     (lambda: optimised(), A, "variables is empty; give at least one Variable or JointCircle"),
+    (lambda: fx.optimise(fx.load("mukherjee-ii"), np.zeros(0), trials=0), A, "variables is empty"),
+    (lambda: fx.optimise(fx.load("mukherjee-ii"), np.zeros(2), trials=0), A, "variables holds np.float64"),
     (lambda: optimised("platform.mass"), A, "variables holds 'platform.mass'"),
     (lambda: optimised(fx.Variable("home.orientation_deg[2]", -10, 4e4)), A, "may go up to .* Lower its upper bound"),
     (lambda: optimised(fx.Variable("platform.mass", 1, 2, "replace")), A, "kind is 'replace'; it must be one of 'set', 'add'"),

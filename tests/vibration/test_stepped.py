@@ -146,6 +146,7 @@ def test_progress_ends_at_one(paper):
         ({"amplitude": np.nan}, fx.ArgumentError, "amplitude"),
         ({"pose": fx.Pose([[0, 0, 0.08]])}, fx.PoseError, "batch"),
         ({"joint": "ball"}, fx.ArgumentError, "'ball'"),
+        ({"omega": [5e-324]}, fx.ArgumentError, "omega holds 4.94066e-324 rad/s; a stepped sine needs at least 1e-09"),
     ],
 )
 def test_bad_arguments(paper, change, error, message):

@@ -25,8 +25,7 @@ class DesignMap:
     """From variables x (n,), SI units, to the numbers of a design (see layout.py) and back to a `Hexapod`."""
 
     def __init__(self, hexapod: Hexapod, variables: Sequence[Variable | JointCircle]) -> None:
-        if isinstance(variables, Variable | JointCircle):
-            variables = [variables]
+        variables = [variables] if isinstance(variables, Variable | JointCircle) else list(variables)
         wrong = [v for v in variables if not isinstance(v, Variable | JointCircle)]
         if wrong or not variables:
             what = f"holds {shown(wrong[0])}" if wrong else "is empty"

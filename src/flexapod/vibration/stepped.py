@@ -34,6 +34,7 @@ _SAMPLES = 64  # of a period
 _HARMONICS = 6
 _ITERATIONS = 12
 _STALLED = 1e-5  # corrections that shrink no more below this are rounding, which a resonance of a high mode enlarges
+_SLOWEST = 1e-9  # of the highest frequency: a period with more oscillations in it cannot be followed
 _LARGEST = 0.1  # of a leg's length: the largest motion of a joint, by the tangent, that is tried
 
 STATUS = ("found", "not_found", "too_large")
@@ -137,11 +138,16 @@ def stepped_sine(
     pose = single_pose(hexapod, pose)
     tangent = linearise(hexapod, pose, joint=joint)
     eta = losses(hexapod, tangent, None)
-    w = asked(omega, frequency)
+    w, poles = asked(omega, frequency), complex_poles(tangent, eta)
     if w is None:
-        w = grid_around(complex_poles(tangent, eta), samples=_STEPS)
+        w = grid_around(poles, samples=_STEPS)
     if (w == 0).any():
         raise ArgumentError("omega holds zero; a stepped sine needs frequencies > 0. Use transmissibility at zero.")
+    if w.min() < _SLOWEST * np.abs(poles).max():
+        raise ArgumentError(
+            f"omega holds {w.min():.6g} rad/s; a stepped sine needs at least {_SLOWEST:g} of the highest natural "
+            f"frequency, {np.abs(poles).max():.6g} rad/s, to follow a period. Use transmissibility below that."
+        )
     shaker = _Shaker(hexapod, pose, tangent, eta, float(amplitude), axis, joint)
     linear = shaker.linear_response(w)
     positive(tolerance, "tolerance")
