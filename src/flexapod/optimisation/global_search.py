@@ -9,7 +9,8 @@ from __future__ import annotations
 import json
 import os
 import socket
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -103,6 +104,16 @@ class Study:
             if alone if name is None else not _at_work(name):
                 self._study.tell(trial.number, state=optuna.trial.TrialState.FAIL, skip_if_finished=True)
 
+    @contextmanager
+    def _let_go(self) -> Iterator[None]:
+        """At the end, closes the file until it is used again: SQLite then keeps nothing beside it."""
+        try:
+            yield
+        finally:
+            if self._storage is not None:
+                self._storage.remove_session()
+                self._storage.engine.dispose()
+
     def run(
         self,
         trials: int,
@@ -112,27 +123,8 @@ class Study:
         stop: Stop | None = None,
     ) -> None:
         """Goes on until `trials` are finished, by all processes together."""
-        try:
-            self._go_on(trials, evaluate, progress, on_trial, stop)
-        finally:
-            self._let_go()
-
-    def _let_go(self) -> None:
-        """Closes the file until it is used again: SQLite then keeps nothing beside it."""
-        if self._storage is not None:
-            self._storage.remove_session()
-            self._storage.engine.dispose()
-
-    def _go_on(
-        self,
-        trials: int,
-        evaluate: Callable[[Array], tuple[Assessment, tuple[float, ...]]],
-        progress: Progress | None,
-        on_trial: OnTrial | None,
-        stop: Stop | None,
-    ) -> None:
         optuna = optuna_package()
-        with told(self.file):
+        with told(self.file), self._let_go():
             while not (stop is not None and stop()):
                 done = self._finished()
                 if progress is not None:
@@ -169,10 +161,8 @@ class Study:
 
     def finished(self) -> list[Trial]:
         """In order of their numbers."""
-        try:
+        with self._let_go():
             return self._finished()
-        finally:
-            self._let_go()
 
     def _finished(self) -> list[Trial]:
         optuna = optuna_package()
