@@ -7,7 +7,7 @@ SI units and rad/s throughout. The everyday names are here; all names are in the
 from flexapod._suggestions import attach
 from flexapod.showing import FACE
 
-__version__ = "0.5.0"
+__version__ = "0.6.0"
 
 # How results show themselves: the one place that knows library and faces.
 FACE.update(html="flexapod.report.notebook", plot="flexapod.plots.results")
