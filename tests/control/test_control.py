@@ -7,6 +7,7 @@ import pytest
 from scipy.linalg import eigh
 from tests.helpers.plain import plain_machine
 
+import control
 import flexapod as fx
 from flexapod.control.controllers import damping_law
 from flexapod.control.gain_search import best_gain, default_gains
@@ -233,6 +234,23 @@ def test_sampling_adds_nothing_when_it_is_fast_and_lag_when_it_is_slow(isolator)
     assert ideal.worst_damping > slow[0] > slow[1]
     late = fx.control.closed_loop(isolator, pose, law.sampled(1e-3, delay=2), nearness=0.0).worst_damping
     assert late < slow[0]
+
+
+@pytest.mark.parametrize("method", ["tustin", "zoh"])
+def test_sampled_controllers_are_those_of_another_toolbox(method, isolator):
+    law = fx.control.PID(2e3, 150.0, 400.0, bandwidth=500.0).on(linearise(isolator, fx.home_pose(isolator)))
+    found = law.sampled(2e-3, method)
+    expected = control.sample_system(control.ss(law.A, law.B, law.C, law.D), 2e-3, method=method)
+    for name in "ABCD":
+        matrix = getattr(expected, name)
+        assert getattr(found, name) == pytest.approx(matrix, rel=1e-12, abs=1e-12 * np.abs(matrix).max())
+
+
+def test_a_pole_that_tustins_rule_sends_to_infinity_is_told():
+    law = fx.control.Controller(np.array([[2e3]]), np.ones((1, 6)), np.ones((6, 1)), np.eye(6), ("leg_rate",), "odd")
+    with pytest.raises(fx.errors.ArgumentError, match="odd has a pole at 2/dt"):
+        law.sampled(1e-3)
+    assert pytest.approx((1 + 1.1) / (1 - 1.1)) == law.sampled(1.1e-3).A
 
 
 def test_gain_map_agrees_with_single_loops_and_warns(isolator):

@@ -62,7 +62,8 @@ STIFFNESS = fx.Variable("legs.stiffness", 1e6, 1e8)
 NEEDS = [
     ("control", "control", lambda: fx.linearise(*isolator()).to_control()),
     ("control", "control", lambda: fx.control.lqg(*isolator())),
-    ("control", "control", lambda: fx.control.ForceFeedback(20.0, 5.0).on(fx.linearise(*isolator())).sampled(1e-3)),
+    ("control", "control",
+     lambda: fx.control.ForceFeedback(20.0, 5.0).on(fx.linearise(*isolator())).sampled(1e-3, "zoh")),
     ("slycot", "control", lambda: fx.control.h_infinity(*isolator())),
     ("ompl", "plan", plan),
     ("optuna", "optimise", lambda: fx.optimise(plain_machine("precision-positioner"), [STIFFNESS], trials=2)),
@@ -98,9 +99,7 @@ def test_what_needs_none_of_them_works(hidden):
     hidden(*{package for package, _, _ in NEEDS})
     hexapod, pose = isolator()
     assert fx.stability_index(hexapod, pose) > 0
-    law = (
-        fx.control.VelocityFeedback(10.0).on(fx.linearise(hexapod, pose)).sampled(1e-3)
-    )  # no states: nothing to discretise
+    law = fx.control.ForceFeedback(20.0, 5.0).on(fx.linearise(hexapod, pose)).sampled(1e-3)
     assert fx.control.closed_loop(hexapod, pose, law, nearness=0.0).stable
     assert fx.optimise(fx.load("precision-positioner"), [fx.Variable("platform.mass", 20, 30)], trials=0).index > 0
 
