@@ -10,6 +10,7 @@ from scipy.stats import kstest, qmc
 import flexapod as fx
 from flexapod.conventions import AXES
 from flexapod.workspace.pose_sets import described, given_poses
+from flexapod.workspace.sobol import Sobol
 
 BOX = fx.Box(x=(-0.1, 0.3), y=(0, 0.4), z=(0.6, 1.0), roll=(-0.3, 0.2), pitch=0.1, yaw=(-1, 1))
 SETS = {
@@ -66,6 +67,22 @@ def test_low_discrepancy_is_scipys_sobol_sequence():
     expected = BOX.scale(qmc.Sobol(6, scramble=True, bits=32, rng=7).random(2**15)[:20_000])
     # a product of the box's width with 2^-32 is rounded once more or less
     assert np.abs(SETS["sobol"].rows(0, 20_000) - expected).max() < 1e-15
+
+
+@pytest.mark.parametrize("dimensions", [1, 2, 40, 512])
+@pytest.mark.parametrize("bits", [30, 32])
+def test_sobol_sequences_are_those_of_scipy(dimensions, bits):
+    def theirs():
+        return qmc.Sobol(dimensions, scramble=True, bits=bits, rng=5)
+
+    assert np.array_equal(Sobol(dimensions, 5, bits).points(0, 4100), theirs().random(8192)[:4100])
+    far = 2**17 + 77
+    assert np.array_equal(Sobol(dimensions, 5, bits).points(far, far + 5), theirs().fast_forward(far).random(5))
+
+
+def test_a_sequence_of_too_many_dimensions_is_told():
+    with pytest.raises(fx.errors.ArgumentError, match="513 numbers vary; a Sobol sequence has at most 512"):
+        Sobol(513, 0).points(0, 1)
 
 
 def test_low_discrepancy_is_more_even_than_chance():

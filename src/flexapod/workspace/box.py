@@ -14,7 +14,7 @@ from flexapod.errors import ArgumentError, PoseError, shown
 from flexapod.pose import Pose, as_pose
 from flexapod.workspace.sobol import Sobol
 
-BITS = 32  # of the coordinates of a Sobol point: the most that scipy.stats.qmc can be wound forward with
+BITS = 32  # of the coordinates of a Sobol point: the most that its integers hold
 
 
 class Box:

@@ -1,16 +1,21 @@
-"""Scrambled Sobol sequences of which any part is found by its numbers, as scipy.stats.qmc makes them from the start."""
+"""Scrambled Sobol sequences of which any part is found by its numbers: the points that scipy.stats.qmc makes.
+
+Loading scipy.stats takes longer than most of the work that wants some hundred points.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any
+from importlib import resources
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
 
 from flexapod.conventions import Array
+from flexapod.errors import ArgumentError
 
 PIECE = 4096  # points made at a time, so that they stay in cache
 
@@ -50,24 +55,56 @@ class Sobol:
         digits = [_difference_of_power(self, j) for j in range(number.bit_length()) if number >> j & 1]
         return np.bitwise_xor.reduce(digits, axis=0) if digits else np.zeros(self.dimensions, np.uint32)
 
-    def begin(self) -> Any:
-        """SciPy's generator at the start of the sequence."""
-        from scipy.stats import qmc
 
-        return qmc.Sobol(self.dimensions, scramble=True, bits=self.bits, rng=self.seed)
+@lru_cache(maxsize=4)
+def _scrambled(sequence: Sobol) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
+    """Point 0 and the direction numbers, (dimensions, bits), after a random linear scrambling and shift.
 
-    def integers(self, points: Array) -> NDArray[np.uint32]:
-        """Points as integers of `bits` bits."""
-        return (points * 2.0**self.bits).astype(np.uint32)
+    J. Matousek, On the L2-discrepancy for anchored boxes, Journal of Complexity 14 (1998).
+    """
+    d, bits = sequence.dimensions, sequence.bits
+    random = np.random.default_rng(sequence.seed).spawn(1)[0]  # as scipy.stats.qmc does
+    shift = random.integers(2, size=(d, bits), dtype=np.uint32) @ (np.uint32(1) << np.arange(bits, dtype=np.uint32))
+    lower = np.tril(random.integers(2, size=(d, bits, bits), dtype=np.uint32), -1) + np.eye(bits, dtype=np.uint32)
+    places = np.arange(bits - 1, -1, -1, dtype=np.uint32)[:, None]
+    digits = _directions(d, bits)[:, None, :] >> places & np.uint32(1)  # (d, place from the highest, bits)
+    mixed = (lower.astype(float) @ digits.astype(float)).astype(np.uint32) & np.uint32(1)
+    return shift.astype(np.uint32), np.bitwise_or.reduce(mixed << places, axis=1)
+
+
+def _directions(dimensions: int, bits: int) -> NDArray[np.uint32]:
+    """Direction numbers of the first dimensions, (dimensions, bits)."""
+    with resources.files("flexapod.workspace").joinpath("sobol_directions.txt").open(encoding="ascii") as file:
+        rows = islice((line for line in file if not line.startswith("#")), dimensions - 1)
+        numbers = [[1] * bits, *(_recurrence(*map(int, line.split()), bits=bits) for line in rows)]
+    if len(numbers) < dimensions:
+        raise ArgumentError(f"{dimensions} numbers vary; a Sobol sequence has at most {len(numbers)} dimensions here")
+    return np.array(numbers, np.uint32) << np.arange(bits - 1, -1, -1, dtype=np.uint32)
+
+
+def _recurrence(polynomial: int, *initial: int, bits: int) -> list[int]:
+    """The odd numbers m_1 to m_bits of a primitive polynomial over two elements, written as its bits."""
+    degree, m = len(initial), list(initial[:bits])
+    while len(m) < bits:
+        following = m[-degree]
+        for k in range(1, degree + 1):
+            if polynomial >> (degree - k) & 1:
+                following ^= m[-k] << k
+        m.append(following)
+    return m
 
 
 @lru_cache(maxsize=4)
 def _table(sequence: Sobol) -> NDArray[np.uint32]:
-    return sequence.integers(sequence.begin().random(PIECE))
+    """The first PIECE points: each half is the one before it, changed by one direction number and in reverse."""
+    origin, directions = _scrambled(sequence)
+    points = origin[None]
+    for j in range(PIECE.bit_length() - 1):
+        points = np.concatenate([points, points[::-1] ^ directions[:, j]])
+    return points
 
 
 @lru_cache(maxsize=128)
 def _difference_of_power(sequence: Sobol, exponent: int) -> NDArray[np.uint32]:
-    generator = sequence.begin()
-    generator.fast_forward(1 << exponent)
-    return sequence.integers(generator.random(1))[0] ^ _table(sequence)[0]
+    directions = _scrambled(sequence)[1]
+    return directions[:, exponent] ^ directions[:, exponent - 1] if exponent else directions[:, 0]
