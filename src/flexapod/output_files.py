@@ -89,10 +89,10 @@ def completed(path: str | PathLike[str]) -> Iterator[Path]:
         raise _failed(path, error) from error
 
 
-def write_file(path: str | PathLike[str], content: str | bytes) -> Path:
+def write_file(path: str | PathLike[str], content: str | bytes | memoryview) -> Path:
     """Write a file, text in UTF-8. Raises OutputError."""
     with completed(path) as making:
-        making.write_bytes(content if isinstance(content, bytes) else content.encode())
+        making.write_bytes(content.encode() if isinstance(content, str) else content)
     return Path(path)
 
 
@@ -113,9 +113,9 @@ def write_netcdf(dataset: xr.Dataset, path: str | PathLike[str], engine: str | N
     write_file(path, netcdf(dataset, engine))
 
 
-def netcdf(dataset: xr.Dataset, engine: str | None = None) -> bytes:
+def netcdf(dataset: xr.Dataset, engine: str | None = None) -> memoryview:
     """A dataset as NetCDF, made in memory: the HDF5 library ends the process where a disk is full."""
-    return bytes(dataset.to_netcdf(engine=engine))  # type: ignore[arg-type]
+    return memoryview(dataset.to_netcdf(engine=engine))  # type: ignore[arg-type]
 
 
 def check_figure(path: Path) -> None:

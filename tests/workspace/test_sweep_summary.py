@@ -37,6 +37,16 @@ def test_summary_is_what_numpy_and_scipy_find():
     assert summary.above.volume_unit == "m3 rad3"
 
 
+@pytest.mark.filterwarnings("ignore::scipy.stats.ConstantInputWarning")
+@pytest.mark.parametrize("cond", [[3.0, 1.0, np.inf, 1.0, 2.0], [1.0] * 5, [5.0, 4.0, 3.0, 2.0, 1.0]])
+def test_equal_values_share_their_rank_and_keep_their_order(cond):
+    omega = np.array([2.0, 7.0, 7.0, 1.0, 3.0])
+    found = distribution.exactly(iter([[omega[:2], np.array(cond[:2])], [omega[2:], np.array(cond[2:])]]))
+    assert found.correlation == pytest.approx(spearmanr(omega, cond).statistic, nan_ok=True)
+    repeated = np.tile(cond, 2000)
+    assert np.array_equal(distribution._order(repeated), np.argsort(repeated, kind="stable"))
+
+
 def test_standard_error_is_that_of_repeated_draws():
     fractions = []
     for seed in range(30):

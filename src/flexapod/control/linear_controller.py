@@ -123,7 +123,7 @@ class Controller:
             raise ArgumentError(f"this controller is sampled already, every {self.dt:.6g} s; sample the continuous one")
         found = replace(self, dt=positive(dt, "dt", "s"))
         if self.order:
-            found = replace(found, **(self._bilinear(dt) if method == "tustin" else self._by_control(dt, method)))
+            found = found._bilinear(dt) if method == "tustin" else found._by_control(dt, method)
         late, order = whole(delay, "delay, in samples,", 0), found.order
         if order + 6 * late > _MOST_STATES:
             raise ArgumentError(
@@ -134,7 +134,7 @@ class Controller:
             found = found._late()
         return found
 
-    def _bilinear(self, dt: float) -> dict[str, Array]:
+    def _bilinear(self, dt: float) -> Controller:
         """The matrices of Tustin's rule, without python-control, which takes a second to load."""
         half = 0.5 * dt * self.A
         try:
@@ -145,12 +145,12 @@ class Controller:
                 "another dt"
             ) from None
         A, B = np.hsplit(states, [self.order])
-        return {"A": A, "B": B, "C": self.C @ (np.eye(self.order) + A) / 2, "D": self.D + self.C @ B / 2}
+        return replace(self, A=A, B=B, C=self.C @ (np.eye(self.order) + A) / 2, D=self.D + self.C @ B / 2)
 
-    def _by_control(self, dt: float, method: str) -> dict[str, Array]:
+    def _by_control(self, dt: float, method: str) -> Controller:
         control = needed("control", "control", f'sampling a controller by "{method}" needs python-control')
         system = control.sample_system(control.ss(self.A, self.B, self.C, self.D), dt, method=method)
-        return {name: getattr(system, name) for name in "ABCD"}
+        return replace(self, A=system.A, B=system.B, C=system.C, D=system.D)
 
     def _late(self) -> Controller:
         """The same with its force one sample later."""

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from flexapod.conventions import Array
 
@@ -30,13 +31,25 @@ def exactly(usable: Iterator[list[Array]]) -> Distribution:
     if len(found) == 1:
         return Distribution(quantiles)
     omega, cond = found
-    return Distribution(quantiles, _pearson(_ranks(omega), _ranks(cond)), _spread(omega, cond))
+    of_omega, of_cond = _order(omega), _order(cond)
+    correlation = _pearson(_ranks(omega[of_omega], of_omega), _ranks(cond[of_cond], of_cond))
+    return Distribution(quantiles, correlation, _spread(omega[of_cond]))
 
 
-def _ranks(values: Array) -> Array:
-    """Ranks from 1; equal values share their mean, as in scipy.stats.rankdata, which takes longer to load than this."""
-    _, inverse, counts = np.unique(values, return_inverse=True, return_counts=True)
-    return (np.cumsum(counts) - 0.5 * (counts - 1))[inverse]
+def _order(values: Array) -> NDArray[np.intp]:
+    """The places of the values from least to largest, equal ones in the order given."""
+    order = np.argsort(values)  # several times as fast as the stable sort, which only equal values need
+    ascending = values[order]
+    return np.argsort(values, kind="stable") if (ascending[1:] == ascending[:-1]).any() else order
+
+
+def _ranks(ascending: Array, order: NDArray[np.intp]) -> Array:
+    """Ranks from 1 of values that are in this order when sorted; equal values share their mean."""
+    ends = np.flatnonzero(np.append(ascending[1:] != ascending[:-1], True)) + 1
+    counts = np.diff(ends, prepend=0)
+    ranks = np.empty(len(order))
+    ranks[order] = np.repeat(ends - 0.5 * (counts - 1), counts)
+    return ranks
 
 
 def _pearson(a: Array, b: Array) -> float:
@@ -45,11 +58,13 @@ def _pearson(a: Array, b: Array) -> float:
     return float(a @ b / scale) if scale > 0 else float("nan")
 
 
-def _spread(omega: Array, cond: Array) -> float:
-    """Median, over bands of equal count in cond(H), of the ratio of the 95 % to the 5 % quantile of omega_1."""
+def _spread(omega: Array) -> float:
+    """Median, over bands of equal count in cond(H), of the ratio of the 95 % to the 5 % quantile of omega_1.
+
+    omega: in the order of cond(H).
+    """
     bands = max(1, min(_BANDS, len(omega) // 100))
-    parts = np.array_split(omega[np.argsort(cond, kind="stable")], bands)
-    low, high = np.array([np.quantile(part, [0.05, 0.95]) for part in parts]).T
+    low, high = np.array([np.quantile(part, [0.05, 0.95]) for part in np.array_split(omega, bands)]).T
     with np.errstate(divide="ignore", invalid="ignore"):
         return float(np.median(high / low))
 
