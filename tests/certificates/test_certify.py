@@ -8,8 +8,10 @@ import pytest
 from tests.helpers.plain import plain_machine
 
 import flexapod as fx
+from flexapod.certificates import largest
 from flexapod.certificates.question import place_of, rotated
 from flexapod.report.studies.certificate import study
+from flexapod.workspace import proof
 from flexapod.workspace.proof import Boxes, six_of
 
 BASE, CUBIC, II, I = (plain_machine(name) for name in ("motion-base", "cubic-isolator", "mukherjee-ii", "mukherjee-i"))
@@ -247,6 +249,28 @@ def test_the_largest_box_of_a_shape():
     assert flat.box.free == ("x",)
     assert flat.certificate.proved
     assert flat.scale >= 0.9 * flat.refuted
+
+
+def test_without_a_limit_of_time_a_size_is_given_up_after_some_work(monkeypatch):
+    """Near a singular pose a proof may need more than anyone waits for."""
+    monkeypatch.setattr(proof, "TURN", 0.05)
+    monkeypatch.setattr(largest, "MOST_BOXES", 100)
+    design, shape = fx.load("mukherjee-ii"), fx.Workspace.about_home(0.01, 0.01)
+    bound = 0.7 * float(fx.stability_index(design))
+    found = fx.certified_box(design, shape, bound, tolerance=0.3)
+    assert found.certificate.proved
+    assert found.scale < found.given_up < found.refuted
+    told = study(found.certificate, largest=found)
+    assert told.data["given_up_scale"] == found.given_up
+    assert next(caution.code for caution in told.cautions) == "given_up"
+
+
+def test_the_bound_that_only_the_middle_has_ends_the_search(monkeypatch):
+    monkeypatch.setattr(proof, "TURN", 0.05)
+    monkeypatch.setattr(largest, "MOST_BOXES", 10)
+    bound = float(fx.stability_index(BASE))
+    with pytest.raises(fx.ArgumentError, match=r"no box .* to keep 28.05\d+ rad/s; its middle has 28.05"):
+        fx.certified_box(BASE, fx.Workspace.about_home(0.05, 0.05), bound)
 
 
 def test_a_box_through_the_pole_of_pitch_is_a_set_of_poses_as_any():

@@ -8,7 +8,7 @@ from os import PathLike
 from flexapod.certificates.certificate import Certificate
 from flexapod.certificates.known import least_index
 from flexapod.certificates.proving import Setup, prove
-from flexapod.certificates.question import Asked, Uncertainty, checked_gap, checked_level, question
+from flexapod.certificates.question import Asked, Question, Uncertainty, checked_gap, checked_level, question
 from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.progress import ProgressLike, with_progress
@@ -128,4 +128,9 @@ def certify(
         path=path,
         resume=resume,
     )
+    return prove_index(asked, wanted, gap, setup)
+
+
+def prove_index(asked: Question, wanted: float | None, gap: float, setup: Setup) -> Certificate:
+    """The certificate of a question about the index."""
     return prove(asked, "index", wanted, gap, setup, lambda: least_index(asked, setup.threads))

@@ -12,9 +12,10 @@ import numpy as np
 
 from flexapod.certificates import largest_file
 from flexapod.certificates.certificate import Certificate
-from flexapod.certificates.index import certify
+from flexapod.certificates.index import prove_index
 from flexapod.certificates.known import Known, least_index, least_of_corners
 from flexapod.certificates.largest_file import Progress
+from flexapod.certificates.proving import Setup
 from flexapod.certificates.question import Uncertainty, question
 from flexapod.checks import positive, thread_count
 from flexapod.conventions import Array, JointModel
@@ -29,7 +30,10 @@ from flexapod.workspace.box import Box, Workspace
 from flexapod.workspace.region import as_region, home_of
 
 _GREATEST = 2.0**12  # of a scale that is tried
+_LEAST = 2.0**-20  # of the first scale that is tried
 _TURN = 2 * np.pi  # widest range of an angle that is tried, rad
+_GAP = 0.01  # what a certificate says where a bound is asked for
+MOST_BOXES = 1e6  #: of the proof for one size, where no time is given
 
 
 @in_notebooks
@@ -48,6 +52,8 @@ class CertifiedBox(NamedTuple):
         The least scale at which a pose below the bound was found: no larger box can be proved. Infinity if none was.
     pose : ndarray, shape (6,), or None
         That pose: x, y, z (m), roll, pitch, yaw (rad).
+    given_up : float
+        The least scale that was tried and given up, undecided. Infinity if none was.
     """
 
     box: Box
@@ -55,6 +61,7 @@ class CertifiedBox(NamedTuple):
     certificate: Certificate
     refuted: float
     pose: Array | None
+    given_up: float
 
 
 @with_progress("largest certified box")
@@ -91,7 +98,8 @@ def certified_box(
     within_limits, uncertain : optional
         As for `certify`.
     time_limit : float, optional
-        How long to try, s; then the largest box that is proved is given.
+        How long to try, s; then the largest box that is proved is given. Left out, each size is tried by at most a
+        million boxes, which is minutes of two processors.
     threads : int, optional
         Number of threads, default one for each core.
     path : str or path-like, optional
@@ -127,8 +135,9 @@ def certified_box(
     Notes
     -----
     Bisection: what is proved of a box holds for every smaller one in it. The scale at which poses are below the bound
-    is found first, by descents; then boxes below that size are proved, the largest first. One of which nothing is
-    decided in half of the time that is left counts as too large; a search that is gone on with tries such sizes again.
+    is found first, by descents; then boxes below that size are proved, the largest first. One that is not decided in
+    half of the time that is left, or without a limit of time by a million boxes, counts as too large (`given_up`): near
+    a singular pose a proof may need more than anyone waits for. A search that is gone on with tries such sizes again.
 
     Examples
     --------
@@ -146,8 +155,9 @@ def certified_box(
     keeper = _Keeper.of(search, tolerance, path, resume)
     watch = {"threads": threads, "progress": progress or None, "stop": stop}
     at = keeper.at
-    high = min(at.refuted, search.greatest)
-    while at.low < high * (1 - tolerance) and time.monotonic() < until and not (stop and stop()):
+    first = high = min(at.refuted, search.greatest)
+    given_up = float("inf")
+    while max(at.low, _LEAST * first) < high * (1 - tolerance) and time.monotonic() < until and not (stop and stop()):
         left = None if time_limit is None else max(1e-3, (until - time.monotonic()) / 2)
         certificate = search.prove(at.scale, {"time_limit": left, **watch, **keeper.watch})
         if stop and stop() and certificate.status == "undecided":
@@ -158,14 +168,13 @@ def certified_box(
             high = at.scale
         if certificate.status == "refuted":
             at.refuted, at.pose = at.scale, certificate.pose
+        elif not certificate.proved:
+            given_up = at.scale
         at.scale = (at.low + high) / 2
         keeper.keep()
     if at.found is None:
-        raise ArgumentError(
-            f"no box of this shape was proved to keep {at_least:.6g} rad/s in the time. Give more of it "
-            "(time_limit), or a lower bound."
-        )
-    return CertifiedBox(search.box(at.low), at.low, at.found, at.refuted, at.pose)
+        raise ArgumentError(search.nothing_proved(stop is not None and stop()))
+    return CertifiedBox(search.box(at.low), at.low, at.found, at.refuted, at.pose, given_up)
 
 
 class _Keeper:
@@ -303,5 +312,16 @@ class _Search:
         return (0.0 if found.singular else found.value), found.pose
 
     def prove(self, scale: float, watch: dict[str, Any]) -> Certificate:
-        """The certificate of the bound for a scale."""
-        return certify(self._hexapod, self.box(scale), at_least=self._at_least, **self._given, **watch)
+        """The certificate of the bound for a scale, or what came of it by `MOST_BOXES` where no time is given."""
+        asked = question(self._hexapod, self.box(scale), **self._given)
+        most = MOST_BOXES if watch["time_limit"] is None else np.inf
+        return prove_index(asked, self._at_least, _GAP, Setup.of(**watch, most=most))
+
+    def nothing_proved(self, stopped: bool) -> str:
+        """What there is to say where no box was proved."""
+        if stopped:
+            return "the search ended before any box of this shape was proved. Go on with it (resume)."
+        return (
+            f"no box of this shape was proved to keep {self._at_least:.6g} rad/s; its middle has "
+            f"{self._least(0.0)[0]:.6g} rad/s. Give a lower bound, or more time (time_limit)."
+        )

@@ -48,8 +48,9 @@ class Setup:
         cluster: Cluster | None = None,
         path: str | PathLike[str] | None = None,
         resume: bool = False,
+        most: float = np.inf,
     ) -> Setup:
-        """From the arguments that every certificate has. Raises ArgumentError or OutputError."""
+        """From the arguments that every certificate has. most: boxes. Raises ArgumentError or OutputError."""
         until = np.inf if time_limit is None else time.monotonic() + positive(time_limit, "time_limit", "s")
         if resume and path is None:
             raise ArgumentError("resume is True, but no path is given: what is to be gone on with? Give the file.")
@@ -58,7 +59,7 @@ class Setup:
                 f"cluster is {shown(cluster)}; it must be what flexapod.workspace.cluster gives, or None."
             )
         take = None if cluster is None else cluster.take_turn
-        watch = Watch(progress=progress, stop=(lambda: False) if stop is None else stop, until=until, take=take)
+        watch = Watch(progress=progress, stop=stop or (lambda: False), until=until, most=most, take=take)
         place = None if path is None else check_file(output_path(path))
         return cls(thread_count(threads), watch, place, resume)
 

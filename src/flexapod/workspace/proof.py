@@ -231,13 +231,15 @@ class Watch:
     """What stands beside a proof: who is told, when it ends, and who takes its turns.
 
     progress: called with the share that is decided. keep: called with the standing after each turn. stop: whether to
-    end. until: when to, on the clock of `time.monotonic`. take: see `Prover.turn`, for several computers.
+    end. until: when to, on the clock of `time.monotonic`. most: after how many boxes. take: see `Prover.turn`, for
+    several computers.
     """
 
     progress: Callable[[float], object] | None = None
     keep: Callable[[Standing], object] | None = None
     stop: Callable[[], bool] = lambda: False
     until: float = np.inf
+    most: float = np.inf
     take: Callable[..., Turn] | None = None
 
     @property
@@ -252,7 +254,7 @@ def run(prover: Prover, standing: Standing, gap: float, watch: Watch) -> Standin
     gap: 0 where the standing's level is to be proved; above 0 the level is (1 - gap) times the least value, for cond(H)
     (1 + gap) times the greatest.
     """
-    while len(standing.left) and not watch.over:
+    while len(standing.left) and standing.boxes < watch.most and not watch.over:
         standing, gave_up = _after_turn(prover, standing, gap, watch)
         if watch.keep is not None:
             watch.keep(standing)

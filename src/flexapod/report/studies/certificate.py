@@ -50,7 +50,7 @@ def study(found: Certificate, *, checked: bool = False, largest: CertifiedBox | 
         data=_data(found, checked, largest),
         rows=_rows(found, largest),
         sections=_sections(found, name, checked),
-        cautions=_cautions(found),
+        cautions=[*_given_up(largest), *_cautions(found)],
         files={f"{name}-check.html" if checked else f"{name}.html": None},
     )
 
@@ -190,6 +190,17 @@ def _more(boxes: Any) -> str:
     return f"and {len(boxes) - MOST} more, which are in the file." if len(boxes) > MOST else ""
 
 
+def _given_up(largest: CertifiedBox | None) -> list[Caution]:
+    """That larger boxes were given up, where the search did not come to the size that a pose refutes."""
+    if largest is None or np.isinf(largest.given_up):
+        return []
+    text = (
+        f"Boxes from {largest.given_up:.4g} times the shape on were given up undecided: the bound may hold in a larger "
+        f"one than {largest.scale:.4g}. A longer --time-limit tries for longer, as does --resume."
+    )
+    return [Caution("given_up", text, {"scale": largest.given_up})]
+
+
 def _cautions(found: Certificate) -> list[Caution]:
     cautions = []
     if found.status == "undecided":
@@ -241,7 +252,11 @@ def _data(found: Certificate, checked: bool, largest: CertifiedBox | None) -> di
         "path_s": None if boxes else float((found.place.parts[:, 2] - found.place.parts[:, 1]).sum()),
     }
     if largest is not None:
-        data |= {"scale": largest.scale, "refuted_scale": largest.refuted}
+        data |= {
+            "scale": largest.scale,
+            "refuted_scale": largest.refuted,
+            "given_up_scale": largest.given_up,
+        }
     return data
 
 
