@@ -126,3 +126,10 @@ def test_what_is_refused(run, tmp_path, monkeypatch, line, words):
     code, _, err = run("statics", "motion-base", *line)
     assert code == 2
     assert words in " ".join(err.split())
+
+
+def test_the_point_of_a_force_that_is_not_there_is_refused(run, tmp_path):
+    (tmp_path / "cases.csv").write_text("case,at_z_mm\na,10\n")
+    code, _, err = run("statics", "cubic-isolator", str(tmp_path / "cases.csv"))
+    assert code == 2
+    assert "at_x, ... say where a force acts, and there is none" in " ".join(err.split())

@@ -320,8 +320,8 @@ class _Search:
     def nothing_proved(self, stopped: bool) -> str:
         """What there is to say where no box was proved."""
         if stopped:
-            return "the search ended before any box of this shape was proved. Go on with it (resume)."
+            return "no box of this shape was proved before the search ended. Give it more time."
         return (
             f"no box of this shape was proved to keep {self._at_least:.6g} rad/s; its middle has "
-            f"{self._least(0.0)[0]:.6g} rad/s. Give a lower bound, or more time (time_limit)."
+            f"{self._least(0.0)[0]:.6g} rad/s. Give a lower bound, or more time."
         )

@@ -26,9 +26,8 @@ from flexapod.cli.output.stages import stages
 @click.option(
     "--payload-at",
     nargs=3,
-    default=("0", "0", "0"),
     metavar="X Y Z",
-    help="Where it is in the platform frame (m): each a number or LEAST:LARGEST.",
+    help="Where it is in the platform frame (m): each a number or LEAST:LARGEST. Default: its origin.",
 )
 @where_options
 @click.option("--samples", type=common.count(2), default=2**14, show_default=True, help="Designs to draw.")

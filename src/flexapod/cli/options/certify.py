@@ -83,9 +83,9 @@ region_options = common.stack(
     click.option(
         "--payload-at",
         nargs=3,
-        default=("0", "0", "0"),
         metavar="X Y Z",
-        help="Where it is in the platform frame (m): numbers, or ranges LEAST:LARGEST, for all of which the bound is.",
+        help="Where it is in the platform frame (m): numbers, or ranges LEAST:LARGEST, for all of which the bound is. "
+        "Default: its origin.",
     ),
 )
 run_options = common.stack(
@@ -123,7 +123,7 @@ class Options:
     within_limits: bool
     uncertain: tuple[str, ...]
     payload: str | None
-    payload_at: tuple[str, str, str]
+    payload_at: tuple[str, str, str] | None
     time_limit: float | None
     threads: int | None
     scheduler: str | None

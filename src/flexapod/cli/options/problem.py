@@ -12,10 +12,12 @@ import numpy as np
 
 from flexapod.cli.options.optimise import KEEPS
 from flexapod.cli.options.poses import box_of, read_poses
+from flexapod.cli.options.quantities import read
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.units import UNITS, to_si
 from flexapod.optimisation import constraints as c
 from flexapod.optimisation.objectives import LeastIndex, MeanIndex, Objective
+from flexapod.optimisation.payload_range import Payload
 from flexapod.optimisation.requirements import Constraint
 from flexapod.optimisation.uncertain_parameters import Uncertain
 from flexapod.optimisation.variables import CIRCLE, JointCircle, Variable
@@ -130,10 +132,21 @@ def uncertain(texts: Iterable[str]) -> list[Any]:
     return found
 
 
-def span(option: str, text: str) -> tuple[float, float]:
-    """`0:500`, or one number for both."""
+def payloads(mass: str | None, at: tuple[str, ...] | None) -> list[Payload]:
+    """`--payload` and `--payload-at`, each number `LEAST:LARGEST` or one for both; none without the mass."""
+    if mass is None:
+        if at is not None:
+            raise click.UsageError(
+                "--payload-at is the place of a load, and there is none. Give its mass by --payload."
+            )
+        return []
+    place: Any = tuple(_span("--payload-at", text, "length") for text in at or ("0", "0", "0"))
+    return [Payload(_span("--payload", mass, "mass"), place)]
+
+
+def _span(option: str, text: str, dimension: str) -> tuple[float, float]:
     low, colon, high = text.partition(":")
-    return _number(option, text, low), _number(option, text, high if colon else low)
+    return read(low, dimension, option), read(high if colon else low, dimension, option)
 
 
 def _range(option: str, text: str) -> tuple[str, float, float]:

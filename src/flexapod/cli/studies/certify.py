@@ -16,15 +16,17 @@ from flexapod.certificates.index import certify
 from flexapod.certificates.largest import certified_box
 from flexapod.cli.options import common, problem, waypoints
 from flexapod.cli.options.certify import Options
+from flexapod.cli.options.given import needed, others
 from flexapod.cli.output.interrupt import Stopping
 from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
-from flexapod.optimisation.payload_range import Payload
 from flexapod.output_files import make_directory
 from flexapod.report.numbers import file_name
 from flexapod.report.studies.certificate import study
 from flexapod.report.study import Study
 from flexapod.workspace.store.dask_cluster import cluster
+
+_OF_CHECKS = ("time_limit", "threads", "out", "as_json")  # options that a check has as well
 
 
 def compute(options: Options, place: Path | None, report: Report) -> tuple[Study, list[Path]]:
@@ -36,6 +38,7 @@ def compute(options: Options, place: Path | None, report: Report) -> tuple[Study
             "progress": lambda share: report("decided, by volume", share),
             "stop": stop,
         }
+        _check_needs(options)
         if options.check is not None:
             return study(_checked(options, watch), checked=True), []
         if options.design is None:
@@ -60,6 +63,15 @@ def _checked(options: Options, watch: dict[str, Any]) -> Certificate:
                 f"{options.design} is {digest}. It proves nothing of that one."
             )
     return check_certificate(given, **watch)
+
+
+def _check_needs(options: Options) -> None:
+    """Raises UsageError where an option counts for nothing."""
+    checked = "a proof; that in FILE of --check has its own claim, region and model"
+    needed(options.check is None, checked, *others("design", "changes", "check", *_OF_CHECKS))
+    needed(options.design or options.check is None, "DESIGN, which is not given", "changes")
+    needed(options.path_file, "the path of --path", "ends", "from_home")
+    needed(options.scheduler, "the cluster of --scheduler", "timeout")
 
 
 def _check_claim(options: Options) -> None:
@@ -95,11 +107,7 @@ def _region(hexapod: Hexapod, options: Options) -> Any:
 
 
 def _uncertain(options: Options) -> list[Any]:
-    found = problem.uncertain(options.uncertain)
-    if options.payload is not None:
-        at = tuple(problem.span("--payload-at", text) for text in options.payload_at)
-        found.append(Payload(problem.span("--payload", options.payload), at))  # type: ignore[arg-type]
-    return found
+    return problem.uncertain(options.uncertain) + problem.payloads(options.payload, options.payload_at)
 
 
 def _certified(hexapod: Hexapod, options: Options, path: Path | None, watch: dict[str, Any]) -> Certificate:

@@ -13,6 +13,7 @@ import xarray as xr
 
 from flexapod.cli.options import common
 from flexapod.cli.options.control import Options
+from flexapod.cli.options.given import needed
 from flexapod.cli.output.stages import Report
 from flexapod.control.active_damping import root_locus
 from flexapod.control.closed_loop_poles import loop_sampling_time
@@ -66,8 +67,21 @@ class _Made:
     gain: float | None = None
 
 
+#: Options -> the laws that they are of.
+_OF_LAWS = {
+    ("kp", "kd", "ki", "space", "actuator", "bandwidth"): ("pid",),
+    ("gain",): ("force", "velocity"),
+    ("leak",): ("force",),
+    ("measure", "effort", "noise"): ("lqg", "h-infinity"),
+}
+_OF_RUNS = ("axes", "band", "duration", "force_limit", "sensor_noise", "seed")
+
+
 def compute(options: Options, report: Report) -> Study:
     """The law of the options on their machine: its loop, with and without sampling, and its run."""
+    for names, laws in _OF_LAWS.items():
+        needed(options.law in laws, f"the law {' or '.join(laws)}, and the law is {options.law}", *names)
+    needed(options.shake, "a run on a base that moves, which --shake asks for", *_OF_RUNS)
     hexapod, pose = common.machine(options.design, options.changes, options.pose)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the study says what the library warns of

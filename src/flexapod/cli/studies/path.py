@@ -10,6 +10,7 @@ import numpy as np
 
 from flexapod.certificates.index import certify
 from flexapod.cli.options import common, payloads, waypoints
+from flexapod.cli.options.given import needed
 from flexapod.cli.options.path import Options
 from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
@@ -28,6 +29,9 @@ from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
 from flexapod.report.studies.path import PathFindings, study
 from flexapod.report.study import Study
+
+_PLANNED = "a path that is planned, with --from and --to; that of FILE is as it stands there"
+_OF_PLANS = ("duration", "leg_rate", "leg_acceleration", "condition", "clearance", "objective", "limits", "seed")
 
 
 def compute(options: Options, report: Report) -> Study:
@@ -56,18 +60,10 @@ def _with_motors(hexapod: Hexapod, found: PathFindings, hold: float) -> PathFind
 def _is_file(options: Options) -> bool:
     ends = (options.start is not None) + (options.goal is not None)
     if options.file is not None and ends == 0:
-        for name in ("duration", "leg_rate", "leg_acceleration", "condition", "clearance"):
-            if getattr(options, name) is not None:
-                raise click.UsageError(
-                    f"--{name.replace('_', '-')} is for a path that is planned, with --from and --to; that of FILE is "
-                    "as it stands there."
-                )
+        needed(False, _PLANNED, *_OF_PLANS)
         return True
     if options.file is None and ends == 2:
-        if options.home_time is not None:
-            raise click.UsageError(
-                "--home-time joins the motion of a FILE to home; a planned path has --from and --to."
-            )
+        needed(False, "the motion of a FILE; a planned path has --from and --to", "home_time", "ends")
         if options.bound is None:
             raise click.UsageError("a path is planned to keep the index above a bound. Give --bound RAD_S.")
         return False

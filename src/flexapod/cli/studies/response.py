@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.progress import Progress
 
+from flexapod.cli.options.given import needed
 from flexapod.cli.options.quantities import read
 from flexapod.cli.options.spectra import Spectra, read_load, read_spectra
 from flexapod.conventions import AXES, LEGS, ROTATIONS, TWO_PI, Array, Complex
@@ -107,6 +108,7 @@ def _outside(file: Path, spectra: Spectra, poles: Complex) -> list[str]:
 
 
 def _check(given: dict[str, Any]) -> None:
+    needed(given["amplitude"], "the non-linear machine, which --amplitude asks for", "steps")
     axis, legs = given["axis"], given["source"] == "command"
     if axis is not None and (axis in LEGS) != legs:
         allowed = ", ".join(LEGS if legs else AXES)

@@ -10,7 +10,6 @@ import click
 from flexapod.cli.options import common, problem
 from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
-from flexapod.optimisation.payload_range import Payload
 from flexapod.optimisation.uncertainty import robustness
 from flexapod.report.studies.robustness import study
 from flexapod.report.study import Study
@@ -19,10 +18,7 @@ from flexapod.report.study import Study
 def compute(hexapod: Hexapod, given: Mapping[str, Any], report: Report) -> Study:
     """The distribution of the index that the options ask for."""
     over = problem.where(hexapod, given["pose"], given["box"], given["around"])
-    straying = problem.uncertain(given["uncertain"])
-    if given["payload"] is not None:
-        at = tuple(problem.span("--payload-at", text) for text in given["payload_at"])
-        straying.append(Payload(problem.span("--payload", given["payload"]), at))  # type: ignore[arg-type]
+    straying = problem.uncertain(given["uncertain"]) + problem.payloads(given["payload"], given["payload_at"])
     if not straying:
         raise click.UsageError("nothing strays. Give --uncertain KEY=SPREAD or --payload LEAST:LARGEST.")
     options = {name: given[name] for name in ("samples", "sensitivity", "all_poses", "joint", "seed", "threads")}

@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from flexapod.cli.options.drives import drives
+from flexapod.cli.options.given import needed
 from flexapod.cli.output.results import write
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SimulationError
@@ -27,6 +28,8 @@ from flexapod.simulation.time_simulation import simulate
 
 def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) -> Study:
     """The motion that the options ask for, and its moving picture. quiet: without progress."""
+    needed(given["random"], "random motion, which --random asks for", "seed")
+    needed(given["animate"], "the moving picture, which --animate asks for", "exaggeration")
     if given["animate"] is not None:
         animation.check_path(given["animate"])
     began = time.perf_counter()

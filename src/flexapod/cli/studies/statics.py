@@ -11,6 +11,7 @@ import click
 import numpy as np
 
 from flexapod.cli.options import common, pose_columns
+from flexapod.cli.options.given import needed
 from flexapod.cli.options.quantities import read
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
@@ -70,6 +71,7 @@ class _Cases(NamedTuple):
 
 def compute(options: Options) -> Study:
     """The load cases of the options."""
+    needed(options.file, "the forces and moments of FILE", "axes")
     hexapod = common.load_design(options.design, options.changes)
     cases = _of_file(hexapod, options) if options.file is not None else _of_elevations(hexapod, options)
     pose = cases.loads.pop("pose", None)
@@ -135,6 +137,8 @@ def _of_file(hexapod: Hexapod, options: Options) -> _Cases:
             raise table.error(f"there are {count} cases; there must be 1 to {_MOST}. {_FORM}")
         loads: dict[str, Any] = {name: _vector(table, name) for name in _VECTORS}
         gravity, elevation = loads.pop("gravity"), None
+        if loads["at"] is not None and loads["force"] is None:
+            raise table.error("at_x, ... say where a force acts, and there is none. Give force_x, ... as well.")
         if (column := table.column("elevation")) is not None:
             if gravity is not None:
                 raise table.error("elevation and gravity_x, ... both give gravity. Leave one of them out.")

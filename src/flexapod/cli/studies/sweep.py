@@ -14,6 +14,7 @@ import click
 import xarray as xr
 
 from flexapod.cli.options import common, figures
+from flexapod.cli.options.given import needed
 from flexapod.cli.options.poses import box_of, grid_of, read_poses
 from flexapod.cli.options.sweep import DEFAULT_POINTS, Options
 from flexapod.cli.output.interrupt import CutShort, OutOfTime, Stopping
@@ -50,6 +51,10 @@ def compute(options: Options) -> Study:
         raise click.UsageError(
             "--resume, --scheduler, --part and --time-limit need a store to write to. Give --out NAME.zarr."
         )
+    needed(options.streamed, "a store, which --out NAME.zarr is", "chunk", "keep_poses")
+    needed(options.scheduler, "the cluster of --scheduler", "timeout")
+    needed(options.figure, "the picture, which --figure asks for", "level")
+    needed(box is not None, "the points of --box or --around; a grid or file has its own poses", "seed")
     if options.figure is not None:
         figures.check(options.figure)
         sweep_axes.check_swept(points.dims, quantities)
