@@ -54,3 +54,11 @@ def printed_unit(unit: str) -> str:
 def unit_of(axis: str, linear: Unit = "m", angular: Unit = "rad") -> Unit:
     """The unit of one of `AXES`: `linear` for a translation, `angular` for a rotation."""
     return linear if axis in TRANSLATIONS else angular
+
+
+def metric(largest: float, unit: str) -> tuple[float, str]:
+    """What to multiply a number by, and the unit, in which the largest of its like is 1 or more: 3e-6 m -> 1e6, µm."""
+    for factor, prefix in ((1.0, ""), (1e3, "m"), (1e6, "µ")):
+        if not 0 < abs(largest) * factor < 1:
+            return factor, prefix + unit
+    return 1e9, "n" + unit

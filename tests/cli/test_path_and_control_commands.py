@@ -3,6 +3,7 @@
 import re
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import flexapod as fx
@@ -133,6 +134,51 @@ def test_damping_gain_is_chosen_for_the_sampled_loop(result):
     slower = result("control", "precision-positioner", "velocity", "--dt", 4 * found["sampling_time_s"])
     assert slower["worst_damping"] > 0.05
     assert any("sample faster" in text for text in slower["warnings"])
+
+
+def spectra(folder):
+    """Files of a base's and a load's spectra, and the options that give them."""
+    (folder / "floor.csv").write_text("frequency_hz,z\n1,1e-6\n60,1e-6\n")
+    (folder / "wind.csv").write_text("frequency_hz,force_y\n0.5,0.01\n60,1e-5\n")
+    return ["--psd", folder / "floor.csv", "--load", folder / "wind.csv", "--at", 0, 0, 0.1]
+
+
+def test_spectra_and_loads_shake_the_controlled_machine(run, result, tmp_path):
+    h = fx.load("cubic-isolator")
+    law = ["control", "cubic-isolator", "velocity", "--gain", 200, "--point", 0, 0, 0.05]
+    found = result(*law, *spectra(tmp_path), "--out", tmp_path / "out")
+    sampled = fx.control.VelocityFeedback(200.0).on(fx.linearise(h)).sampled(found["sampling_time_s"])
+    wind = fx.vibration.RandomLoad([0.01, 1e-5], frequency=[0.5, 60], axis="force_y", point=(0, 0, 0.1), name="wind")
+    floor = {"psd": [1e-6, 1e-6], "frequency": [1, 60], "axis": "z", "loads": wind, "point": (0, 0, 0.05)}
+    with_control = fx.control.controlled_random_response(h, controller=sampled, **floor)
+    for key, expected in (("", with_control), ("passive_", fx.random_response(h, **floor))):
+        for name, values in found[f"{key}random_rms"].items():
+            np.testing.assert_allclose(values, expected[f"rms_{name}"], rtol=1e-9, atol=1e-15)
+        assert list(found[f"{key}random_rms_by_source"]) == ["base", "wind"]
+    assert set(found["random_rms"]) - set(found["passive_random_rms"]) == {"actuator_force"}
+    assert {name for name in map(str, found["files"]) if "random" in name} == {
+        str(tmp_path / "out" / f"control-random{end}") for end in (".png", ".csv", ".nc", "-passive.csv", "-passive.nc")
+    }
+    table = pd.read_csv(tmp_path / "out" / "control-random.csv")
+    np.testing.assert_allclose(table.cumulative_displacement_of_point_z_m.iloc[-1], with_control.rms_displacement[2])
+    squares = np.trapezoid(table.psd_actuator_force_3_N2_per_rad_s, table.omega_rad_s)
+    assert np.sqrt(squares) == pytest.approx(float(with_control.rms_actuator_force[2]), rel=0.01)
+    code, _, err = run(*law, *spectra(tmp_path), "--dt", 0.02)
+    assert code == 2
+    assert "Sample at least every 0.008333 s" in err
+    assert "µm" in run(*law, *spectra(tmp_path))[1]
+
+
+def test_a_machine_that_only_control_holds_has_no_passive_response(run, tmp_path):
+    """A tall mass on soft legs falls over: the controller holds it, and that is told once."""
+    law = ["control", "cubic-isolator", "pid", "--kp", 1e4, "--kd", 500, "--set", "platform.mass_center=[0, 0, 1.0]"]
+    code, out, err = run(*law, *spectra(tmp_path), "--dt", 1e-3)
+    assert code == 0, err
+    told = " ".join((out + err).split())
+    assert "Without control: the machine is not stable at rest" in told
+    assert told.count("e-fold in 4.8 s") == 1
+    assert " 500 Hz" not in told  # half the sampling frequency, where a pole of the loop alternates
+    assert "no control" not in out.split("RMS by")[1].split("Warning")[0]
 
 
 def test_pid_shows_where_gains_are_near(run, tmp_path):

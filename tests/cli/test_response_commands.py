@@ -63,7 +63,7 @@ def test_response_writes_files_that_read_back(run, tmp_path):
     table = pd.read_csv(out / "response.csv")
     np.testing.assert_allclose(table.frequency_hz * 2 * np.pi, table.omega_rad_s)
     expected = fx.transmissibility(hexapod, home, omega=table.omega_rad_s).absolute.sel(output="z", base="z")
-    np.testing.assert_allclose(table.z_amplitude, np.abs(expected), rtol=1e-12)
+    np.testing.assert_allclose(table.z_amplitude_m_per_m, np.abs(expected), rtol=1e-12)
     with xr.open_dataset(out / "random.nc") as saved:
         grid = np.array([1.0, 80.0]) * 2 * np.pi
         levels = np.zeros((2, 6))
@@ -72,7 +72,9 @@ def test_response_writes_files_that_read_back(run, tmp_path):
         np.testing.assert_allclose(saved.rms_leg_force, expected.rms_leg_force, rtol=1e-12)
     stepped = pd.read_csv(out / "stepped.csv", index_col=0)
     response = fx.transmissibility(hexapod, home, omega=stepped.index.values).absolute.sel(output="z", base="z")
-    np.testing.assert_allclose(stepped.z, np.abs(response), rtol=1e-4)  # (amplitude / leg)^2 enlarged by resonance
+    np.testing.assert_allclose(
+        stepped.z_ratio_m_per_m, np.abs(response), rtol=1e-4
+    )  # (amplitude / leg)^2 enlarged by resonance
     for name in ("response", "stepped", "random"):
         with Image.open(out / f"{name}.png") as picture:
             assert min(picture.size) > 700

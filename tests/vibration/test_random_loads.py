@@ -191,3 +191,25 @@ def test_wrong_files_are_told(run, tmp_path, text, more, words):
     code, _, err = run("response", "cubic-isolator", "--load", tmp_path / "wind.csv", *more)
     assert code == 2
     assert words in err
+
+
+def test_modes_outside_the_band_of_a_spectrum_are_told_with_the_result():
+    """By both functions, and not of a motion that only creeps, whose frequency is rounding."""
+    modes = np.sort(fx.linearise(MACHINE, HOME).modes().pole.imag)[-6:] / (2 * np.pi)
+    low = 0.5 * (modes[0] + modes[-1])
+    load = fx.vibration.RandomLoad([1.0, 1.0], frequency=[low, 60.0], axis="force_x", name="fan")
+    given = {"psd": [1e-6, 1e-6], "frequency": [0.1, 60.0], "axis": "z", "loads": load}
+    missed = ", ".join(f"{f:.4g}" for f in modes[modes < low])
+    law = fx.control.VelocityFeedback(0.0)
+    for found in (
+        fx.random_response(MACHINE, HOME, **given),
+        fx.control.controlled_random_response(MACHINE, HOME, controller=law, **given),
+    ):
+        assert f"The spectrum of fan is from {low:.4g} to 60 Hz" in found.attrs["spectrum_caution"]
+        assert f"there lie modes, at {missed} Hz" in found.attrs["spectrum_caution"]
+        assert "the base" not in found.attrs["spectrum_caution"]
+    stiff = fx.control.ForceFeedback(26.0, leak=2.9)
+    wide = fx.vibration.RandomLoad([1.0, 1.0], frequency=[0.1, 60.0], axis="force_x")
+    assert not fx.control.controlled_random_response(MACHINE, HOME, controller=stiff, loads=wide).attrs[
+        "spectrum_caution"
+    ]

@@ -2,6 +2,7 @@ from .active_damping import open_zeros as open_zeros
 from .active_damping import root_locus as root_locus
 from .actuators_and_sensors import Hardware as Hardware
 from .closed_loop_poles import ClosedLoop as ClosedLoop
+from .controlled_random import controlled_random_response as controlled_random_response
 from .controlled_response import controlled_transmissibility as controlled_transmissibility
 from .controllers import PID as PID
 from .controllers import ForceFeedback as ForceFeedback

@@ -8,17 +8,18 @@ from numpy.typing import ArrayLike
 
 from flexapod.control.closed_loop_poles import assess, instability_message
 from flexapod.control.linear_controller import ControlLaw, Controller, controller_for
+from flexapod.control.loop_response import loop_response, lossy
 from flexapod.control.plant import Plant
-from flexapod.conventions import AXES, Array, Complex, JointModel, in_mixed_units, in_unit, unit_of
+from flexapod.conventions import AXES, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.cautions import response_attributes
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attributes, single_pose
 from flexapod.mechanics.linearisation import linearise
 from flexapod.mechanics.point_motion import shift
-from flexapod.pose import PoseLike
+from flexapod.pose import Pose, PoseLike
 from flexapod.vibration.grid import asked, grid_around
-from flexapod.vibration.harmonic import complex_poles, loss_matrix
+from flexapod.vibration.harmonic import complex_poles
 
 
 def controlled_transmissibility(
@@ -110,17 +111,25 @@ def controlled_transmissibility(
             f"omega reaches {w.max():.5g} rad/s; a controller sampled every {law.dt:.5g} s has a response only "
             f"below {np.pi / law.dt:.5g} rad/s"
         )
-    controlled, force = _response(plant, w, law)
-    passive, _ = _response(plant, w, None)
+    whole = lossy(plant)
+    controlled, passive = loop_response(whole, w, law), loop_response(whole, w, None)
     grid, ratio = ("omega", "output", "base"), "output_unit/base_unit"
     units = [unit_of(axis) for axis in AXES]
     return xr.Dataset(
         {
-            "controlled": (grid, to_point @ controlled, in_mixed_units(ratio, "transmissibility with control")),
-            "passive": (grid, to_point @ passive, in_mixed_units(ratio, "transmissibility without control")),
+            "controlled": (
+                grid,
+                to_point @ controlled.absolute[..., :6],
+                in_mixed_units(ratio, "transmissibility with control"),
+            ),
+            "passive": (
+                grid,
+                to_point @ passive.absolute[..., :6],
+                in_mixed_units(ratio, "transmissibility without control"),
+            ),
             "leg_force": (
                 ("omega", "leg", "base"),
-                force,
+                controlled.force[..., :6],
                 in_mixed_units("N/base_unit", "leg force per base displacement"),
             ),
         },
@@ -131,16 +140,23 @@ def controlled_transmissibility(
             "output_unit": ("output", units),
             "base_unit": ("base", units),
         },
-        {
-            "design": hexapod.name,
-            "digest": hexapod.digest,
-            "controller": law.name,
-            **point_attributes(hexapod, point),
-            "loss_factor": hexapod.legs.loss_factor.tolist(),
-            "joint_loss_factor": hexapod.legs.joint_stiffness.loss_factor.tolist(),
-            **_stability(plant, law),
-        },
+        response_origin(hexapod, where, point, plant, law),
     )
+
+
+def response_origin(hexapod: Hexapod, pose: Pose, point: PointLike, plant: Plant, law: Controller) -> dict[str, object]:
+    """What a response under control was computed for, as attributes of its Dataset."""
+    return {
+        "design": hexapod.name,
+        "digest": hexapod.digest,
+        "controller": law.name,
+        "position_m": pose.position.tolist(),
+        "rpy_rad": pose.rpy.tolist(),
+        **point_attributes(hexapod, point),
+        "loss_factor": hexapod.legs.loss_factor.tolist(),
+        "joint_loss_factor": hexapod.legs.joint_stiffness.loss_factor.tolist(),
+        **_stability(plant, law),
+    }
 
 
 def _stability(plant: Plant, law: Controller) -> dict[str, str]:
@@ -156,43 +172,3 @@ def _stability(plant: Plant, law: Controller) -> dict[str, str]:
         "passive_stability": passive["stability"],
         "caution": " ".join(texts),
     }
-
-
-def _response(plant: Plant, omega: Array, controller: Controller | None) -> tuple[Complex, Complex]:
-    """Absolute displacement and leg force per base displacement."""
-    A, C = _with_losses(plant)
-    s = 1j * omega[:, None, None]
-    base = np.concatenate([s**2 * np.eye(6), np.broadcast_to(np.eye(6), (*s.shape[:1], 6, 6))], axis=1)
-    right = np.concatenate([np.broadcast_to(plant.B, (*s.shape[:1], 12, 6)), plant.E @ base], axis=2)
-    z = np.linalg.solve(s * np.eye(12) - A, right.astype(complex))
-    y = C @ z + np.concatenate([np.broadcast_to(plant.D, (*s.shape[:1], *plant.D.shape)), plant.G @ base], axis=2)
-    by_force, by_base = y[..., :6], y[..., 6:]
-    force = np.zeros((omega.size, 6, 6), dtype=complex)
-    if controller is not None:
-        rows = plant.measured(controller.measures)
-        K = _gain_at(controller, omega)
-        force = np.linalg.solve(np.eye(6) - K @ by_force[:, rows], K @ by_base[:, rows])
-    rows = plant.measured(("acceleration",))
-    return (by_base[:, rows] + by_force[:, rows] @ force) / s**2, force
-
-
-def _with_losses(plant: Plant) -> tuple[Complex, Complex]:
-    """The plant's A and C at frequencies > 0, where the stiffness of each spring is k (1 + i eta)."""
-    linear = plant.linear
-    eta = linear.losses
-    A, C = plant.A.astype(np.complex128), plant.C.astype(np.complex128)
-    slowed = 1j * np.linalg.solve(linear.M, loss_matrix(linear, eta)) / plant.omega_0
-    A[6:, :6] -= slowed
-    C[plant.measured(("acceleration",)), :6] -= slowed
-    C[plant.measured(("leg_force",)), :6] -= 1j * (eta[:6] * linear.leg_stiffness)[:, None] * linear.H.T / plant.omega_0
-    return A, C
-
-
-def _gain_at(controller: Controller, omega: Array) -> Complex:
-    s = 1j * omega[:, None, None]
-    K = controller
-    at, hold = (s, 1.0) if K.dt is None else (np.exp(s * K.dt), (1 - np.exp(-s * K.dt)) / (s * K.dt))
-    if K.order == 0:
-        return np.asarray(hold * np.broadcast_to(K.D, (omega.size, *K.D.shape)), dtype=np.complex128)
-    inner = np.linalg.solve(at * np.eye(K.order) - K.A, np.broadcast_to(K.B, (omega.size, *K.B.shape)).astype(complex))
-    return np.asarray(hold * (K.C @ inner + K.D), dtype=np.complex128)

@@ -15,7 +15,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from flexapod.checks import instance, numbers, positive, whole
-from flexapod.conventions import TWO_PI, Array, JointModel
+from flexapod.conventions import TWO_PI, Array, JointModel, metric
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_hexapod, single_pose
@@ -363,7 +363,5 @@ def _around(joints: Array) -> NDArray[np.intp]:
 
 
 def _length(metres: float) -> str:
-    for unit, scale in (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6)):
-        if metres >= scale:
-            return f"{metres / scale:.4g} {unit}"
-    return f"{metres / 1e-9:.4g} nm"
+    factor, unit = metric(metres, "m")
+    return f"{metres * factor:.4g} {unit}"

@@ -7,13 +7,13 @@ rad/s; the rest is in SI units.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure, SubFigure
 
-from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, TWO_PI, Array, unit_of
+from flexapod.conventions import AXES, LEGS, ROTATIONS, TRANSLATIONS, TWO_PI, Array, metric, unit_of
 from flexapod.mechanics.point_motion import of_point
 from flexapod.plots.style import (
     FAINT,
@@ -115,16 +115,22 @@ def frequency_response(
 
 
 def random_spectra(
-    dataset: xr.Dataset, quantity: str = "acceleration", *, figure: Figure | SubFigure | None = None
+    dataset: xr.Dataset,
+    quantity: str = "acceleration",
+    passive: xr.Dataset | None = None,
+    *,
+    figure: Figure | SubFigure | None = None,
 ) -> Figure:
     """Draw spectral density and cumulative RMS of a quantity under random motion of the base and random loads.
 
     Parameters
     ----------
     dataset : xarray.Dataset
-        The result of `random_response`.
-    quantity : {"acceleration", "displacement", "relative", "leg_force"}, optional
+        The result of `random_response`, or of `control.controlled_random_response`.
+    quantity : {"acceleration", "displacement", "relative", "leg_force", "actuator_force"}, optional
         What is drawn.
+    passive : xarray.Dataset, optional
+        The same without control, drawn in grey behind it.
     figure : Figure or SubFigure, optional
         Where the panels are drawn. Default: a new figure.
 
@@ -142,34 +148,54 @@ def random_spectra(
     >>> found = fx.random_response(fx.load("cubic-isolator"), psd=fx.vc_curve("VC-C"), axis="z")
     >>> fx.plots.response.random_spectra(found).savefig("random.png")
     """
-    density, cumulative = dataset[f"psd_{quantity}"], dataset[f"cumulative_{quantity}"]
-    along = density.dims[1]
-    hertz = dataset.omega.values / TWO_PI
+    cumulative = dataset[f"cumulative_{quantity}"]
+    along = str(cumulative.dims[1])
     groups: list[Sequence[str]] = [TRANSLATIONS, ROTATIONS] if along == "output" else [LEGS[:3], LEGS[3:]]
     everything = [name for group in groups for name in group]
     drawn = dict(zip(everything, moves(cumulative.values[-1:]), strict=True))
     page, grid, groups = _halves(figure, groups, drawn, [1, 1])
     for (above, below), names in zip(grid, groups, strict=True):
-        for i, name in enumerate(names):
-            if drawn[name]:
-                line = {"color": COLOURS[i], "ls": STYLES[i], "lw": wide(1.6)}
-                rms = cumulative.sel({along: name}).values
-                above.loglog(hertz, _positive(TWO_PI * density.sel({along: name}).values), **line)
-                below.loglog(hertz, _positive(rms), label=f"{_named(name)}: {rms[-1]:.4g}", **line)
-        unit = _quantity_unit(quantity, names[0])
-        above.set_ylabel(f"density, {unit if unit == 'N' else f'({unit})'}²/Hz")
-        below.set(ylabel=f"RMS below, {unit}", xlabel="frequency, Hz")
+        factor, unit = metric(float(cumulative.sel({along: list(names)}).max()), _plain_unit(quantity, names[0]))
+        for name in (name for name in names if drawn[name]):
+            i = names.index(name)
+            line = {"ls": STYLES[i], "lw": wide(1.6)}
+            if passive is not None:
+                _Curve(passive, quantity, name, factor).draw(above, below, color=FAINT, **line)
+            _Curve(dataset, quantity, name, factor, _named(name)).draw(above, below, color=COLOURS[i], **line)
+        if passive is not None:
+            below.plot([], [], color=FAINT, lw=wide(1.6), label="grey: without control")
+        per = "/s²" if quantity == "acceleration" else ""
+        above.set_ylabel(f"density, {unit if unit == 'N' else f'({unit}{per})'}²/Hz")
+        below.set(ylabel=f"RMS below, {unit}{per}", xlabel="frequency, Hz")
         for ax in (above, below):
             dress(ax)
             _span(ax)
             plain_decades(ax)
-        legend(below, title=f"total RMS, {unit}", title_fontsize=letters())
+        legend(below, title=f"total RMS, {unit}{per}", title_fontsize=letters())
     note_still(page, [_named(name) for name in everything if not drawn[name]], "nothing")
     sources = dataset.attrs.get("sources", ["base"])
     cause = "on the moving base" if list(sources) == ["base"] else f"by {' and '.join(sources)}"
     words = f"{quantity.replace('_', ' ')} {cause}{of_point(dataset.attrs)}"
     entitle(page, f"{dataset.attrs['design']}: {words}")
     return page
+
+
+class _Curve(NamedTuple):
+    """One axis or leg of a Dataset. factor: to the unit of the figure. label: told with its RMS."""
+
+    dataset: xr.Dataset
+    quantity: str
+    name: str
+    factor: float
+    label: str = ""
+
+    def draw(self, above: Axes, below: Axes, **line: Any) -> None:
+        """Draw its density and its cumulative RMS."""
+        density, cumulative = (self.dataset[f"{kind}_{self.quantity}"] for kind in ("psd", "cumulative"))
+        at, hertz = {density.dims[1]: self.name}, self.dataset.omega.values / TWO_PI
+        rms = self.factor * cumulative.sel(at).values
+        above.loglog(hertz, _positive(TWO_PI * self.factor**2 * density.sel(at).values), **line)
+        below.loglog(hertz, _positive(rms), label=f"{self.label}: {rms[-1]:.4g}" if self.label else None, **line)
 
 
 def stepped_ratio(
@@ -293,7 +319,6 @@ def _ratio_unit(above: str, below: str) -> str:
     return f"{above}/({below})" if " " in below else f"{above}/{below}"
 
 
-def _quantity_unit(quantity: str, name: str) -> str:
-    if quantity == "leg_force":
-        return "N"
-    return unit_of(name) + ("/s²" if quantity == "acceleration" else "")
+def _plain_unit(quantity: str, name: str) -> str:
+    """Of a quantity's displacement, or of a force."""
+    return "N" if quantity.endswith("force") else unit_of(name)

@@ -9,19 +9,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flexapod.checks import instance, numbers
+from flexapod.checks import instance, numbers, one_of
 from flexapod.conventions import Array, Complex
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, shown
-from flexapod.excitation.spectra import Quantity, Spectrum
+from flexapod.excitation.spectra import MOTIONS, Quantity, Spectrum
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point
-from flexapod.mechanics.linearisation import Linearisation
 from flexapod.mechanics.point_motion import shift
 from flexapod.pose import Pose
 from flexapod.showing import in_notebooks
-from flexapod.vibration.frequency_response import leg_forces
 from flexapod.vibration.grid import asked, grid_around
-from flexapod.vibration.harmonic import SteadyResponse
 from flexapod.vibration.source_spectrum import Density, SourceSpectrum, ready_made, tabulated
 
 
@@ -92,35 +89,57 @@ class Source(NamedTuple):
 
 
 class Answers(NamedTuple):
-    """How a machine answers: its steady response at some frequencies, the output point, and the springs' losses."""
+    """How a machine answers at some frequencies: complex amplitudes (n, 6, 6) of "displacement" and other quantities.
 
-    linear: Linearisation
-    steady: SteadyResponse
-    to_point: Array
-    eta: Array
+    base: per displacement of the base; wrench: per wrench on the platform's reference point.
+    """
+
+    base: Mapping[str, Complex]
+    wrench: Mapping[str, Complex]
 
     def densities(self, omega: Array, source: Source) -> dict[str, Array]:
-        """Spectral densities (n, 6) of every quantity from one source; nothing beyond its band."""
+        """Spectral densities (n, 6) of every quantity and of acceleration from one source; none beyond its band."""
         if source.from_wrench is None:
-            absolute, relative = self.steady.absolute, self.steady.relative
+            answer: Mapping[str, Complex] = self.base
         else:
-            absolute = relative = self.steady.wrench @ source.from_wrench
+            answer = {name: H @ source.from_wrench for name, H in self.wrench.items()}
         order = {"velocity": 2, "acceleration": 4}.get(source.spectrum.quantity, 0)
-        with np.errstate(divide="ignore"):
-            displacement = omega[:, None] ** -float(order)
-        filters = {
-            "displacement": (self.to_point @ absolute, displacement),
-            "relative": (self.to_point @ relative, displacement),
-            "acceleration": (self.to_point @ absolute, omega[:, None] ** (4.0 - order)),
-            "leg_force": (leg_forces(self.linear, relative, self.eta), displacement),
-        }
+        filters = {name: (H, -float(order)) for name, H in answer.items()}
+        filters["acceleration"] = answer["displacement"], 4.0 - order
         low, high = source.spectrum.grid[[0, -1]]
         inside = np.flatnonzero((omega >= low) & (omega <= high))
         given = source.spectrum.density(omega[inside])
         found = {}
-        for name, (H, scale) in filters.items():
+        for name, (H, power) in filters.items():
             found[name] = np.zeros((omega.size, 6))
-            found[name][inside] = _power(H[inside], given) * scale[inside]
+            found[name][inside] = _power(H[inside], given) * omega[inside, None] ** power
+        return found
+
+
+class Shaking(NamedTuple):
+    """What shakes at random, as it is given: the base's spectrum with its frequencies, quantity and axis, and loads."""
+
+    psd: Density | None
+    loads: RandomLoad | Sequence[RandomLoad]
+    omega: ArrayLike | None
+    frequency: ArrayLike | None
+    of: Quantity
+    axis: str | None
+
+    def sources(self, hexapod: Hexapod, pose: Pose, poles: Complex) -> list[Source]:
+        """Its checked sources, the base first. poles: for the band of a function without frequencies."""
+        found = list(load_sources(hexapod, self.loads, pose, poles))
+        if self.psd is not None:
+            one_of(self.of, "of", MOTIONS)
+            given, per_hertz = asked(self.omega, self.frequency), self.frequency is not None
+            spectrum = spectrum_of(self.psd, self.axis, given, per_hertz, poles, self.of)
+            found.insert(0, Source("base", spectrum, None))
+        elif self.axis is not None or self.omega is not None or self.frequency is not None:
+            raise ArgumentError(
+                "axis, omega and frequency belong to psd, which is missing. Give those of a load to RandomLoad."
+            )
+        if not found:
+            raise ArgumentError("psd and loads are both missing; give the spectrum of the base, or loads, or both.")
         return found
 
 

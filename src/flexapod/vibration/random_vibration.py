@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from flexapod.checks import one_of
-from flexapod.conventions import AXES, LEGS, Array, Complex, JointModel, in_mixed_units, in_unit
+from flexapod.conventions import AXES, LEGS, TWO_PI, Array, Complex, JointModel, in_mixed_units, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
-from flexapod.excitation.spectra import MOTIONS, Quantity
+from flexapod.excitation.spectra import Quantity
 from flexapod.mechanics.cautions import grows
 from flexapod.mechanics.inputs import ZERO, PointLike, as_hexapod, as_point, single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.point_motion import shift
 from flexapod.pose import PoseLike
-from flexapod.vibration.frequency_response import MOTION_UNITS, attributes
-from flexapod.vibration.grid import asked
+from flexapod.vibration.frequency_response import MOTION_UNITS, attributes, leg_forces
 from flexapod.vibration.harmonic import complex_poles, leg_losses, losses, steady_response
 from flexapod.vibration.quadrature import Panels, graded
-from flexapod.vibration.random_sources import Answers, RandomLoad, Source, load_sources, spectrum_of
+from flexapod.vibration.random_sources import Answers, RandomLoad, Shaking, Source
 from flexapod.vibration.source_spectrum import Density
 
 QUANTITIES = {
@@ -30,6 +28,7 @@ QUANTITIES = {
     "relative": ("output", "output_unit"),
     "acceleration": ("output", "output_unit/s^2"),
     "leg_force": ("leg", "N"),
+    "actuator_force": ("leg", "N"),
 }
 _LEAST_DAMPING = 1e-13  # damping ratio that rounding of the poles may hide
 
@@ -104,7 +103,8 @@ def random_response(
         - rms_... (output or leg): RMS of the whole band
         - source_rms_... (source, output or leg): RMS by the base alone and by each load alone
 
-        `omega` holds the frequencies given and those at which the integrals were computed, rad/s.
+        `omega` holds the frequencies given and those at which the integrals were computed, rad/s. The attribute
+        ``spectrum_caution`` tells of modes outside the band of a spectrum, if there are any.
 
     Raises
     ------
@@ -145,24 +145,51 @@ def random_response(
     eta = losses(hexapod, linear, loss_factor)
     _check_stands(linear)
     poles = complex_poles(linear, eta)
-    sources = list(load_sources(hexapod, loads, pose, poles))
-    if psd is not None:
-        one_of(of, "of", MOTIONS)
-        spectrum = spectrum_of(psd, axis, asked(omega, frequency), frequency is not None, poles, of)
-        sources.insert(0, Source("base", spectrum, None))
-    elif axis is not None or omega is not None or frequency is not None:
-        raise ArgumentError(
-            "axis, omega and frequency belong to psd, which is missing. Give those of a load to RandomLoad."
-        )
-    if not sources:
-        raise ArgumentError("psd and loads are both missing; give the spectrum of the base, or loads, or both.")
+    to_point = shift(pose, as_point(hexapod, point))
+
+    def answers(w: Array) -> Answers:
+        steady = steady_response(linear, w, eta)
+
+        def amplitudes(absolute: Complex, relative: Complex) -> dict[str, Complex]:
+            moved = {"displacement": to_point @ absolute, "relative": to_point @ relative}
+            return {**moved, "leg_force": leg_forces(linear, relative, eta)}
+
+        return Answers(amplitudes(steady.absolute, steady.relative), amplitudes(steady.wrench, steady.wrench))
+
+    sources = Shaking(psd, loads, omega, frequency, of, axis).sources(hexapod, pose, poles)
+    origin = attributes(hexapod, pose, point, eta, linear)
+    return stationary(sources, poles, answers, origin)
+
+
+def stationary(
+    sources: Sequence[Source], poles: Complex, answers: Callable[[Array], Answers], origin: Mapping[str, object]
+) -> xr.Dataset:
+    """Spectra and RMS values of a machine with these poles, which answers at frequencies (n,) rad/s as told.
+
+    origin: attributes of the Dataset.
+    """
     for source in sources:
         _check_damped(poles, source.spectrum.grid)
     panels = Panels(graded(np.unique(np.concatenate([source.spectrum.grid for source in sources])), poles))
-    answers = Answers(linear, steady_response(linear, panels.omega, eta), shift(pose, as_point(hexapod, point)), eta)
-    found = {source.name: answers.densities(panels.omega, source) for source in sources}
-    dataset = _dataset(panels, found).assign_attrs(attributes(hexapod, pose, point, eta, linear))
-    return dataset.assign_attrs(sources=list(found))
+    answer = answers(panels.omega)
+    found = _dataset(panels, {source.name: answer.densities(panels.omega, source) for source in sources})
+    told = " ".join(filter(None, (_outside(source, poles) for source in sources)))
+    return found.assign_attrs({**origin, "spectrum_caution": told})
+
+
+def _outside(source: Source, poles: Complex) -> str:
+    """That a spectrum says nothing of frequencies at which the machine vibrates, where it does not."""
+    moving = poles.imag > 1e-6 * np.abs(poles)  # and not rounding of what only creeps
+    natural, (low, high) = np.sort(poles.imag[moving]) / TWO_PI, source.spectrum.grid[[0, -1]] / TWO_PI
+    missed = natural[(natural < low) | (natural > high)]
+    if not missed.size:
+        return ""
+    told = ", ".join(f"{f:.4g}" for f in missed)
+    of = "the base" if source.name == "base" else source.name
+    return (
+        f"The spectrum of {of} is from {low:.4g} to {high:.4g} Hz; outside it counts as no excitation, and there lie "
+        f"modes, at {told} Hz. Where they are excited too, more moves than is told here: extend the spectrum."
+    )
 
 
 def _dataset(panels: Panels, by_source: dict[str, dict[str, Array]]) -> xr.Dataset:
@@ -175,7 +202,9 @@ def _dataset(panels: Panels, by_source: dict[str, dict[str, Array]]) -> xr.Datas
     }
     dataset = xr.Dataset(coords=coordinates)
     dataset.attrs["convention"] = "one-sided spectral density per rad/s: mean square = integral over omega > 0"
-    for name, (along, unit) in QUANTITIES.items():
+    dataset.attrs["sources"] = list(by_source)
+    there = next(iter(by_source.values()))
+    for name, (along, unit) in ((name, of) for name, of in QUANTITIES.items() if name in there):
         total = np.sum([densities[name] for densities in by_source.values()], axis=0)
         cumulative = np.sqrt(panels.cumulated(total))
         alone = [np.sqrt(panels.cumulated(densities[name])[-1]) for densities in by_source.values()]

@@ -11,6 +11,7 @@ import click
 from flexapod.cli.options import common
 from flexapod.cli.options.points import PointGiven, point_option
 from flexapod.cli.options.quantities import FREQUENCY, HERTZ, TIME, Quantity
+from flexapod.cli.options.shaking import shaking_options
 
 if TYPE_CHECKING:
     from flexapod.conventions import JointModel
@@ -49,6 +50,9 @@ class Options:
     sensor_noise: float | None
     loss_frequency: float | None
     seed: int
+    psd: Path | None
+    loads: tuple[Path, ...]
+    at: tuple[PointGiven, ...]
     point: PointGiven
     out: Path | None
 
@@ -110,6 +114,7 @@ run_options = common.stack(
         "--force-limit", type=Quantity("force", need="> 0"), metavar="N", help="Largest force of an actuator."
     ),
     click.option("--sensor-noise", type=common.POSITIVE, help="RMS noise of the first measurement, in its unit."),
+    shaking_options,
     common.loss_frequency_option,
     click.option("--seed", type=common.SEED, default=0, show_default=True, help="Of shaking and noise."),
     common.out_option("Where to write the report and figures. Default: nothing is written."),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass
 from inspect import signature
 from typing import Any, NamedTuple
@@ -15,8 +16,10 @@ from flexapod.cli.options import common
 from flexapod.cli.options.control import Options
 from flexapod.cli.options.given import needed
 from flexapod.cli.output.stages import Report
+from flexapod.cli.studies.shaking import read_shaking
 from flexapod.control.active_damping import root_locus
 from flexapod.control.closed_loop_poles import loop_sampling_time
+from flexapod.control.controlled_random import controlled_random_response
 from flexapod.control.controlled_response import controlled_transmissibility
 from flexapod.control.controllers import GAIN_UNIT, PID, damping_law, pid_units
 from flexapod.control.gain_search import best_gain, default_gains
@@ -29,6 +32,7 @@ from flexapod.control.sampled_simulation import Hardware, simulate_control
 from flexapod.control.sampling_rate import sampling_time
 from flexapod.conventions import ROTATIONS, TWO_PI, Array, printed_unit
 from flexapod.design.hexapod import Hexapod
+from flexapod.errors import ArgumentError
 from flexapod.excitation.excitation import Excitation
 from flexapod.excitation.random_phases import random_motion
 from flexapod.excitation.spectra import flat_spectrum
@@ -36,8 +40,9 @@ from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.modes import natural_modes
 from flexapod.mechanics.viscous_losses import viscous_equivalent
 from flexapod.pose import Pose
-from flexapod.report.studies.control import ControlFindings, Fact, study
+from flexapod.report.studies.control import ControlFindings, Fact, RandomWithControl, study
 from flexapod.report.study import Study
+from flexapod.vibration.random_vibration import random_response
 
 _MEASURED = {
     "acceleration": "acceleration of the platform",
@@ -117,6 +122,7 @@ def _find(hexapod: Hexapod, pose: Pose, model: str, options: Options, report: Re
     if options.shake is not None:
         shaken = _shaken(natural_modes(hexapod, pose, joint=options.joint).omega, options)
         run, shaking = _run(hexapod, pose, sampled, shaken, options, report), _shaking(shaken, options)
+    random, notes = _random(hexapod, pose, sampled, options)
     return ControlFindings(
         pose=pose,
         assumptions=model,
@@ -127,6 +133,8 @@ def _find(hexapod: Hexapod, pose: Pose, model: str, options: Options, report: Re
         gains=made.gains,
         locus=made.locus,
         run=run,
+        random=random,
+        notes=notes,
         axis=options.axes.split(",")[0].strip(),
         law=[Fact("measures", "measured", ", ".join(_MEASURED[name] for name in continuous.measures)), *made.facts],
         shaking=shaking,
@@ -202,6 +210,21 @@ def _pid_facts(law: PID) -> list[Fact]:
     if law.bandwidth is not None:
         facts.append(Fact("bandwidth_rad_s", "filter of the derivative", law.bandwidth, "rad/s"))
     return facts
+
+
+def _random(
+    hexapod: Hexapod, pose: Pose, controller: Controller, options: Options
+) -> tuple[RandomWithControl | None, Sequence[str]]:
+    """The random response with and without the controller, where spectra are given, and what to say of them."""
+    shaking = read_shaking(options.psd, options.loads, options.at)
+    if shaking is None:
+        return None, ()
+    given = {**shaking.given, "point": options.point, "joint": options.joint}
+    controlled = controlled_random_response(hexapod, pose, controller=controller, **given)
+    try:
+        return RandomWithControl(controlled, random_response(hexapod, pose, **given)), shaking.notes
+    except ArgumentError as error:  # it needs the controller: without it, it falls over or nothing damps it
+        return RandomWithControl(controlled, None), [*shaking.notes, f"Without control: {error}"]
 
 
 class _Shaken(NamedTuple):

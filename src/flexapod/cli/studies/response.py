@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
 import click
@@ -14,8 +13,8 @@ from rich.progress import Progress
 
 from flexapod.cli.options.given import needed
 from flexapod.cli.options.quantities import read
-from flexapod.cli.options.spectra import Spectra, read_load, read_spectra
-from flexapod.conventions import AXES, LEGS, ROTATIONS, TWO_PI, Array, Complex
+from flexapod.cli.studies.shaking import read_shaking
+from flexapod.conventions import AXES, LEGS, ROTATIONS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.linearisation import linearise
@@ -25,7 +24,6 @@ from flexapod.report.study import Study
 from flexapod.vibration.frequency_response import transmissibility
 from flexapod.vibration.grid import band, grid_around
 from flexapod.vibration.harmonic import complex_poles, losses
-from flexapod.vibration.random_sources import RandomLoad
 from flexapod.vibration.random_vibration import random_response
 from flexapod.vibration.stepped import stepped_sine
 
@@ -46,7 +44,8 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
     options = {key: given[key] for key in ("point", "loss_factor", "joint")}
     response = transmissibility(hexapod, pose, omega=grid_around(poles, *ends, given["points"]), **options)
     stepped = None if given["amplitude"] is None else _stepped(hexapod, pose, given, (low, high), quiet)
-    random, notes = _random(hexapod, pose, given, options, poles)
+    shaking = read_shaking(given["psd"], given["loads"], given["at"])
+    random = None if shaking is None else random_response(hexapod, pose, **shaking.given, **options)
     found = ResponseFindings(
         hexapod=hexapod,
         pose=pose,
@@ -58,53 +57,13 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
         response=response,
         stepped=stepped,
         random=random,
-        notes=notes,
+        notes=[] if shaking is None else shaking.notes,
     )
     at_modes = None
     moving = poles.imag > 0
     if moving.any():
         at_modes = transmissibility(hexapod, pose, omega=poles.imag[moving], **options)
     return study(found, _peaks(found, moving, at_modes))
-
-
-def _random(
-    hexapod: Hexapod, pose: Pose, given: dict[str, Any], options: dict[str, Any], poles: Complex
-) -> tuple[xr.Dataset | None, list[str]]:
-    """The response to random motion of the base and random loads, where either is given, and what to say of them."""
-    base: dict[str, Any] = {}
-    loads, notes = [], []
-    if given["psd"] is not None:
-        spectra = read_spectra(given["psd"])
-        notes += [*spectra.notes, *_outside(given["psd"], spectra, poles)]
-        base = {"psd": spectra.density, "frequency": spectra.frequency, "of": spectra.of}
-    files, places = given["loads"], given["at"] or ((0.0, 0.0, 0.0),)
-    if given["at"] and not files:
-        raise click.UsageError("--at is where a load acts, and there is none. Give its spectra with --load.")
-    if len(places) not in (1, len(files)):
-        raise click.UsageError(
-            f"--at gives {len(places)} places for {len(files)} load{'s' * (len(files) > 1)}. Give one for all, or one "
-            "for each --load in turn."
-        )
-    for file, place in zip(files, places * len(files) if len(places) == 1 else places, strict=False):
-        spectra = read_load(file)
-        notes += [*spectra.notes, *_outside(file, spectra, poles)]
-        loads.append(RandomLoad(spectra.density, frequency=spectra.frequency, point=place, name=file.stem))
-    if not base and not loads:
-        return None, notes
-    return random_response(hexapod, pose, loads=loads, **base, **options), notes
-
-
-def _outside(file: Path, spectra: Spectra, poles: Complex) -> list[str]:
-    """That a file says nothing of frequencies at which the machine vibrates, where it does not."""
-    natural, (low, high) = np.sort(poles.imag[poles.imag > 0]) / TWO_PI, spectra.frequency[[0, -1]]
-    missed = natural[(natural < low) | (natural > high)]
-    if not missed.size:
-        return []
-    told = ", ".join(f"{f:.4g}" for f in missed)
-    return [
-        f"{file} is from {low:.4g} to {high:.4g} Hz; outside it counts as no excitation, and there lie modes, at "
-        f"{told} Hz. Where they are excited too, more moves than is told here: extend the spectra."
-    ]
 
 
 def _check(given: dict[str, Any]) -> None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.point_motion import of_point
 from flexapod.pose import Pose
 from flexapod.report.numbers import pose_numbers, pose_words, shown
+from flexapod.report.studies import random
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 
 RMS = ("rms_acceleration", "predicted_rms_acceleration", "rms_displacement")
@@ -32,6 +34,13 @@ class Fact(NamedTuple):
     unit: str = ""
 
 
+class RandomWithControl(NamedTuple):
+    """Random responses with control, and without it where there is one."""
+
+    controlled: xr.Dataset
+    passive: xr.Dataset | None
+
+
 _CREEP = 0.02  # of the lowest natural frequency: slower decay comes of stiffness that the law takes away
 
 
@@ -40,7 +49,8 @@ class ControlFindings:
     """What was computed about a control law.
 
     assumptions: what its model leaves out. ideal, sampled: its closed loops; gains, locus, run: where made. law,
-    shaking: what was given or chosen. gain: of a decentralised law. axis: the one drawn in time.
+    shaking: what was given or chosen. random: under the spectra that were given; notes: on their files. gain: of a
+    decentralised law. axis: the one drawn in time.
     """
 
     pose: Pose
@@ -56,6 +66,8 @@ class ControlFindings:
     law: Sequence[Fact] = ()
     shaking: Sequence[Fact] = ()
     gain: float | None = None
+    random: RandomWithControl | None = None
+    notes: Sequence[str] = ()
 
     @property
     def dt(self) -> float:
@@ -75,9 +87,10 @@ def study(hexapod: Hexapod, f: ControlFindings) -> Study:
         _drawing("run", "On the moving base", "controlled_run", f.run, "The full equations of motion on a shaking "
                  "base, with sampled measurement, held forces and what the hardware leaves of them. Bars: root mean "
                  "squares over those without control; marks: what the tangent predicts.", axis=f.axis),
+        _random_drawing(f),
     ]  # fmt: skip
     there = [drawing for drawing in drawings if drawing is not None]
-    sections = [Section(drawing.title, [drawing, *_run_table(f, drawing.name)]) for drawing in there]
+    sections = [Section(drawing.title, [drawing, *_tables(f, drawing.name)]) for drawing in there]
     law = Section("The law", [_facts(f.law, "The law")])
     return Study(
         hexapod=hexapod,
@@ -87,7 +100,7 @@ def study(hexapod: Hexapod, f: ControlFindings) -> Study:
         rows=_rows(f),
         sections=[law, *sections, Section("Closed loop", [_poles(f)])],
         cautions=cautions(f),
-        files={**{f"control-{drawing.name}.png": drawing.draw for drawing in there}, "control.html": None},
+        files={**{f"control-{drawing.name}.png": drawing.draw for drawing in there}, **_files(f), "control.html": None},
     )
 
 
@@ -95,6 +108,25 @@ def _drawing(name: str, title: str, plot: str, data: xr.Dataset | None, words: s
     if data is None:
         return None
     return Drawing(name, title, lambda: getattr(plots.control, plot)(data, **given), words)
+
+
+def _random_drawing(f: ControlFindings) -> Drawing | None:
+    if f.random is None:
+        return None
+    words = "Densities and the RMS of all that lies below each frequency, of the tangent, with the sampled controller."
+    draw = partial(plots.response.random_spectra, f.random.controlled, random.quantity(f.random.controlled))
+    return Drawing("random", "Random vibration", partial(draw, f.random.passive), words)
+
+
+def _files(f: ControlFindings) -> dict[str, Callable[[], str | xr.Dataset]]:
+    """Spectra with control and without it."""
+    if f.random is None:
+        return {}
+    cases = {"control-random": f.random.controlled, "control-random-passive": f.random.passive}
+    files: dict[str, Callable[[], str | xr.Dataset]] = {}
+    for name, dataset in ((name, dataset) for name, dataset in cases.items() if dataset is not None):
+        files |= {f"{name}.csv": partial(random.csv, dataset), f"{name}.nc": dataset.copy}
+    return files
 
 
 def _creeping(f: ControlFindings) -> list[Caution]:
@@ -131,7 +163,8 @@ def cautions(f: ControlFindings) -> list[Caution]:
             "may vibrate more than without control."
         )
         found.append(Caution("near_frequency", text, {"poles": len(f.sampled.near)}))
-    found += _creeping(f)
+    found += [*_creeping(f), *(Caution("spectrum", text) for text in f.notes)]
+    found += random.cautions(None if f.random is None else f.random.controlled)
     if f.run is not None and f.run.attrs["saturated"] > 0:
         share = f.run.attrs["saturated"]
         found.append(Caution("saturated", f"The actuators were at their limit in {share:.1%} of the samples.",
@@ -195,7 +228,9 @@ def _poles(f: ControlFindings) -> Table:
     return Table(columns, note, on="page")
 
 
-def _run_table(f: ControlFindings, name: str) -> list[Table]:
+def _tables(f: ControlFindings, name: str) -> list[Table]:
+    if name == "random" and f.random is not None:
+        return random.tables(f.random.controlled, f.random.passive)
     if name != "run" or f.run is None:
         return []
     units = [printed_unit(str(unit)) for unit in f.run.acceleration_unit.values]
@@ -238,6 +273,10 @@ def _data(hexapod: Hexapod, f: ControlFindings) -> dict[str, Any]:
     }
     if f.locus is not None:
         data |= {key: f.locus.attrs[key] for key in ("best_gain", "best_damping", "leak_rad_s")}
+    if f.random is not None:
+        data |= random.data(f.random.controlled)
+        if f.random.passive is not None:
+            data |= {f"passive_{name}": values for name, values in random.data(f.random.passive).items()}
     if f.run is not None:
         run = f.run
         data["run"] = {

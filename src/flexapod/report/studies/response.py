@@ -12,18 +12,17 @@ import pandas as pd
 import xarray as xr
 
 from flexapod import plots
-from flexapod.conventions import AXES, LEGS, TWO_PI, Array, Complex, unit_of
+from flexapod.conventions import AXES, TWO_PI, Array, Complex, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.point_motion import in_columns, of_point
 from flexapod.pose import Pose
 from flexapod.report.numbers import pose_numbers, pose_words, without_rounding
+from flexapod.report.studies import random
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-RMS = ("displacement", "relative", "acceleration", "leg_force")
 
 
 @dataclass(frozen=True)
@@ -61,7 +60,7 @@ def study(f: ResponseFindings, peaks: Array) -> Study:
     parts = {"response": f.response, "stepped": f.stepped, "random": f.random}
     there = {name: dataset for name, dataset in parts.items() if dataset is not None}
     drawings = {name: Drawing(name, title, partial(_figure, f, name)) for name, title in TITLES.items()}
-    tables = {"response": _peaks_table(f, peaks), "random": _rms_table(f)}
+    tables = {"response": [_peaks_table(f, peaks)], "random": [] if f.random is None else random.tables(f.random)}
     files: dict[str, Any] = {}
     for name, dataset in there.items():
         files[f"{name}.csv"] = partial(_csv, f, name)
@@ -69,9 +68,7 @@ def study(f: ResponseFindings, peaks: Array) -> Study:
         files[f"{name}.png"] = drawings[name].draw
     sections = []
     for name in there:
-        table = tables.get(name)
-        more = _sources_table(f) if name == "random" else []
-        sections.append(Section(TITLES[name], [drawings[name], *([] if table is None else [table]), *more]))
+        sections.append(Section(TITLES[name], [drawings[name], *tables.get(name, [])]))
     return Study(
         hexapod=f.hexapod,
         subject="response",
@@ -79,7 +76,7 @@ def study(f: ResponseFindings, peaks: Array) -> Study:
         data=_data(f, peaks),
         rows=[] if f.stepped is None else [Row("Non-linear stepped sine,", stepped_words(f.stepped))],
         sections=sections,
-        cautions=[*_stability(f), *(Caution("spectrum", text) for text in f.notes)],
+        cautions=[*_stability(f), *(Caution("spectrum", text) for text in f.notes), *random.cautions(f.random)],
         files=files,
         dataset=f.response,
     )
@@ -99,7 +96,7 @@ def _figure(f: ResponseFindings, name: str) -> Figure:
         return plots.response.frequency_response(f.response, f.variable, f.axis, natural=natural)
     if name == "random":
         assert f.random is not None
-        return plots.response.random_spectra(f.random, "displacement" if _loaded(f.random) else "acceleration")
+        return plots.response.random_spectra(f.random, random.quantity(f.random))
     assert f.stepped is not None
     linear = f.response.absolute.sel(base=f.axis)
     figure = plots.response.stepped_ratio(f.stepped, natural=natural, linear=linear, scale="log", unit="Hz")
@@ -124,34 +121,28 @@ def real_parts(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def _csv(f: ResponseFindings, name: str) -> str:
-    table = {"response": _response_frame, "stepped": _stepped_frame, "random": _random_frame}[name](f)
-    return table.to_csv()
+    if name == "random":
+        assert f.random is not None
+        return random.csv(f.random)
+    return {"response": _response_frame, "stepped": _stepped_frame}[name](f).to_csv()
 
 
 def _response_frame(f: ResponseFindings) -> pd.DataFrame:
     omega, of = f.response.omega.values, in_columns(f.response.attrs)
     table = pd.DataFrame({"omega_rad_s": omega, "frequency_hz": omega / TWO_PI})
+    below = {"base": unit_of(f.axis), "wrench": unit_of(f.axis, "N", "N m"), "leg": "m"}[f.dimension].replace(" ", "_")
     for output in AXES:
         values = f.chosen.sel(output=output).values
-        table[f"{output}_amplitude{of}"] = np.abs(values)
+        table[f"{output}_amplitude{of}_{unit_of(output)}_per_{below}"] = np.abs(values)
         table[f"{output}_phase{of}_deg"] = np.degrees(np.angle(values))
     return table.set_index("omega_rad_s")
 
 
 def _stepped_frame(f: ResponseFindings) -> pd.DataFrame:
     assert f.stepped is not None
-    return f.stepped.ratio.to_pandas().add_suffix(in_columns(f.stepped.attrs))
-
-
-def _random_frame(f: ResponseFindings) -> pd.DataFrame:
-    assert f.random is not None
-    table = pd.DataFrame({"omega_rad_s": f.random.omega.values})
-    for name, values in f.random.data_vars.items():
-        if "omega" in values.dims:
-            of = in_columns(f.random.attrs) if values.dims[1] == "output" else ""
-            for label in f.random[values.dims[1]].values:
-                table[f"{name}{of}_{label}"] = values.sel({values.dims[1]: label}).values
-    return table.set_index("omega_rad_s")
+    of, below = in_columns(f.stepped.attrs), f.stepped.attrs["amplitude_unit"]
+    titles = {axis: f"{axis}_ratio{of}_{unit_of(axis)}_per_{below}" for axis in AXES}
+    return f.stepped.ratio.to_pandas().rename(columns=titles).rename_axis("omega_rad_s")
 
 
 def stepped_words(stepped: xr.Dataset) -> str:
@@ -179,38 +170,6 @@ def _peaks_table(f: ResponseFindings, peaks: Array) -> Table:
     return Table(columns, title=f"{f.variable.capitalize()} {words} {unit} of {f.dimension} {f.axis}")
 
 
-def _rms_table(f: ResponseFindings) -> Table | None:
-    if f.random is None:
-        return None
-    columns = [Column("", AXES)]
-    for name, unit in (("displacement", "m, rad"), ("relative", "m, rad"), ("acceleration", "m/s², rad/s²")):
-        columns.append(Column(name, without_rounding(f.random[f"rms_{name}"].values), unit))
-    columns += [Column("leg", LEGS), Column("force", f.random.rms_leg_force.values, "N")]
-    return Table(columns, title=f"RMS by {' and '.join(_sources(f.random))}")
-
-
-def _loaded(random: xr.Dataset) -> bool:
-    """Whether there are random loads."""
-    return [str(name) for name in random.source.values] != ["base"]
-
-
-def _sources(random: xr.Dataset) -> list[str]:
-    """The sources in words."""
-    return ["the base that moves at random" if name == "base" else str(name) for name in random.source.values]
-
-
-def _sources_table(f: ResponseFindings) -> list[Table]:
-    """The RMS by each source alone, where there are several."""
-    if f.random is None or f.random.source.size < 2:
-        return []
-    columns = [Column("source", [str(name) for name in f.random.source.values])]
-    for k, axis in enumerate(AXES):
-        values = without_rounding(f.random.source_rms_displacement.values)[:, k]
-        columns.append(Column(axis, values, unit_of(axis)))
-    words = "RMS displacement by each source alone; independent sources add up in their squares."
-    return [Table(columns, words, title="RMS displacement by source")]
-
-
 def _data(f: ResponseFindings, peaks: Array) -> dict[str, Any]:
     data: dict[str, Any] = {
         "design": f.hexapod.name,
@@ -236,9 +195,5 @@ def _data(f: ResponseFindings, peaks: Array) -> dict[str, Any]:
         status = {"amplitude": f.stepped.attrs["amplitude"], "status": f.stepped.status.values}
         data["stepped"] = {"omega_rad_s": f.stepped.omega.values, "ratio": ratio, **status}
     if f.random is not None:
-        data["random_rms"] = {name: f.random[f"rms_{name}"].values for name in RMS}
-        data["random_rms_by_source"] = {
-            str(source): {name: f.random[f"source_rms_{name}"].values[k] for name in RMS}
-            for k, source in enumerate(f.random.source.values)
-        }
+        data |= random.data(f.random)
     return data
