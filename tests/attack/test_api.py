@@ -67,7 +67,7 @@ OWN = {
     ("circular_notch", "material"): STEEL, ("round_notch", "radius"): 0.01, ("round_notch", "diameter"): 1e-3,
     ("round_notch", "material"): STEEL, ("crossed", "first"): WIRE, ("crossed", "second"): WIRE,
     ("leg_keys", "at_base"): WIRE, ("leg_keys", "at_platform"): WIRE, ("check_certificate", "certificate"): PROVED, ("read_certificate", "path"): "proved.json",
-    ("random_response", "frequency"): None, ("random_response", "loads"): (), ("optimise", "start"): None, ("sine_sweep", "law"): "logarithmic",
+    ("random_response", "frequency"): None, ("random_response", "loads"): (), ("controlled_random_response", "frequency"): None, ("controlled_random_response", "loads"): (), ("optimise", "start"): None, ("sine_sweep", "law"): "logarithmic",
     ("gain_schedule", "samples"): 2, ("frequency_grid", "omega_min"): None, ("frequency_grid", "omega_max"): None,
     ("simulate", "times"): None, ("simulate_many", "times"): None, ("simulate", "start"): "rest", ("transmissibility", "omega"): [10.0],
     ("root_locus", "legs"): (1, 2, 3), ("gain_map", "controller"): control.PID(1.0, 1.0), ("path_index", "samples"): 16, ("plot", "result"): fx.natural_modes(H), ("payload_loads", "payloads"): [fx.paths.PayloadCase("full", 2.0)],
@@ -79,7 +79,7 @@ NEEDED = {
     "gain_schedule": ("samples", "gains"), "optimise": ("trials", "samples", "verify"), "pareto_front": ("trials", "samples", "refine"),
     "robustness": ("samples", "sensitivity", "pose_samples"), "simulate": ("duration", "samples"), "simulate_many": ("duration", "samples"),
     "stepped_sine": ("omega",), "random_response": ("psd", "axis", "omega"), "worst_pose": ("region", "samples", "starts"), "harmonic": ("omega",),
-    "sweep": ("region", "samples"), "transmissibility": ("omega",), "controlled_transmissibility": ("omega",), "root_locus": ("gains",),
+    "sweep": ("region", "samples"), "transmissibility": ("omega",), "controlled_transmissibility": ("omega",), "controlled_random_response": ("psd", "axis", "omega"), "root_locus": ("gains",),
     "animate_simulation": ("frames",), "sampling_time": ("region", "samples"), "path_index": ("samples",), "pose_grid": ("z",), "cluster": ("timeout",),
     "payload_loads": ("samples",), "simulate_control": ("pose",), "gain_map": ("nearness",),
 }  # fmt: skip

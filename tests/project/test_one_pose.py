@@ -17,6 +17,7 @@ LAW = fx.control.VelocityFeedback(1e4)
 NEEDS = {
     "viscous_equivalent": {"loss_frequency": 10.0},
     "closed_loop": {"controller": LAW},
+    "controlled_random_response": {"controller": LAW, "psd": fx.vc_curve("VC-C"), "axis": "z"},
     "controlled_transmissibility": {"controller": LAW, "omega": [1.0]},
     "gain_map": {"kp": [1e6], "kd": [1e5]},
     "gain_schedule": {"feedback": "velocity"},

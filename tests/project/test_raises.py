@@ -40,6 +40,9 @@ CALLS = {
     "check_limits": fx.check_limits,
     "closed_loop": lambda h, p: fx.control.closed_loop(h, p, fx.control.VelocityFeedback(1e3)),
     "condition_number": fx.condition_number,
+    "controlled_random_response": lambda h, p: fx.control.controlled_random_response(
+        h, p, controller=fx.control.VelocityFeedback(1e3), psd=fx.vc_curve("VC-C"), axis="z"
+    ),
     "controlled_transmissibility": lambda h, p: fx.control.controlled_transmissibility(
         h, p, controller=fx.control.VelocityFeedback(1e3), omega=[1.0]
     ),
@@ -160,6 +163,16 @@ PROVOKED = {
     ("closed_loop", "ArgumentError"): lambda: fx.control.closed_loop(MACHINE, HOME, "pid"),
     ("closed_loop", "UnstableError"): lambda: fx.control.closed_loop(
         MACHINE, HOME, TOO_MUCH.on(fx.linearise(MACHINE, HOME)).sampled(0.1)
+    ),
+    ("controlled_random_response", "ArgumentError"): lambda: fx.control.controlled_random_response(
+        MACHINE, HOME, controller=TOO_MUCH
+    ),
+    ("controlled_random_response", "UnstableError"): lambda: fx.control.controlled_random_response(
+        MACHINE,
+        HOME,
+        controller=TOO_MUCH.on(fx.linearise(MACHINE, HOME)).sampled(0.1),
+        psd=fx.vc_curve("VC-C"),
+        axis="z",
     ),
     ("controlled_transmissibility", "ArgumentError"): lambda: fx.control.controlled_transmissibility(
         MACHINE, HOME, controller=TOO_MUCH, omega=[-1.0]

@@ -64,6 +64,9 @@ CALLS = {
     "load_cases": lambda folder: fx.load_cases(
         H, gravity=fx.mechanics.gravity_at(np.radians([90.0, 60.0])), reference=0
     ),
+    "controlled_random_response": lambda folder: fx.control.controlled_random_response(
+        H, HOME, controller=_law(), psd=np.ones(3), axis="z", **BAND
+    ),
     "controlled_transmissibility": lambda folder: fx.control.controlled_transmissibility(
         H, HOME, controller=_law(), **BAND
     ),

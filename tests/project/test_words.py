@@ -42,6 +42,14 @@ WRONG = {
     ("lqg", "measure"): lambda: fx.control.lqg(MACHINE, measure="Acceleration"),
     ("open_zeros", "feedback"): lambda: fx.control.open_zeros(LINEAR, "Force", (1, 2)),
     ("optimise", "sampler"): lambda: fx.optimise(MACHINE, [STIFFNESS], trials=1, sampler="TPE"),
+    ("controlled_random_response", "of"): lambda: fx.control.controlled_random_response(
+        MACHINE,
+        controller=fx.control.VelocityFeedback(1.0),
+        psd=[1.0, 1.0],
+        omega=[1.0, 2.0],
+        axis="z",
+        of="Acceleration",
+    ),
     ("random_response", "of"): lambda: fx.random_response(
         MACHINE, psd=np.ones(2), omega=[1.0, 2.0], axis="z", of="Acceleration", loss_factor=0.01
     ),
