@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -56,6 +56,15 @@ def instance(value: Any, kind: Any, name: str, how: str) -> None:
     """Raises ArgumentError for what is not of a kind; how: where one comes from, the end of a sentence."""
     if not isinstance(value, kind):
         raise ArgumentError(f"{name} is {shown(value)}; it must be a {kind.__name__}, {how}.")
+
+
+def stop_asked(stop: Any) -> Callable[[], bool]:
+    """The argument `stop`: what is asked whether to stop; where it is None, nothing ever says so."""
+    if stop is None:
+        return lambda: False
+    if not callable(stop):
+        raise ArgumentError(f"stop is {shown(stop)}; it must be a function that answers whether to stop, or None.")
+    return stop
 
 
 def positive(value: Any, name: str, unit: str = "") -> float:

@@ -133,6 +133,11 @@ CASES = [
         "delay, in samples, is 0.5; it must be a whole number, at least 0",
     ),
     (
+        lambda: fx.certify(machine(), fx.Box.about(NEAR, 1e-4, 1e-3), at_least=1.0, stop=np.ma.array([1.0, 2.0], mask=[0, 1])),
+        A,
+        "it must be a function that answers whether to stop",
+    ),
+    (
         lambda: fx.control.controlled_transmissibility(machine(), NEAR, controller=fx.control.PID(1.0, 1.0), omega=[0.0, 1.0]),
         A,
         "holds zero; the loop needs frequencies > 0",

@@ -17,7 +17,7 @@ from flexapod.certificates.known import Known, least_index, least_of_corners
 from flexapod.certificates.largest_file import Progress
 from flexapod.certificates.proving import Setup
 from flexapod.certificates.question import Uncertainty, question
-from flexapod.checks import positive, thread_count
+from flexapod.checks import positive, stop_asked, thread_count
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.strays import data_of
@@ -153,14 +153,15 @@ def certified_box(
     given = {"joint": joint, "uncertain": uncertain, "within_limits": within_limits}
     search = _Search(hexapod, box, positive(at_least, "at_least", "rad/s"), given, thread_count(threads))
     keeper = _Keeper.of(search, tolerance, path, resume)
+    stop = stop_asked(stop)
     watch = {"threads": threads, "progress": progress or None, "stop": stop}
     at = keeper.at
     first = high = min(at.refuted, search.greatest)
     given_up = float("inf")
-    while max(at.low, _LEAST * first) < high * (1 - tolerance) and time.monotonic() < until and not (stop and stop()):
+    while max(at.low, _LEAST * first) < high * (1 - tolerance) and time.monotonic() < until and not stop():
         left = None if time_limit is None else max(1e-3, (until - time.monotonic()) / 2)
         certificate = search.prove(at.scale, {"time_limit": left, **watch, **keeper.watch})
-        if stop and stop() and certificate.status == "undecided":
+        if stop() and certificate.status == "undecided":
             break
         if certificate.proved:
             at.low, at.found = at.scale, certificate
@@ -173,7 +174,7 @@ def certified_box(
         at.scale = (at.low + high) / 2
         keeper.keep()
     if at.found is None:
-        raise ArgumentError(search.nothing_proved(stop is not None and stop()))
+        raise ArgumentError(search.nothing_proved(stop()))
     return CertifiedBox(search.box(at.low), at.low, at.found, at.refuted, at.pose, given_up)
 
 

@@ -15,7 +15,7 @@ from flexapod.certificates import file
 from flexapod.certificates.certificate import Certificate, Claim
 from flexapod.certificates.known import Known, beyond_limits, lowered, of_strays, six_numbers_of, strayed_from
 from flexapod.certificates.question import Question
-from flexapod.checks import positive, thread_count
+from flexapod.checks import positive, stop_asked, thread_count
 from flexapod.conventions import LEG_PAIRS, LEGS
 from flexapod.errors import ArgumentError, OutputError, shown
 from flexapod.output_files import check_file, output_path
@@ -59,7 +59,7 @@ class Setup:
                 f"cluster is {shown(cluster)}; it must be what flexapod.workspace.cluster gives, or None."
             )
         take = None if cluster is None else cluster.take_turn
-        watch = Watch(progress=progress, stop=stop or (lambda: False), until=until, most=most, take=take)
+        watch = Watch(progress=progress, stop=stop_asked(stop), until=until, most=most, take=take)
         place = None if path is None else check_file(output_path(path))
         return cls(thread_count(threads), watch, place, resume)
 

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 from uuid import uuid4
 
 from flexapod import _core
-from flexapod.checks import whole
+from flexapod.checks import stop_asked, whole
 from flexapod.conventions import JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import OutputError
@@ -315,7 +315,7 @@ class SweepStore:
             marked = time.monotonic()
             every = MARK_EVERY if self._part is None else _MARK_PART_EVERY
             try:
-                for block in crew.compute(self.job, todo, stop or (lambda: False)):
+                for block in crew.compute(self.job, todo, stop_asked(stop)):
                     self.done.add(block.number)
                     seen.update(block.statuses)
                     self.state = self._progress(before, seen)
