@@ -1,6 +1,7 @@
 """The commands path and control as a user meets them: numbers, files, messages."""
 
 import re
+import warnings
 
 import numpy as np
 import pandas as pd
@@ -84,7 +85,21 @@ def test_a_gain_that_nearly_takes_the_stiffness_away_is_told(run, gain, creeps):
     code, out, err = run("control", "cubic-isolator", "force", "--gain", gain)
     assert code == 0
     assert ("decays only in" in out + err) is creeps
+    h = fx.load("cubic-isolator")
+    with warnings.catch_warnings(record=True) as warned:  # the function says it too, and its result
+        warnings.simplefilter("always")
+        law = fx.control.ForceFeedback(gain, leak=0.1 * fx.linearise(h).modes().omega[0])
+        loop = fx.control.closed_loop(h, None, law, nearness=0)
+    assert any("falls over" in str(one.message) for one in warned) is creeps
+    assert any("falls over" in text for text in loop.cautions) is creeps
+    assert ("falls over" in loop._repr_html_()) is creeps
     assert run("control", "cubic-isolator", "force", "--gain", 26.8)[0] == 2
+
+
+def test_dampers_that_hardly_yield_do_not_take_stiffness_away():
+    with pytest.warns(fx.control.GainWarning, match="dampers so strong"):
+        loop = fx.control.closed_loop(fx.load("cubic-isolator"), None, fx.control.VelocityFeedback(1e5), nearness=0)
+    assert "falls over" not in " ".join(loop.cautions)
 
 
 @pytest.mark.parametrize(
@@ -185,7 +200,7 @@ def test_pid_shows_where_gains_are_near(run, tmp_path):
     code, out, _ = run("control", "motion-base", "pid", "--kp", 1e5, "--kd", 1e4, "--out", tmp_path)
     assert code == 0
     assert "Warning" in out
-    assert "within 10 % of a natural frequency" in out
+    assert "lie near a natural frequency" in out
     assert (tmp_path / "control-gains.png").stat().st_size > 10_000
 
 
@@ -235,5 +250,23 @@ def test_rest_at_the_ends_of_a_motion_that_goes_on_is_told(run, tmp_path, column
         free = (out + err).partition(" with free ends")[0].split()[-2:]
         assert free[1] == unit
         assert float(free[0]) == pytest.approx(true, rel=0.02)
+    home = fx.home_pose(fx.load("motion-base"))
+    six = np.column_stack([rows[:, 1:4], np.radians(rows[:, 4:])])
+    path = fx.Trajectory(six, t, origin=home)
+    for each in (path, path.between(home, 2.0), path.between(home, 2.0).retimed(2.0)):  # told with the result too
+        words = fx.paths.path_loads(fx.load("motion-base"), each, samples=20).attrs["caution"]
+        assert bool(words) is told
+    if told:
+        assert fx.paths.path_loads(fx.load("motion-base"), path).attrs["caution"] in " ".join((out + err).split())
     code, out, err = run("path", "motion-base", file, "--from-home", "--ends", "free")
     assert "a motion that goes on" not in out + err
+
+
+def test_a_path_joined_to_home_has_the_waypoints_that_were_given(result, tmp_path):
+    (tmp_path / "way.csv").write_text(
+        "t,x,y,z,roll,pitch,yaw\n0,0.01,0,0,0,0,0\n1,0.02,0,0,0,0,0\n2,0.01,0.01,0,0,0,0\n"
+    )
+    found = result("path", "motion-base", tmp_path / "way.csv", "--from-home", "--home-time", 1)
+    assert found["waypoints_s"] == [0.0, 1.0, 2.0]
+    assert found["duration_s"] == pytest.approx(4.0)
+    assert [pose[0] for pose in found["waypoints_m_deg"]] == pytest.approx([0.01, 0.02, 0.01])

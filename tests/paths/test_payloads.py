@@ -243,7 +243,12 @@ def test_a_motion_is_joined_to_home(run, result, motion):
     line = ["path", "motion-base", motion, "--from-home"]
     found = result(*line, "--home-time", "1500ms")
     assert found["duration_s"] == 5.0
-    assert found["waypoints_m_deg"][0] == found["waypoints_m_deg"][-1] == [0, 0, 2.39, 0, 0, 0]
+    np.testing.assert_allclose(
+        [pose[:2] for pose in found["waypoints_m_deg"]], [[0.1, 0], [0, 0.1], [0.1, 0]], atol=1e-15
+    )
+    assert found["waypoints_s"] == [0, 1, 2]  # those of the file
+    joined = fx.Trajectory([[0.1, 0, 0, 0, 0, 0], [0, 0.1, 0, 0, 0, 0]], [0, 1]).between([0, 0, 0.1, 0, 0, 0], 1.0)
+    assert (len(joined.times), joined.joined) == (4, "rest")
     shown = [run(*line, *more, "--ends", "free", "--csv")[1] for more in ([], ["--home-time", 1.5])]
     alone, joined = ({float(row["time_s"]): row for row in csv.DictReader(io.StringIO(text))} for text in shown)
     for t in (0, 1, 2):  # in motion, with the forces of the motion alone

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from flexapod.control.linear_controller import Controller
+from flexapod.control.linear_controller import Controller, Measurement
 from flexapod.control.plant import Plant, damping_ratios, is_stable, poles
 from flexapod.conventions import Array, Complex
 from flexapod.mechanics.cautions import stands
@@ -15,6 +15,13 @@ from flexapod.showing import in_notebooks
 
 _KEPT_DAMPING = 0.2  # of the continuous loop: a sampled one that keeps less is sampled too slowly
 _HALVINGS = 20
+_CREEP = 0.02  # of the lowest natural frequency: slower decay comes of what the law does to stiffness or friction
+_NEUTRAL = 1e-9  # the same: below, a pole is at zero but for rounding, and its motion neither decays nor grows
+#: What slow decay means, by what a law of each leg measures.
+_CREEPING: dict[tuple[Measurement, ...], str] = {
+    ("leg_force",): "a gain not far above takes the stiffness away, and the platform falls over",
+    ("leg_rate",): "the loops are dampers so strong that the legs hardly yield",
+}
 
 
 @in_notebooks
@@ -49,6 +56,40 @@ class ClosedLoop(NamedTuple):
     worst_damping: float
     stable: bool
     controller: Controller
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """What to beware of in the loop, in words; empty where there is nothing."""
+        return tuple(filter(None, (near_words(self), creep_words(self))))
+
+
+def near_words(loop: ClosedLoop) -> str:
+    """That vibrating poles lie near natural frequencies, where some do."""
+    if not loop.near:
+        return ""
+    first = loop.pole[loop.near[0]]
+    return (
+        f"{len(loop.near)} poles of the closed loop lie near a natural frequency, such as {pole_text(first)} rad/s "
+        f"beside {nearest(first, loop.omega):.5g} rad/s; there the machine may vibrate more than without control."
+    )
+
+
+def creep_words(loop: ClosedLoop) -> str:
+    """That legs with loops of their own let the platform creep, where one does: a pole near zero that does not swing.
+
+    Force feedback can nearly take the static stiffness away, velocity feedback can be a damper that hardly yields.
+    """
+    means = _CREEPING.get(loop.controller.measures)
+    pole = loop.pole
+    still = np.abs(pole.imag) < 1e-3 * np.abs(pole.real)
+    slow = pole[still & (pole.real < -_NEUTRAL * loop.omega[0]) & (pole.real > -_CREEP * loop.omega[0])]
+    if means is None or not slow.size:
+        return ""
+    rate = float(-slow.real.max())
+    return (
+        f"A motion without oscillation decays only in {1 / rate:.3g} s (a pole at -{rate:.3g} rad/s, which no damping "
+        f"ratio shows): {means}. Take a smaller gain."
+    )
 
 
 def assess(plant: Plant, controller: Controller, nearness: float = 0.1) -> ClosedLoop:

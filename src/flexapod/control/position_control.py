@@ -12,7 +12,15 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from flexapod.checks import level_outside, not_negative, numbers, one_of
-from flexapod.control.closed_loop_poles import ClosedLoop, assess, distances, instability_message, nearest, pole_text
+from flexapod.control.closed_loop_poles import (
+    ClosedLoop,
+    assess,
+    creep_words,
+    distances,
+    instability_message,
+    nearest,
+    pole_text,
+)
 from flexapod.control.controllers import PID, pid_units
 from flexapod.control.linear_controller import ControlLaw, controller_for
 from flexapod.control.losses import warn_of_losses
@@ -97,7 +105,8 @@ def closed_loop(
     Warns
     -----
     GainWarning
-        If a vibrating pole lies within `nearness` of a natural frequency.
+        If a vibrating pole lies within `nearness` of a natural frequency, or if the legs' own loops let the platform
+        creep. The result has these words too, as `cautions`.
 
     Notes
     -----
@@ -131,6 +140,8 @@ def closed_loop(
             GainWarning,
             stacklevel=level_outside(),
         )
+    if creeping := creep_words(found):
+        warnings.warn(creeping, GainWarning, stacklevel=level_outside())
     return found
 
 

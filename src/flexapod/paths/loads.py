@@ -21,6 +21,7 @@ from flexapod.mechanics.limited import LimitedQuantity
 from flexapod.mechanics.load_limits import load_excess
 from flexapod.mechanics.point_motion import at_point
 from flexapod.paths.analysis import check_arguments, singular_times
+from flexapod.paths.rest import rest_words
 from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Motion
 
@@ -70,7 +71,8 @@ def path_loads(
         Over `leg`: stroke (m), peak_force (N, without its sign), and the least and greatest value and the root mean
         square over the time of leg_force, leg_rate and power: least_force, greatest_force, rms_force, least_rate, and
         so on. Over `time`: within_limits, of lengths, angles, distances and moments, and loads_within_limits, of the
-        forces, speeds, accelerations and power of this motion.
+        forces, speeds, accelerations and power of this motion. The attribute ``caution`` tells where rest at the ends
+        of the path multiplies its acceleration.
 
     Raises
     ------
@@ -135,6 +137,7 @@ def path_loads(
     )
     dataset = dataset.assign(_motion(motion, as_point(hexapod, point)) | _joint_moments(hexapod, motion, joint))
     told = {"design": hexapod.name, "digest": hexapod.digest, **point_attributes(hexapod, point)}
+    told["caution"] = rest_words(path)
     return dataset.assign(_extremes(dataset)).assign_attrs(told)
 
 

@@ -45,6 +45,8 @@ class Trajectory:
         Times (s) and weights of the waypoints, (n,).
     ends : str
         As given.
+    joined : str or None
+        Of a path that `between` made, the ends of the one within: all waypoints but the first and the last.
     start, duration : float
         Time of the first waypoint, and from the first to the last, s.
 
@@ -92,6 +94,7 @@ class Trajectory:
         self.times = _times(times, poses.shape[0])
         self.weights = _weights(weights, poses.shape[0])
         self.ends = ends
+        self.joined: Ends | None = None
         self.chart = Chart.about(poses)
         self._curve = Curve([spline(self.times, self.chart.coordinates(poses), ends)], self.times[[0, -1]])
 
@@ -210,7 +213,7 @@ class Trajectory:
         times = np.concatenate([[self.times[0] - wanted], self.times, [self.times[-1] + wanted]])
         joined.times = _lasting(times)
         joined.weights = np.concatenate([self.weights[:1], self.weights, self.weights[-1:]])
-        joined.ends = "rest"
+        joined.ends, joined.joined = "rest", self.ends
         joined._curve = self._curve.between(self.chart.coordinates(rest), wanted)
         return joined
 

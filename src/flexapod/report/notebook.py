@@ -132,7 +132,8 @@ def _attributes(thing: Any, title: str) -> str:
     for name, value in _parts(thing):
         meaning = f'<td class="meaning">{escape(meanings.get(name, ""))}</td>'
         rows.append((f"<code>{escape(name)}</code>", escape(_value(value)), meaning))
-    return pages.rows_table(("", "", ""), rows, caption=title)
+    cautions = "".join(f"<p>{escape(text)}</p>" for text in getattr(thing, "cautions", ()))
+    return f"{pages.rows_table(('', '', ''), rows, caption=title)}{cautions}"
 
 
 def _parts(thing: Any) -> Iterator[tuple[str, Any]]:

@@ -24,7 +24,6 @@ from flexapod.paths.payloads import payload_loads
 from flexapod.paths.plan import Plan, plan_slice
 from flexapod.paths.planning import LONGEST, plan_path
 from flexapod.paths.requirements import PathRequirements
-from flexapod.paths.rest import rest_cost
 from flexapod.paths.trajectory import Trajectory
 from flexapod.pose import Pose
 from flexapod.report.studies.path import PathFindings, study
@@ -83,7 +82,7 @@ def _given(hexapod: Hexapod, options: Options) -> PathFindings:
     proof = None
     if options.certify:
         proof = certify(hexapod, path, at_least=options.bound, joint=options.joint, time_limit=LONGEST)
-    return PathFindings(path, index, loads, _size(hexapod), certificate=proof, rest=rest_cost(given))
+    return PathFindings(path, index, loads, _size(hexapod), certificate=proof)
 
 
 def _planned(hexapod: Hexapod, options: Options, report: Report) -> PathFindings:

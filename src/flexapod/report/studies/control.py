@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from flexapod import plots
-from flexapod.control.closed_loop_poles import ClosedLoop
+from flexapod.control.closed_loop_poles import ClosedLoop, creep_words, near_words
 from flexapod.conventions import TWO_PI, printed_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import told_apart
@@ -39,9 +39,6 @@ class RandomWithControl(NamedTuple):
 
     controlled: xr.Dataset
     passive: xr.Dataset | None
-
-
-_CREEP = 0.02  # of the lowest natural frequency: slower decay comes of stiffness that the law takes away
 
 
 @dataclass(frozen=True)
@@ -129,22 +126,6 @@ def _files(f: ControlFindings) -> dict[str, Callable[[], str | xr.Dataset]]:
     return files
 
 
-def _creeping(f: ControlFindings) -> list[Caution]:
-    """A decentralised law that nearly takes the static stiffness away, as force feedback can, has a pole near zero."""
-    pole = f.sampled.pole
-    still = np.abs(pole.imag) < 1e-3 * np.abs(pole.real)
-    slow = pole[still & (pole.real < 0) & (pole.real > -_CREEP * f.sampled.omega[0])]
-    if f.gain is None or not slow.size:
-        return []
-    rate = float(-slow.real.max())
-    text = (
-        f"A motion without oscillation decays only in {1 / rate:.3g} s (a pole at -{rate:.3g} rad/s, which no damping "
-        f"ratio shows): a gain not far above {f.gain:.4g} takes the stiffness away, and the platform falls over. Take "
-        "a smaller --gain."
-    )
-    return [Caution("creep", text, {"rate": rate, "gain": f.gain})]
-
-
 def cautions(f: ControlFindings) -> list[Caution]:
     """What to beware of in the loop."""
     found = [Caution("model", f.assumptions)]
@@ -157,13 +138,11 @@ def cautions(f: ControlFindings) -> list[Caution]:
             "highest natural frequency, or less where the loop needs it to keep its damping; sample faster."
         )
         found.append(Caution("sampling", text, {"dt": f.dt, "recommended": f.recommended}))
-    if f.sampled.near:
-        text = (
-            f"{len(f.sampled.near)} poles of the closed loop lie within 10 % of a natural frequency; there the machine "
-            "may vibrate more than without control."
-        )
-        found.append(Caution("near_frequency", text, {"poles": len(f.sampled.near)}))
-    found += [*_creeping(f), *(Caution("spectrum", text) for text in f.notes)]
+    if near := near_words(f.sampled):
+        found.append(Caution("near_frequency", near, {"poles": len(f.sampled.near)}))
+    if creeping := creep_words(f.sampled):
+        found.append(Caution("creep", creeping))
+    found += [Caution("spectrum", text) for text in f.notes]
     found += random.cautions(None if f.random is None else f.random.controlled)
     if f.run is not None and f.run.attrs["saturated"] > 0:
         share = f.run.attrs["saturated"]

@@ -10,14 +10,12 @@ import xarray as xr
 
 from flexapod import plots
 from flexapod.certificates.certificate import Certificate
-from flexapod.conventions import printed_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import told_apart
 from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.load_limits import load_excess
 from flexapod.paths.analysis import PathIndex
 from flexapod.paths.plan import Plan
-from flexapod.paths.rest import RestCost
 from flexapod.paths.trajectory import Trajectory
 from flexapod.report.numbers import DASH, pose_numbers, pose_words, shown
 from flexapod.report.studies import least_index, path_legs, path_motors, path_point
@@ -35,8 +33,7 @@ _PLANE = (
 class PathFindings:
     """What was computed about a path. size: m that a radian counts as. beside, plan, plane: of a planned path.
 
-    cases: with each payload. motors, case_motors: of a design with a drive, as it is and with each payload. rest: what
-    rest at the ends of a path that was given adds to its accelerations."""
+    cases: with each payload. motors, case_motors: of a design with a drive, as it is and with each payload."""
 
     path: Trajectory
     along: PathIndex
@@ -49,12 +46,11 @@ class PathFindings:
     cases: xr.Dataset | None = None
     motors: xr.Dataset | None = None
     case_motors: xr.Dataset | None = None
-    rest: RestCost | None = None
 
 
 def study(hexapod: Hexapod, f: PathFindings, waypoints: str | None = None) -> Study:
     """The study of a path. waypoints: a planned path as the text of a file."""
-    ends = (pose_words(f.path.waypoints[which]) for which in (0, -1))
+    ends, given = (pose_words(f.path.waypoints[which]) for which in (0, -1)), len(f.path.times[_given(f.path)])
     what = f"planned from {' to '.join(ends)}" if f.plan else "as given"
     drawings = _drawings(f)
     files: dict[str, Any] = {f"path-{one.name}.png": one.draw for one in sorted(drawings, key=_order)}
@@ -65,7 +61,7 @@ def study(hexapod: Hexapod, f: PathFindings, waypoints: str | None = None) -> St
     return Study(
         hexapod=hexapod,
         subject="path",
-        about=f"A path of {len(f.path.times)} waypoints, {what}. One radian counts as {shown(f.size, 3)} m of length.",
+        about=f"A path of {given} waypoints, {what}. One radian counts as {shown(f.size, 3)} m of length.",
         data=_data(hexapod, f),
         rows=_rows(hexapod, f),
         sections=[
@@ -87,6 +83,11 @@ def study(hexapod: Hexapod, f: PathFindings, waypoints: str | None = None) -> St
             "path.html": None,
         },
     )
+
+
+def _given(path: Trajectory) -> slice:
+    """The waypoints that were given: not the home poses that a path is joined to."""
+    return slice(None) if path.joined is None else slice(1, -1)
 
 
 def _motors(hexapod: Hexapod, f: PathFindings) -> list[Section]:
@@ -133,7 +134,8 @@ def _order(drawing: Drawing) -> int:
 
 def cautions(f: PathFindings) -> list[Caution]:
     """What to beware of on the path."""
-    found = [] if f.rest is None else [_of_rest(f.rest)]
+    rest = f.loads.attrs["caution"] if f.plan is None else ""
+    found = [Caution("rest", f"{rest} On the command line: --ends free, --ends periodic.")] if rest else []
     if f.along.below and f.along.bound is not None:
         spans = ", ".join(f"{a:.4g} to {b:.4g} s" for a, b in f.along.below)
         text = f"The index lies below the bound of {f.along.bound:.5g} rad/s from {spans}."
@@ -144,16 +146,6 @@ def cautions(f: PathFindings) -> list[Caution]:
         text = f"The path leaves the design's limits for {outside.mean():.0%} of it, first at {first:.4g} s."
         found.append(Caution("limit", text, {"share": float(outside.mean()), "first": first}))
     return found
-
-
-def _of_rest(cost: RestCost) -> Caution:
-    unit = printed_unit(cost.unit)
-    text = (
-        "The waypoints are those of a motion that goes on at their ends, and the path begins and ends at rest: its "
-        f"greatest acceleration is {cost.rest:.3g} {unit}, and {cost.free:.3g} {unit} with free ends. If the "
-        "motion is cut out of a longer one, give --ends free, or --ends periodic."
-    )
-    return Caution("rest", text, {"rest": cost.rest, "free": cost.free})
 
 
 def leg_cautions(hexapod: Hexapod, loads: xr.Dataset, motors: xr.Dataset | None) -> list[Caution]:
@@ -243,8 +235,8 @@ def _data(hexapod: Hexapod, f: PathFindings) -> dict[str, Any]:
         "loads_within_limits": bool(loads.loads_within_limits.all()),
         **path_legs.data(loads),
         **path_point.data(loads),
-        "waypoints_s": f.path.times,
-        "waypoints_m_deg": [pose_numbers(f.path.waypoints[i]) for i in range(len(f.path.times))],
+        "waypoints_s": f.path.times[_given(f.path)],
+        "waypoints_m_deg": [pose_numbers(f.path.waypoints[i]) for i in range(len(f.path.times))][_given(f.path)],
         "files": [],
     }
     if f.cases is not None:
