@@ -257,4 +257,4 @@ def test_a_motion_is_joined_to_home(run, result, motion):
     assert float(joined[0]["velocity_x_m_per_s"]) < -0.1
     code, _, err = run("path", "motion-base", "--from", *[0, 0, 2.39, 0, 0, 0], "--to", *[0, 0, 2.4, 0, 0, 0], "--bound", 1, "--home-time", 1)  # fmt: skip
     assert code == 2
-    assert "--home-time joins the motion of a FILE" in err
+    assert "--home-time is for the motion of a FILE" in err
