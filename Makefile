@@ -24,6 +24,9 @@ export PYTHONDONTWRITEBYTECODE =
 # On every core, each file of tests on one: what its tests share is made once. In the order of tests/conftest.py.
 AT_ONCE := -n logical --dist loadfile --no-loadscope-reorder
 
+# Each test has one core: threads of OpenBLAS, which wait for one another in a loop, would take it from the test beside.
+test validation docs sanitize: export OPENBLAS_NUM_THREADS = 1
+
 test: build ## the whole test suite; with COVERAGE=1 also how much of the Python code it runs
 ifdef COVERAGE
 	$(BIN)/coverage erase
@@ -79,7 +82,8 @@ SANITIZED  := $(CURDIR)/build/sanitize
 CORE_TESTS := $(addprefix tests/,core mechanics excitation simulation workspace/test_sweep_kernel.py \
                 vibration/test_stepped.py optimisation/test_optimise.py control/test_control.py)
 LONG       := thousand_periods or keeps_its_energy or progress_goes or settles_to or run_from_rest or better_design or \
-              mean_over or angles_and_deflection or holds_up or bad_input or symmetric_family or pareto or number_of_each_leg
+              mean_over or angles_and_deflection or holds_up or bad_input or symmetric_family or pareto or number_of_each_leg or \
+              (in_the_proof and table) or boxes_outside_of_limits
 PRELOADED   = $(shell $(CXX) -print-file-name=libasan.so) $(shell $(CXX) -print-file-name=libstdc++.so)
 
 sanitize: $(SANITIZED)/.built ## any finding ends the run
