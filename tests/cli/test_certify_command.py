@@ -37,6 +37,27 @@ def test_a_bound_that_is_proved(run, there):
     assert "checked by other boxes" in out
 
 
+def test_a_proof_is_not_lost_to_a_weaker_one(run, there):
+    proof, earlier = there / "motion-base-certificate.json", there / "motion-base-certificate-earlier.json"
+    for bound in (24, 25):  # the second covers the first, and takes its place
+        code, out, _ = run("certify", "motion-base", *SMALL, "--at-least", bound)
+        assert (code, "earlier proof" in out) == (0, False)
+    best = proof.read_text()
+    code, out, _ = run("certify", "motion-base", *SMALL, "--at-least", 20)
+    assert "The earlier proof is kept as motion-base-certificate-earlier.json" in " ".join(out.split())
+    assert earlier.read_text() == best
+    code, out, _ = run("certify", "motion-base", *SMALL, "--at-least", "5Hz")  # refuted: the one at 20 stays beside
+    assert code == 1
+    assert fx.certificates.read_certificate(there / "motion-base-certificate-earlier2.json").lower == 20
+    run("certify", "motion-base", *SMALL, "--at-least", 25)
+    kept = proof.read_text()
+    code, _, err = run("certify", "motion-base", *SMALL, "--condition", -1)  # nothing is computed: nothing is moved
+    assert code == 2, err
+    assert proof.read_text() == kept
+    code, out, _ = run("certify", "motion-base", "--around", "0.02", "1", "--at-least", 25)  # of another region
+    assert "earlier proof" in out
+
+
 def test_a_bound_that_a_pose_breaks_and_one_that_is_not_decided(run):
     code, out, _ = run("certify", "motion-base", *SMALL, "--at-least", "5Hz", "--json")
     found = json.loads(out)

@@ -94,6 +94,38 @@ def test_a_start_and_limits(result, lengths):
     assert [row["within_limits"] for row in above["rows"]] == [1, 0, 1, 0, 1]
 
 
+def test_poses_that_break_limits_are_told(run, lengths, tmp_path):
+    """Beside the table, whichever way it converts; nothing where all keep them."""
+    stroke = ["--set", "limits.leg_length=[2.3, 2.75]"]
+    code, out, err = run("kinematics", "motion-base", lengths, *stroke)
+    kept = [row["within_limits"] for row in csv.DictReader(io.StringIO(out)) if row["status"] == "found"]
+    told = f"{kept.count('0')} of 3 poses break the design's limits"
+    assert code == 0
+    assert "0" in kept
+    assert told in err
+    (tmp_path / "poses.csv").write_text(out)
+    assert told in run("kinematics", "motion-base", tmp_path / "poses.csv", *stroke)[2]
+    assert "break" not in run("kinematics", "motion-base", lengths, "--set", "limits.leg_length=[0.1, 9.0]")[2]
+
+
+def test_poses_may_count_from_home(run, result, lengths, tmp_path):
+    """Those that are found, those of a file, and the start; for a home that is turned, too."""
+    for more in ((), ("--set", "home.orientation_deg=[4, -3, 20]")):
+        code, out, _ = run("kinematics", "motion-base", lengths, "--from-home", *more)
+        assert code == 0
+        (tmp_path / "moved.csv").write_text(out)
+        rows = [row for row in csv.DictReader(io.StringIO(out)) if row["status"] == "found"]
+        there = np.array([[float(row[f"{axis}_m"]) for axis in "xyz"] for row in rows])
+        np.testing.assert_allclose(there, POSES.position - [0, 0, 2.39], atol=1e-9)
+        code, out, _ = run("kinematics", "motion-base", tmp_path / "moved.csv", "--from-home", *more)
+        back = [float(row["leg1_m"]) for row in csv.DictReader(io.StringIO(out)) if row["status"] == "ok"]
+        np.testing.assert_allclose(back, fx.inverse_kinematics(fx.load("motion-base"), POSES)[:, 0], rtol=1e-10)
+    below = result("kinematics", "motion-base", lengths, "--from-home", "--start", 0, 0, -4.79, 0, 0, 0)
+    assert below["rows"][0]["z_m"] == pytest.approx(-4.78)
+    code, _, err = run("kinematics", case("dietmaier", "dietmaier.toml"), lengths, "--from-home")
+    assert (code, "names no home pose for --from-home" in err) == (2, True)
+
+
 @pytest.mark.parametrize(
     ("text", "more", "words"),
     [

@@ -237,3 +237,16 @@ def test_modes_outside_the_band_of_a_spectrum_are_told(result, tmp_path, first, 
     if modes:
         listed = told[0].partition("there lie modes, at ")[2].partition(" Hz")[0].split(", ")
         assert np.array(listed, float) == pytest.approx(outside, rel=5e-3)  # with losses a little lower
+
+
+def test_two_loads_of_one_stem_keep_their_own_names(result, tmp_path):
+    """A file of the same name in another folder, and one that is called as the moving base is."""
+    names = [tmp_path / "day" / "wind.csv", tmp_path / "night" / "wind.csv", tmp_path / "base.csv"]
+    for k, name in enumerate(names):
+        name.parent.mkdir(exist_ok=True)
+        name.write_text(f"frequency_hz,force_y\n1,{k + 1}\n60,{k + 1}\n")
+    loads = [word for name in names for word in ("--load", name)]
+    found = result("response", "cubic-isolator", *loads)["random_rms_by_source"]
+    assert list(found) == [str(name) for name in names]
+    y = [found[str(name)]["displacement"][1] for name in names]
+    np.testing.assert_allclose(np.array(y) ** 2 / y[0] ** 2, [1, 2, 3], rtol=1e-9)

@@ -2,12 +2,15 @@
 
 import csv
 import io
+import re
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import flexapod as fx
 from flexapod.mechanics import gravity_at
+from flexapod.plots.statics import together
 
 ELEVATIONS = np.array([90.0, 75, 60, 45, 30, 15])
 
@@ -39,7 +42,7 @@ def test_elevations_of_a_telescope(result, run, tmp_path):
     np.testing.assert_allclose(found["leg_force_N"], expected.leg_force, rtol=1e-12)
     np.testing.assert_allclose(found["deflection_m"], expected.deflection, atol=1e-15)
     np.testing.assert_allclose(found["stiffness_m_rad_N"], expected.stiffness, rtol=1e-9)
-    names = {"statics.png", "statics.csv", "statics.nc", "statics.html"}
+    names = {"statics.png", "statics.csv", "statics-stiffness.csv", "statics.nc", "statics.html"}
     assert {file.name for file in (tmp_path / "here").iterdir()} == names
     code, out, _ = run(*line, "--csv")
     assert code == 0
@@ -74,6 +77,52 @@ def test_cases_of_a_table(result, run, tmp_path):
     code, out, _ = run("statics", "motion-base", file, "--reference", "still")
     assert code == 0
     assert "held as they are in case still" in out
+
+
+def test_cases_keep_their_names_and_matrices_in_files(run, result, tmp_path):
+    file = tmp_path / "cases.csv"
+    file.write_text("case,force_x\nstill,0\nwind,1500\n")
+    found = result("statics", "motion-base", file, "--point", 0, 0, 0.5, "--out", tmp_path / "here")
+    with xr.open_dataset(tmp_path / "here" / "statics.nc") as saved:
+        assert saved.name.values.tolist() == ["still", "wind"]
+    table = rows((tmp_path / "here" / "statics-stiffness.csv").read_text())
+    assert len(table) == 2 * 2 * 36
+    for k, name in enumerate(("still", "wind")):
+        for matrix in ("stiffness", "compliance"):
+            values = [float(row["value"]) for row in table if (row["case"], row["matrix"]) == (name, matrix)]
+            assert np.ravel(found[f"{matrix}_m_rad_N"][k]).tolist() == values
+    units = {(row["matrix"], row["of"], row["by"]): row["unit"] for row in table}
+    assert units["stiffness", "x", "z"] == "N/m"
+    assert units["stiffness", "roll", "yaw"] == "N m/rad"
+    assert units["compliance", "pitch", "y"] == "rad/N"
+    assert units["compliance", "z", "roll"] == "m/(N m)"
+    assert "Stiffness" in run("statics", "motion-base", file)[1]  # in the terminal too
+    elevations = result("statics", "motion-base", "--elevation", "90:30:3", "--out", tmp_path / "up")
+    with xr.open_dataset(tmp_path / "up" / "statics.nc") as saved:
+        np.testing.assert_allclose(np.degrees(saved.elevation), elevations["elevation_deg"])
+
+
+def test_rounding_is_no_force_and_no_reversal(run):
+    """A machine without weight has no forces, and none that turn."""
+    code, out, err = run("statics", "cubic-isolator", "--set", "gravity=[0, 0, 0]")
+    assert code == 0
+    assert not re.search(r"\de-1\d", out + err)
+    assert "turn from tension" not in out + err
+
+
+def test_curves_that_coincide_are_drawn_as_one():
+    gravity = gravity_at(np.radians(ELEVATIONS), np.radians(30))
+    cases = fx.load_cases(fx.load("motion-base"), gravity=gravity, reference=0)
+    force = cases.leg_force.values
+    groups = together(force)
+    assert sorted(leg for legs in groups for leg in legs) == list(range(6))
+    assert len(groups) < 6  # the machine is symmetric about the slope
+    for legs in groups:
+        assert np.ptp(force[:, legs], axis=1).max() < 0.01 * np.ptp(force)
+    figure = fx.plots.statics.load_cases(cases, np.radians(ELEVATIONS))
+    labels = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert len(labels) == len(groups)
+    assert any(label.startswith("legs ") for label in labels)
 
 
 def test_one_case_and_limits(run, result):

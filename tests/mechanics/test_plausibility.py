@@ -11,6 +11,15 @@ from flexapod.mechanics import plausibility
 from flexapod.mechanics.cautions import pose_cautions, unitless_condition
 
 CASES = Path(__file__).parents[1] / "data" / "cases"
+OIL = {
+    "bulk_modulus": 1e9,
+    "area_1": 5e-3,
+    "area_2": 3e-3,
+    "dead_1": 0.05,
+    "dead_2": 0.05,
+    "stroke": 1.0,
+    "shortest": 0.1,
+}
 OWN = fx.Hexapod.from_toml(template("own"))
 
 
@@ -67,6 +76,14 @@ def test_packaged_designs_are_plausible(name):
         ({"limits.universal_moment": 1}, "idle_limit", "Give legs.joint_stiffness.universal, or leave it out"),
         ({"suspension.stiffness": [1, 1, 1, 100, 100, 100]}, "suspension", "springs 10 m from their centre"),
         ({"legs.loss_factor": 2}, "loss_factor", "2 % is 0.02"),
+        (
+            {
+                "legs.stiffness_law": {"kind": "hydraulic", **OIL},
+                "drive": {"lead": 0.01, "efficiency": 0.9},
+            },
+            "drive",
+            "Leave [drive] out",
+        ),
         ({"legs.joint_stiffness.loss_factor": 1.5}, "loss_factor", "legs.joint_stiffness.loss_factor is 1.5"),
     ],
 )

@@ -11,6 +11,7 @@ import numpy as np
 
 from flexapod.conventions import LEG_PAIRS, Array
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.stiffness_laws import HydraulicLaw
 from flexapod.design.universal_axes import legs_at
 from flexapod.mechanics.inputs import states
 from flexapod.mechanics.joint_limits import leg_distances
@@ -54,7 +55,20 @@ def implausible(hexapod: Hexapod) -> list[Caution]:
 
 @lru_cache(maxsize=64)  # a page asks for pose after pose of one design
 def _implausible(hexapod: Hexapod) -> list[Caution]:
-    return [*_sizes(hexapod), *_bodies(hexapod), *_gravity(hexapod), *_springs(hexapod)]
+    return [*_sizes(hexapod), *_bodies(hexapod), *_gravity(hexapod), *_springs(hexapod), *_drive(hexapod)]
+
+
+def _drive(hexapod: Hexapod) -> list[Caution]:
+    """A motor with a screw in legs of oil."""
+    law, drive = hexapod.legs.stiffness_law, hexapod.drive
+    if drive is None or not isinstance(law, HydraulicLaw):
+        return []
+    text = (
+        "legs.stiffness_law is that of hydraulic cylinders, and [drive] is a motor with a screw in each leg: a machine "
+        "has one or the other. The motor's torque and speed are not those of the pump. Leave [drive] out, or give the "
+        "stiffness of the screws."
+    )
+    return [Caution("drive", text)]
 
 
 def _sizes(hexapod: Hexapod) -> list[Caution]:

@@ -15,6 +15,7 @@ from flexapod.output_files import write_file
 @click.argument("file", type=common.GIVEN_FILE)
 @click.option("--all", "every", is_flag=True, help="Give all assemblies of each set of leg lengths.")
 @common.pose_named("--start", help="Pose that the search of poses begins at (m, degrees). Default: home pose.")
+@click.option("--from-home", is_flag=True, help="Poses, of FILE, of --start and those that are found, count from home.")
 @common.rotation_options
 @common.set_option
 @click.option("--out", type=common.FILE, metavar="CSV", help="Default: standard output.")
@@ -24,6 +25,7 @@ def command(
     file: Path,
     every: bool,
     start: tuple[float, ...] | None,
+    from_home: bool,
     changes: tuple[str, ...],
     out: Path | None,
     as_json: bool,
@@ -40,7 +42,11 @@ def command(
     from flexapod.cli.studies.kinematics import compute
 
     hexapod = common.load_design(design, changes)
-    found = compute(hexapod, file, start=common.pose_or_none(hexapod, start), every=every)
+    origin = common.home_for(hexapod, "--from-home") if from_home else None
+    begin = common.pose_or_none(hexapod, start)
+    if origin is not None and start is not None:
+        begin = origin.displaced(common.pose_of(start))
+    found = compute(hexapod, file, start=begin, every=every, origin=origin)
     if as_json:
         common.print_json(found.to_dict())
     elif out is None:

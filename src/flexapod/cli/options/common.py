@@ -262,6 +262,13 @@ def chosen_pose(hexapod: Hexapod, six: tuple[float, ...] | None) -> Pose:
     return pose
 
 
+def home_for(hexapod: Hexapod, option: str) -> Pose:
+    """The home pose, from which an option counts. Raises UsageError where the design names none."""
+    if hexapod.home is None:
+        raise click.UsageError(f"{hexapod.name!r} names no home pose for {option}. Add [home] to the design.")
+    return hexapod.home
+
+
 def pose_or_none(hexapod: Hexapod, six: tuple[float, ...] | None) -> Pose | None:
     """As `chosen_pose`, but None where there is neither."""
     from flexapod.mechanics.kinematics import home_pose

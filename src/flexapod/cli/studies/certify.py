@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from flexapod.cli.options.certify import Options
 from flexapod.cli.options.given import needed, others
 from flexapod.cli.output.interrupt import Stopping
 from flexapod.cli.output.stages import Report
+from flexapod.cli.studies.earlier_proof import Earlier
 from flexapod.design.hexapod import Hexapod
 from flexapod.output_files import make_directory
 from flexapod.report.numbers import file_name
@@ -48,8 +50,11 @@ def compute(options: Options, place: Path | None, report: Report) -> tuple[Study
         path = None if place is None else make_directory(place) / f"{file_name(hexapod.name)}-certificate.json"
         if options.largest:
             return _largest(hexapod, options, path, watch)
-        found = _certified(hexapod, options, path, watch)
-    return study(found), [] if path is None else [path]
+        with Earlier(None if options.resume else path) as earlier:
+            found = _certified(hexapod, options, path, watch)
+            note = earlier.beside(found)
+    told = study(found)
+    return replace(told, cautions=[*told.cautions, *note]), [] if path is None else [path]
 
 
 def _checked(options: Options, watch: dict[str, Any]) -> Certificate:
@@ -100,9 +105,7 @@ def _region(hexapod: Hexapod, options: Options) -> Any:
         return where
     if where is not None:
         raise click.UsageError("--path and --pose, --box or --around each say where. Give one of them.")
-    if options.from_home and hexapod.home is None:
-        raise click.UsageError(f"{hexapod.name!r} names no home pose for --from-home. Add [home] to the design.")
-    origin = hexapod.home if options.from_home else None
+    origin = common.home_for(hexapod, "--from-home") if options.from_home else None
     return waypoints.read(options.path_file, options.ends, origin)  # type: ignore[arg-type]
 
 

@@ -55,8 +55,8 @@ class Conversion:
         return {**head, "rows": rows, "warnings": self.notes}
 
 
-def compute(hexapod: Hexapod, file: Path, *, start: Pose | None, every: bool) -> Conversion:
-    """Poses of the lengths in a file, or lengths of its poses."""
+def compute(hexapod: Hexapod, file: Path, *, start: Pose | None, every: bool, origin: Pose | None = None) -> Conversion:
+    """Poses of the lengths in a file, or lengths of its poses, which count from the origin or else from the base."""
     text = read_text(file)
     with naming(file):
         table = parse_table(text, _NAMES | pose_columns.TITLES, _FORM)
@@ -70,9 +70,10 @@ def compute(hexapod: Hexapod, file: Path, *, start: Pose | None, every: bool) ->
         if not legs:
             if every:
                 raise click.UsageError("--all gives all poses of leg lengths; FILE has poses. Leave it out.")
-            return _lengths(hexapod, head, pose_columns.six(table, _FORM, finite=False))
+            return _lengths(hexapod, head, pose_columns.six(table, _FORM, finite=False), origin)
         lengths = _leg_columns(table)
-    return _all_poses(hexapod, head, lengths, start) if every else _poses(hexapod, head, lengths, start)
+    given = hexapod, head, lengths, start, origin
+    return _all_poses(*given) if every else _poses(*given)
 
 
 def _leg_columns(table: Table) -> Array:
@@ -83,19 +84,23 @@ def _leg_columns(table: Table) -> Array:
     return np.column_stack([table.numbers(column, length, "m", finite=False) for column in columns.values() if column])
 
 
-def _lengths(hexapod: Hexapod, head: dict[str, Any], rows: Array) -> Conversion:
+def _lengths(hexapod: Hexapod, head: dict[str, Any], rows: Array, origin: Pose | None) -> Conversion:
     pose = Pose.trusted(rows[:, :3], rpy_matrix(rows[:, 3:]))
+    if origin is not None:
+        pose = Pose.trusted(pose.position + origin.position, pose.matrix @ origin.matrix)
     lengths = inverse_kinematics(hexapod, pose)
     status = np.where(np.isfinite(rows).all(axis=1), "no_leg", "not_finite")
     status = np.where(np.isfinite(lengths).all(axis=1), "ok", status)
     columns = {**head, **{f"{leg}_m": lengths[:, k] for k, leg in enumerate(LEGS)}, **_kept(hexapod, pose)}
     columns["status"] = status
-    return Conversion(hexapod, "lengths", columns, _told(head["line"], status, ("ok",)))
+    return Conversion(hexapod, "lengths", columns, [*_told(head["line"], status, ("ok",)), *_beyond(columns)])
 
 
-def _poses(hexapod: Hexapod, head: dict[str, Any], lengths: Array, start: Pose | None) -> Conversion:
+def _poses(
+    hexapod: Hexapod, head: dict[str, Any], lengths: Array, start: Pose | None, origin: Pose | None
+) -> Conversion:
     found = forward_kinematics(hexapod, lengths, start=start)
-    columns = {**head, **pose_columns.written(found), **_kept(hexapod, found)}
+    columns = {**head, **pose_columns.written(_from(found, origin)), **_kept(hexapod, found)}
     columns |= {"misfit_m": found.misfit, "status": found.status}
     notes = _told(head["line"], found.status, ("found", "nearest"))
     far = int((found.status == "nearest").sum())
@@ -104,27 +109,53 @@ def _poses(hexapod: Hexapod, head: dict[str, Any], lengths: Array, start: Pose |
             f"{far} of {len(lengths)} poses are not where the search led from the start, but the nearest of all "
             'assemblies on its side of the singular poses (status "nearest"); --all shows the others.'
         )
-    return Conversion(hexapod, "poses", columns, notes)
+    return Conversion(hexapod, "poses", columns, [*notes, *_beyond(columns)])
 
 
-def _all_poses(hexapod: Hexapod, head: dict[str, Any], lengths: Array, start: Pose | None) -> Conversion:
+def _from(pose: Pose, origin: Pose | None) -> Pose:
+    """Poses in the base frame as they count from an origin: the inverse of `Pose.displaced`."""
+    if origin is None:
+        return pose
+    return Pose.trusted(pose.position - origin.position, pose.matrix @ origin.matrix.T)
+
+
+def _all_poses(
+    hexapod: Hexapod, head: dict[str, Any], lengths: Array, start: Pose | None, origin: Pose | None
+) -> Conversion:
     found = forward_kinematics_all(hexapod, lengths, start=start)
     row = found.row
     first = np.searchsorted(row, row)  # of each row's assemblies
     columns = {name: values[row] for name, values in head.items()}
-    columns |= {"assembly": np.arange(len(row)) - first + 1, **pose_columns.written(found.pose), "side": found.side}
+    columns |= {
+        "assembly": np.arange(len(row)) - first + 1,
+        **pose_columns.written(_from(found.pose, origin)),
+        "side": found.side,
+    }
     columns |= {**_kept(hexapod, found.pose), "misfit_m": found.misfit, "status": found.status[row]}
     notes = _told(head["line"], found.status, ("complete",))
     none = np.setdiff1d(np.flatnonzero(found.status == "complete"), row)
     if none.size:
         notes.append(f"no real assembly has the lengths of {_lines(head['line'][none])}.")
-    return Conversion(hexapod, "poses", columns, notes)
+    return Conversion(hexapod, "poses", columns, [*notes, *_beyond(columns)])
 
 
 def _kept(hexapod: Hexapod, pose: Pose) -> dict[str, np.ndarray]:
     """Whether poses keep the design's limits, where it has some."""
     limited = bool(limit_excess(hexapod, pose))
     return {"within_limits": check_limits(hexapod, pose).ok.astype(int)} if limited else {}
+
+
+def _beyond(columns: dict[str, Any]) -> list[str]:
+    """Which poses that were found break the design's limits."""
+    if "within_limits" not in columns:
+        return []
+    good = np.isin(columns["status"], ("ok", "found", "nearest", "complete"))
+    broken = good & (columns["within_limits"] == 0)
+    if not broken.any():
+        return []
+    where = _lines(np.unique(columns["line"][broken]))
+    text = f"{broken.sum()} of {good.sum()} poses break the design's limits, {where}: `flexapod check` says which."
+    return [text]
 
 
 def _told(lines: np.ndarray, status: np.ndarray, good: tuple[str, ...]) -> list[str]:

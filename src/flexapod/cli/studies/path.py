@@ -73,7 +73,7 @@ def _given(hexapod: Hexapod, options: Options) -> PathFindings:
     assert options.file is not None
     path = given = waypoints.read(options.file, options.ends, _origin(hexapod, options))  # type: ignore[arg-type]
     if options.home_time is not None:
-        path = given.between(_home(hexapod, "--home-time"), options.home_time)
+        path = given.between(common.home_for(hexapod, "--home-time"), options.home_time)
     try:
         index = path_index(hexapod, path, bound=options.bound, joint=options.joint)
     except (SingularPoseError, PoseError) as error:
@@ -124,13 +124,7 @@ def _pose(six: tuple[float, ...], origin: Pose | None) -> Pose:
 
 def _origin(hexapod: Hexapod, options: Options) -> Pose | None:
     """What poses are measured from: the home pose with --from-home, or else the base."""
-    return _home(hexapod, "--from-home") if options.from_home else None
-
-
-def _home(hexapod: Hexapod, option: str) -> Pose:
-    if hexapod.home is None:
-        raise click.UsageError(f"{hexapod.name!r} names no home pose for {option}. Add [home] to the design.")
-    return hexapod.home
+    return common.home_for(hexapod, "--from-home") if options.from_home else None
 
 
 def _hint(hexapod: Hexapod, path: Trajectory, options: Options) -> str:

@@ -36,8 +36,11 @@ def read_shaking(psd: Path | None, files: Sequence[Path], at: Sequence[PointGive
             f"--at gives {len(places)} places for {len(files)} load{'s' * (len(files) > 1)}. Give one for all, or one "
             "for each --load in turn."
         )
+    stems = [file.stem for file in files]
     for file, place in zip(files, places * len(files) if len(places) == 1 else places, strict=False):
         spectra = read_load(file)
         notes += spectra.notes
-        loads.append(RandomLoad(spectra.density, frequency=spectra.frequency, point=place, name=file.stem))
+        alone = stems.count(file.stem) == 1 and file.stem != "base"  # which is the moving base in the results
+        name = file.stem if alone else str(file)
+        loads.append(RandomLoad(spectra.density, frequency=spectra.frequency, point=place, name=name))
     return ShakingGiven({**given, "loads": loads}, notes) if given or loads else None

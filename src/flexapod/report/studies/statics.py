@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from flexapod import plots
-from flexapod.conventions import AXES, LEGS, Array
+from flexapod.conventions import AXES, LEGS, Array, Unit, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.point_motion import in_columns, point_words
@@ -17,6 +17,8 @@ from flexapod.report.numbers import DASH, brief, without_rounding
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 from flexapod.tables import written_table
 from flexapod.workspace.quantities import titled
+
+_ROUNDING = 1e-14  # of a leg's length: what is moved by less is not moved, and the force of such a change is none
 
 
 @dataclass(frozen=True)
@@ -52,11 +54,38 @@ def study(hexapod: Hexapod, f: StaticsFindings) -> Study:
         files={
             "statics.png": drawing.draw,
             "statics.csv": lambda: table(f),
-            "statics.nc": lambda: f.cases,
+            "statics-stiffness.csv": lambda: matrices(f),
+            "statics.nc": lambda: _named(f),
             "statics.html": None,
         },
-        dataset=f.cases,
+        dataset=_named(f),
     )
+
+
+def _named(f: StaticsFindings) -> xr.Dataset:
+    """The cases with their names, and their elevations where they have some."""
+    named = f.cases.assign_coords(name=("case", f.names))
+    if f.elevation is None:
+        return named
+    return named.assign_coords(elevation=("case", f.elevation, in_unit("rad", "elevation")))
+
+
+def _least(f: StaticsFindings) -> tuple[float, float]:
+    """The displacement (m) and the force (N) that rounding of a leg's length makes of nothing."""
+    length = _ROUNDING * float(np.nanmax(f.cases.leg_length.values, initial=0.0))
+    return length, length * float(np.nanmax(f.cases.attrs["leg_stiffness"], initial=0.0))
+
+
+def _forces(f: StaticsFindings) -> Array:
+    """Leg forces without rounding, which would be told as a force that turns its sign."""
+    force = without_rounding(f.cases.leg_force.values)
+    return np.where(np.abs(force) < _least(f)[1], 0.0, force)
+
+
+def _moved(f: StaticsFindings, name: str) -> Array:
+    """Deflection or rotation without rounding."""
+    values = without_rounding(f.cases[name].values)
+    return np.where(np.abs(values) < _least(f)[0], 0.0, values)
 
 
 def _degrees(angle: Array) -> Array:
@@ -87,11 +116,33 @@ def table(f: StaticsFindings) -> str:
     return written_table(columns)
 
 
+def matrices(f: StaticsFindings) -> str:
+    """Stiffness and compliance at the point in each case as the text of a CSV file: a line for each number."""
+    size, count = len(AXES), len(f.names)
+    columns: dict[str, list[Any]] = {
+        "case": [name for name in f.names for _ in range(2 * size**2)],
+        "matrix": [name for name in ("stiffness", "compliance") for _ in range(size**2)] * count,
+        "of": [axis for axis in AXES for _ in AXES] * 2 * count,
+        "by": list(AXES) * 2 * size * count,
+        "value": np.stack([f.cases[name].values for name in ("stiffness", "compliance")], axis=1).ravel().tolist(),
+    }
+    moves: dict[str, tuple[Unit, Unit, Unit, Unit]] = {
+        "stiffness": ("N", "N m", "m", "rad"),
+        "compliance": ("m", "rad", "N", "N m"),
+    }
+    units = []
+    for name, of, by in zip(columns["matrix"], columns["of"], columns["by"], strict=True):
+        linear, angular, below, turned = moves[name]
+        under = unit_of(by, below, turned)
+        units.append(f"{unit_of(of, linear, angular)}/{f'({under})' if ' ' in under else under}")
+    return written_table({name: np.array(values) for name, values in {**columns, "unit": units}.items()})
+
+
 def reversals(f: StaticsFindings) -> list[tuple[str, list[float]]]:
     """Legs whose force changes between push and pull, and the elevations (degrees) between cases at which it does."""
     found = []
     for k, leg in enumerate(LEGS):
-        force = f.cases.leg_force.values[:, k]
+        force = _forces(f)[:, k]
         known = force[np.isfinite(force)]
         if not (known.size and known.min() < 0 < known.max()):
             continue
@@ -116,8 +167,8 @@ def _worst(f: StaticsFindings) -> int:
 
 
 def _rows(f: StaticsFindings) -> list[Row]:
-    force, worst = f.cases.leg_force.values, _worst(f)
-    size = float(np.linalg.norm(f.cases.deflection.values[worst]))
+    force, worst = _forces(f), _worst(f)
+    size = float(np.linalg.norm(_moved(f, "deflection")[worst]))
     least, most = (float(reduce(force)) if np.isfinite(force).any() else np.nan for reduce in (np.nanmin, np.nanmax))
     return [
         Row("Leg forces from", least, "N"),
@@ -131,18 +182,23 @@ def _cases(f: StaticsFindings) -> Table:
     columns = [Column("case", f.names)]
     if f.elevation is not None:
         columns.append(Column("elevation", _degrees(f.elevation), "deg"))
-    moved, turned = (1e6 * without_rounding(c[name].values) for name in ("deflection", "rotation"))
+    moved, turned = (1e6 * _moved(f, name) for name in ("deflection", "rotation"))
     columns += [Column(axis, moved[:, k], "\u00b5m") for k, axis in enumerate("xyz")]
     columns += [Column(f"about {axis}", turned[:, k], "\u00b5rad") for k, axis in enumerate("xyz")]
-    force = c.leg_force.values
+    force = _forces(f)
     columns.append(Column("least leg force", force.min(axis=1), "N", marked=~c.force_within_limits.values))
     columns.append(Column("largest leg force", force.max(axis=1), "N", marked=~c.force_within_limits.values))
-    return Table(columns, "Deflection and rotation of the point, base axes. Leg forces are positive in compression.")
+    return Table(
+        columns,
+        "Deflection and rotation of the point, base axes. Leg forces are positive in compression.",
+        style="narrow",
+    )
 
 
 def _legs(f: StaticsFindings) -> Table:
-    force, told = f.cases.leg_force.values, dict(reversals(f))
+    force, told = _forces(f), dict(reversals(f))
     moment = np.linalg.norm(f.cases.leg_moment.values, axis=-1)
+    moment[moment < _least(f)[1] * f.cases.leg_length.values] = 0.0
     at = [
         DASH if leg not in told else ", ".join(f"{brief(place)} deg" for place in told[leg]) or "between cases"
         for leg in LEGS
@@ -170,7 +226,7 @@ def _matrix(f: StaticsFindings, name: str) -> Table:
     values = without_rounding(f.cases[name].values[f.reference or 0])
     units = ("N/m, N; N, N m/rad" if name == "stiffness" else "m/N, 1/N; 1/N, rad/(N m)").replace("; ", " and ")
     columns = [Column("", list(AXES)), *(Column(axis, values[:, k]) for k, axis in enumerate(AXES))]
-    return Table(columns, f"In {units}.", title=name.capitalize(), on="page")
+    return Table(columns, f"In {units}.", title=name.capitalize())
 
 
 def _worst_words(f: StaticsFindings) -> str:
@@ -194,8 +250,10 @@ def _sensitivity(f: StaticsFindings) -> Table:
     rows += [(f"mass centre along {axis}, 1 mm", centre[:, i]) for i, axis in enumerate("xyz")]
     columns = [Column("change", [name for name, _ in rows])]
     for i, axis in enumerate(AXES):
-        columns.append(Column(axis, [1e6 * values[i] for _, values in rows], "\u00b5m" if i < 3 else "\u00b5rad"))
-    return Table(columns, on="page")
+        columns.append(
+            Column(axis, [1e6 * without_rounding(values)[i] for _, values in rows], "\u00b5m" if i < 3 else "\u00b5rad")
+        )
+    return Table(columns, on="page", style="narrow")
 
 
 def _cautions(hexapod: Hexapod, f: StaticsFindings) -> list[Caution]:
