@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _passing: set[Path] = set()  # files and directories that are there for a moment only
+_QUIET, _PATIENCE = 0.5, 10.0  # s: how long nothing more comes, and how long that is waited for
 #: Words are text in files, and the same figure is the same file.
 _AS_TEXT = {"svg.fonttype": "none", "svg.hashsalt": "flexapod", "pdf.fonttype": 42, "ps.fonttype": 42}
 #: Endings of figures that Matplotlib writes.
@@ -49,11 +50,16 @@ def passing(path: Path) -> Iterator[Path]:
 
 
 def remove_passing() -> None:
-    """Take away what an interrupt left: it came before it was to be removed, or while another thread wrote in it."""
-    for pause in (0.0, 0.05, 0.2) if _passing else ():
-        time.sleep(pause)
-        for path in _passing:
+    """Take away what an interrupt left: it came before it was to be removed, or while another thread wrote in it.
+
+    Such a thread makes its folder anew; it has ended when nothing has come for a while.
+    """
+    begun = quiet_since = time.monotonic()
+    while _passing and time.monotonic() < min(quiet_since + _QUIET, begun + _PATIENCE):
+        for path in [path for path in _passing if os.path.lexists(path)]:
             _remove(path)
+            quiet_since = time.monotonic()
+        time.sleep(0.01)
     _passing.clear()
 
 

@@ -6,12 +6,11 @@ Each ends with exit code 0 or 2, says in a sentence why, and never hangs. FLEXAP
 import contextlib
 import io
 import re
-import shutil
 import warnings
 
 import click
-import numpy as np
 import pytest
+from tests.attack import files as attacked_files
 from tests.attack.bounded import limited, rounds, tried
 
 from flexapod.cli import COMMANDS, group, main
@@ -81,12 +80,12 @@ REAL = ("-1", "0", "-0.0", "1", "1e-320", "1e-30", "1e30", "1e31", "1e308", "1e3
 AMOUNTS = (*REAL, "1um", "1kg", "5Hz", "10ms", "1e300s", "-1deg", "3g", "1 m", "1m/s2", "0s", "1nN")
 OUTPUTS = ("", ".", "..", "/", "file", "file/x", "nowhere/x.png", "x" * 400, "a.foo", "a.zarr", "a.csv", "a.nc", "a.svg",
            "a.mp4", "a.gif", "a\0b", "/proc/x", "-", "\u03c9.png", "%41.png", "folder")  # fmt: skip
-INPUTS = ("", ".", "nothing.csv", "empty.csv", "way.csv", "lengths.csv", "odd.csv", "long.csv", "bytes.csv", "none.npy",
-          "objects.npy", "fields.npy", "complex.npy", "zip.npy", "bad.toml", "file", "a\0b", "folder")  # fmt: skip
+INPUTS = (*attacked_files.NAMES, *[attacked_files.DAMAGED] * len(attacked_files.NAMES))
 DESIGNS = (
     "",
     "nothing",
     "cubic-isolator",
+    "full.toml",
     "bad.toml",
     "deep.toml",
     "bytes.csv",
@@ -108,26 +107,7 @@ PYTHON = re.compile(
 def files(tmp_path, monkeypatch):
     """A folder with files to be read, right and wrong."""
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "folder").mkdir()
-    texts = {
-        "file": "x",
-        "empty.csv": "",
-        "way.csv": "t,x,y,z,roll,pitch,yaw\n0,0,0,0.89,0,0,0\n1,0,0,0.9,0,0,0\n",
-        "lengths.csv": "leg1,leg2,leg3,leg4,leg5,leg6\n" + ",".join(["0.12"] * 6) + "\n",
-        "odd.csv": "t;x;t\n1;2\n\u00b2;;;\n",
-        "long.csv": "t,x\n0," + "1" * 200_000 + "\n",
-        "bad.toml": "name = 3\n[legs]\nstiffness = 'x'\n",
-        "deep.toml": ".".join(["a"] * 2000) + "=1\n",
-    }
-    for name, text in texts.items():
-        (tmp_path / name).write_text(text, encoding="utf-8")
-    (tmp_path / "bytes.csv").write_bytes(bytes(range(256)))
-    (tmp_path / "none.npy").write_bytes(b"")
-    np.save(tmp_path / "objects.npy", np.array([{}]), allow_pickle=True)
-    np.save(tmp_path / "fields.npy", np.zeros(3, dtype=[("x", "f8")]))
-    np.save(tmp_path / "complex.npy", np.ones((2, 6)) * 1j)
-    np.savez(tmp_path / "zip.npz", a=np.ones(6))
-    shutil.move(tmp_path / "zip.npz", tmp_path / "zip.npy")
+    attacked_files.write(tmp_path)
     return tmp_path
 
 
@@ -160,11 +140,23 @@ def _values(kind, draw):
     return [draw.choice(TEXTS)]
 
 
+#: What the machine with everything takes in place of what others do.
+_FULL = dict.fromkeys(["cubic-isolator", "precision-positioner", "mukherjee-ii", "mukherjee-i"], "full.toml") | {
+    "way.csv": "from_home.csv", "lengths.csv": "full_lengths.csv", "1Hz": "80Hz", "0.5": "0.1", "legs.stiffness=10%": "platform.mass=10%",
+}  # fmt: skip
+
+
+def _of_full(line):
+    """The same command line for the machine with everything."""
+    line = [_FULL.get(word, word) for word in line]
+    return [*line, "--from-home"] if "from_home.csv" in line else line
+
+
 def _line(name, draw):
     """The right command line of a command with some options replaced or added."""
     context = click.Context(group)
     command = group.get_command(context, name)
-    line = list(RIGHT[name])
+    line = _of_full(list(RIGHT[name])) if draw.random() < 0.5 else list(RIGHT[name])
     places = [k for k, param in enumerate(p for p in command.params if isinstance(p, click.Argument))]
     for param in draw.sample(command.params, k=min(draw.choice((1, 1, 1, 2, 3)), len(command.params))):
         if isinstance(param, click.Argument):
@@ -208,8 +200,11 @@ def test_every_command_is_attacked():
 
 @pytest.mark.parametrize("name", sorted(COMMANDS))
 def test_bad_command_lines_end_in_a_sentence(name, files, unserved):
-    assert _run([name, *RIGHT[name]])[0] == 0, "the right command line"
+    right, full = RIGHT[name], _of_full(RIGHT[name])
+    for line in (right, full) if full != right else (right,):
+        assert _run([name, *line])[0] == 0, f"{name} {line} is right"
     for draw in rounds(0.9 / len(COMMANDS), name):
+        attacked_files.damage(files, draw)
         line = _line(name, draw)
         try:
             code, out, err = _run(line)

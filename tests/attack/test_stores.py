@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tests.attack.bounded import AMONG_TESTS, SECONDS, tried
+from tests.attack.bounded import AMONG_TESTS, SECONDS, SEED, tried
 from tests.helpers.stores import BOX, I, content
 
 import flexapod as fx
@@ -148,7 +148,7 @@ def test_damage_is_never_taken_for_numbers(attacked, folder, monkeypatch):
     seed, seen = 0, Counter()
     most = 30 if AMONG_TESTS else np.inf
     while (time.monotonic() < end or seed < 10) and seed < most:
-        chance = random.Random(f"{sorted(attacked.quantities)}{seed}")
+        chance = random.Random(f"{SEED} {sorted(attacked.quantities)} {seed}")
         source = chance.choice([attacked.whole, attacked.whole, attacked.part])
         path = folder / f"{seed}.zarr"
         shutil.copytree(source, path)
@@ -160,7 +160,7 @@ def test_damage_is_never_taken_for_numbers(attacked, folder, monkeypatch):
             seen[attacked.check_reading(path, source)] += 1
             seen[attacked.check_resuming(path)] += 1
         except Exception as error:
-            raise AssertionError(f"seed {seed} of {sorted(attacked.quantities)}: {error!r}") from error
+            raise AssertionError(f"{SEED}, {seed} of {sorted(attacked.quantities)}: {error!r}") from error
         shutil.rmtree(path, ignore_errors=True)
         Path(path).unlink(missing_ok=True)
         seed += 1

@@ -157,9 +157,16 @@ def test_what_another_thread_puts_back_after_an_interrupt_is_removed(tmp_path):
     making = tmp_path / ".making"
     with pytest.raises(KeyboardInterrupt), output_files.passing(making):
         raise KeyboardInterrupt
-    making.mkdir()
-    (making / "late").write_text("x")
+
+    def write_late():
+        for _ in range(5):  # each later than the one before has been removed
+            time.sleep(0.1)
+            making.mkdir(exist_ok=True)
+
+    late = threading.Thread(target=write_late)
+    late.start()
     output_files.remove_passing()
+    late.join()
     assert list(tmp_path.iterdir()) == []
 
 

@@ -195,6 +195,8 @@ def test_limits_of_push_and_pull(machine):
         ({"force": [1, 2]}, fx.ArgumentError, "force has shape"),
         ({"gravity": [0, 0, np.nan]}, fx.ArgumentError, "gravity holds NaN"),
         ({"reference": 1}, fx.ArgumentError, "number of one of 1 cases"),
+        ({"reference": True}, fx.ArgumentError, "number of one of 1 cases"),
+        ({"reference": np.zeros((2, 2))}, fx.ArgumentError, "number of one of 1 cases"),
         ({"axes": "world"}, fx.ArgumentError, "axes is 'world'"),
         ({"point": [0, 0]}, fx.ArgumentError, "point has shape"),
         ({"joint": "ball"}, fx.ArgumentError, "joint is 'ball'"),

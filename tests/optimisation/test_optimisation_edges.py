@@ -3,6 +3,7 @@
 import json
 import os
 import socket
+import sqlite3
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -13,7 +14,7 @@ from tests.helpers.plain import plain_machine
 import flexapod as fx
 from flexapod.design.layout import PLACES
 from flexapod.errors import InfeasibleError
-from flexapod.optimisation import constraint_quantities, design_search, pareto, verification
+from flexapod.optimisation import constraint_quantities, design_search, pareto, study_file, verification
 from flexapod.optimisation import local_search as finishing
 from flexapod.optimisation.global_search import Study, _at_work, _conflict
 from flexapod.optimisation.local_search import finish
@@ -287,6 +288,15 @@ def test_a_broken_study_file_is_told(positioner, tmp_path):
     file.write_bytes(b"SQLite format 3\0" + b"x" * 4096)
     with pytest.raises(fx.errors.OutputError, match=r"search\.db cannot be used as a study file"):
         Study(problem(positioner, heavier()), file)
+
+
+def test_a_full_disk_is_told_where_sqlite_does_not_say_so(tmp_path, monkeypatch):
+    pytest.importorskip("optuna")
+    rooms = iter((2**30, 4096))
+    monkeypatch.setattr("shutil.disk_usage", lambda place: SimpleNamespace(free=next(rooms)))
+    for words in ("used as a study file: disk I/O error", r"used as a study file: its disk is full \(disk I/O error\)"):
+        with pytest.raises(fx.errors.OutputError, match=words), study_file.told(tmp_path / "s.db"):
+            raise sqlite3.OperationalError("disk I/O error")
 
 
 def test_a_study_of_a_later_version_is_not_taken_for_ours(positioner):

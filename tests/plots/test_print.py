@@ -170,11 +170,17 @@ def test_options_of_figures_without_figures_are_refused(run):
         assert f"{options[0]} is of figures, and none is written. Give --out as well." in err
     assert run("statics", "motion-base", "--width", "-1", "--out", ".")[0] == 2
     assert run("statics", "motion-base", "--font-size", "0", "--out", ".")[0] == 2
+    code, _, err = run("statics", "nothing", "--width", "10m", "--out", ".")  # before anything else
+    assert code == 2
+    assert "width is 10 m; it must be from 0.01 to 1 m" in err
 
 
 def test_bad_arguments_of_print():
     for given in ({"width": 0.0}, {"width": float("nan")}, {"font_size": -1}):
         with pytest.raises(fx.ArgumentError, match="must be finite and > 0"), plots.for_print(**given):
+            pass
+    for given in ({"width": 1e30}, {"width": 1.01}, {"width": 1e-9}, {"font_size": 101.0}):
+        with pytest.raises(fx.ArgumentError, match="it must be from"), plots.for_print(**given):
             pass
     with pytest.raises(fx.errors.OutputError, match="no format of figures"):
         plots.save(plots.frequencies(np.arange(1.0, 7.0)), "six.doc")

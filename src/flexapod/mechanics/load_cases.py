@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from flexapod.checks import number, numbers, one_of
 from flexapod.conventions import AXES, LEGS, Array, JointModel, Unit, in_mixed_units, in_unit
 from flexapod.design.hexapod import Hexapod
-from flexapod.errors import ArgumentError, KinematicsError, PoseError, SingularPoseError
+from flexapod.errors import ArgumentError, KinematicsError, PoseError, SingularPoseError, shown
 from flexapod.mechanics.inputs import ZERO, PointLike, as_hexapod, as_joint, as_point, point_attributes, pose_or_home
 from flexapod.mechanics.load_case import Answer, Case, answer, unanswered
 from flexapod.mechanics.load_limits import load_excess
@@ -183,8 +183,8 @@ def load_cases(
     one_of(axes, "axes", AXES_OF_LOADS)
     centre, cut = as_point(hexapod, point), number(section, "section")
     count = len(given.gravity)
-    if reference is not None and (isinstance(reference, bool) or reference not in range(count)):
-        raise ArgumentError(f"reference is {reference!r}; it must be the number of one of {count} cases, from 0.")
+    if reference is not None and not (_is_whole(reference) and 0 <= reference < count):
+        raise ArgumentError(f"reference is {shown(reference)}; it must be the number of one of {count} cases, from 0.")
     machines: dict[bytes, Hexapod] = {}
     answers = []
     for k in range(count):
@@ -195,6 +195,10 @@ def load_cases(
         except (SingularPoseError, KinematicsError, PoseError) as error:
             answers.append(unanswered(str(error)))
     return _dataset(hexapod, given, answers).assign_attrs(point_attributes(hexapod, point))
+
+
+def _is_whole(value: object) -> bool:
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)
 
 
 def _spread(hexapod: Hexapod, pose: PoseLike | None, gravity: ArrayLike | None, *loads: ArrayLike) -> _Given:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sqlite3
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
@@ -14,6 +15,7 @@ from flexapod.errors import OutputError
 from flexapod.optional import needed
 from flexapod.output_files import passing
 
+_ROOM = 64 * 1024  # bytes: twice what SQLite adds to the file of its shared memory
 _BEGINS = b"SQLite format 3"
 
 
@@ -39,11 +41,20 @@ def told(file: Path | None) -> Iterator[None]:
         cause: BaseException = error
         while not isinstance(cause, sqlite3.Error) and cause.__cause__ is not None:
             cause = cause.__cause__
+        words = f"its disk is full ({cause})" if _is_full(file) else str(cause)
         raise OutputError(
-            f"{file} cannot be used as a study file: {cause}. Trials that are finished stay in it, and in "
+            f"{file} cannot be used as a study file: {words}. Trials that are finished stay in it, and in "
             f"{file.name}-wal where that is left beside it: make room, or wait for who holds it, and give the same "
             "command again; or choose another place."
         ) from error
+
+
+def _is_full(file: Path) -> bool:
+    """Whether a disk has no room for what SQLite adds at a time; some of its errors do not say so."""
+    try:
+        return shutil.disk_usage(file.parent).free < _ROOM
+    except OSError:
+        return False
 
 
 def open_storage(file: Path | None) -> Any:

@@ -10,6 +10,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from flexapod.checks import positive
+from flexapod.errors import ArgumentError
 from flexapod.output_files import write_figure
 from flexapod.plots.style import PRINTING, Printing, changed, figure_of
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from flexapod.plots.style import Drawn
 
 INCH = 0.0254
+_WIDTHS = 0.01, 1.0  # m: from where words have room to where the pixels of print take gigabytes
+_SIZES = 1.0, 100.0  # points
 _DPI = {"screen": 160, "vectors": 300, "print": 600}  # of pixels; among vectors: of what is shaded
 _FONT = 8.0  # points, of figures with a width
 _LINE = 1.5  # points: Matplotlib's own width of lines, beside words of 10
@@ -47,7 +50,7 @@ def for_print(*, width: float | None = None, font_size: float | None = None, tit
     Raises
     ------
     ArgumentError
-        If a width or size is not above zero.
+        If the width is not from 10 mm to 1 m, or the size not from 1 to 100 points.
 
     See Also
     --------
@@ -66,10 +69,10 @@ def for_print(*, width: float | None = None, font_size: float | None = None, tit
     """
     from matplotlib import rc_context
 
-    inches = None if width is None else positive(width, "width", "m") / INCH
+    inches = None if width is None else _within(width, "width", "m", _WIDTHS) / INCH
     words: Any = {}
     if font_size is not None:
-        words["font.size"] = positive(font_size, "font_size", "pt")
+        words["font.size"] = _within(font_size, "font_size", "pt", _SIZES)
     elif inches is not None and changed("font.size") is None:
         words["font.size"] = _FONT
     if words and changed("lines.linewidth") is None:
@@ -80,6 +83,13 @@ def for_print(*, width: float | None = None, font_size: float | None = None, tit
             yield
     finally:
         PRINTING.reset(token)
+
+
+def _within(value: float, name: str, unit: str, ends: tuple[float, float]) -> float:
+    found, (least, most) = positive(value, name, unit), ends
+    if not least <= found <= most:
+        raise ArgumentError(f"{name} is {found:.6g} {unit}; it must be from {least:g} to {most:g} {unit}.")
+    return found
 
 
 def save(made: Drawn, path: str | PathLike[str], *, design: str = "") -> None:

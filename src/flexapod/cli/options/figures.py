@@ -39,6 +39,9 @@ def options(needed: str = "") -> Callable[[Any], Any]:
             if asked and needed and given[needed.lstrip("-")] is None:
                 option = {"figure_format": "--format"}.get(asked[0], f"--{asked[0].replace('_', '-')}")
                 raise click.UsageError(f"{option} is of figures, and none is written. Give {needed} as well.")
+            if asked:
+                with printed():  # a width that cannot be is told before anything is computed
+                    pass
             return function(*args, **given)
 
         return _stack(checked)
