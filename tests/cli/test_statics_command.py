@@ -10,7 +10,7 @@ import xarray as xr
 
 import flexapod as fx
 from flexapod.mechanics import gravity_at
-from flexapod.plots.statics import together
+from flexapod.plots.statics import _together
 
 ELEVATIONS = np.array([90.0, 75, 60, 45, 30, 15])
 
@@ -114,7 +114,7 @@ def test_curves_that_coincide_are_drawn_as_one():
     gravity = gravity_at(np.radians(ELEVATIONS), np.radians(30))
     cases = fx.load_cases(fx.load("motion-base"), gravity=gravity, reference=0)
     force = cases.leg_force.values
-    groups = together(force)
+    groups = _together(force)
     assert sorted(leg for legs in groups for leg in legs) == list(range(6))
     assert len(groups) < 6  # the machine is symmetric about the slope
     for legs in groups:

@@ -17,7 +17,7 @@ from flexapod.plots.style import FAINT, SIX, TRIAD, dress, entitle, legend, lege
 _APART = 3e-3  # of what a panel spans: curves nearer than that lie under one another
 
 
-def together(values: Array) -> list[list[int]]:
+def _together(values: Array) -> list[list[int]]:
     """The columns of values (n, k) in groups that would hide each other in a panel, each in the order of the first."""
     span = np.ptp(values[np.isfinite(values)]) if np.isfinite(values).any() else 0.0
     groups: list[list[int]] = []
@@ -59,7 +59,7 @@ def load_cases(
     page, (forces, moved, turned) = stage(figure, (12.0, 4.6), (1, 3))
     over = found.case.values + 1 if elevation is None else np.degrees(elevation)
     marks: dict[str, Any] = {"marker": "o", "ms": 4, "lw": 0} if elevation is None else {"lw": wide(1.4)}
-    for legs in together(found.leg_force.values):
+    for legs in _together(found.leg_force.values):
         i, named = legs[0], ", ".join(str(leg + 1) for leg in legs)
         style = {"color": SIX[i], "ls": STYLES[i], "label": f"leg{'s' * (len(legs) > 1)} {named}", **marks}
         forces.plot(over, found.leg_force.values[:, i], **style)
