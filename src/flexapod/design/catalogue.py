@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 from itertools import takewhile
 from typing import NamedTuple
 
 from flexapod.design.design_file import find, packaged_designs
+from flexapod.design.hexapod import Hexapod
+from flexapod.design.loading import load
 
 
 class Description(NamedTuple):
@@ -56,6 +59,22 @@ def catalogue(words: Iterable[str] = ()) -> dict[str, Description]:
         if all(word.lower() in text for word in words):
             found[name] = one
     return found
+
+
+def assumed_of(hexapod: Hexapod) -> str:
+    """What a packaged design, or one that was made of it and has its name, assumes, as a sentence; "" for others."""
+    return _assumed(hexapod.name, hexapod.digest)
+
+
+@lru_cache(maxsize=64)
+def _assumed(name: str, digest: str) -> str:
+    if name not in packaged_designs():
+        return ""
+    assumed = description(find(name).read_text(encoding="utf-8")).assumed
+    if not assumed:
+        return ""
+    which = "" if load(name).digest == digest else ", from which this design differs"
+    return f"Assumed in the packaged design {name}{which}, for want of data: {assumed}"
 
 
 def _is_comment(line: str) -> bool:

@@ -74,8 +74,9 @@ def _head(study: Study) -> str:
 
 
 def _beware(study: Study) -> str:
-    """Cautions in a box; nothing where there are none."""
-    items = "".join(f"<li>{escape(caution.text)}</li>" for caution in study.cautions)
+    """Cautions, and what the design assumes, in a box; nothing where there are none."""
+    texts = [*(caution.text for caution in study.cautions), study.assumed]
+    items = "".join(f"<li>{escape(text)}</li>" for text in filter(None, texts))
     return f'<section class="warnings"><h3>To beware of</h3><ul>{items}</ul></section>' if items else ""
 
 

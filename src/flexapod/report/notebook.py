@@ -18,6 +18,7 @@ import numpy as np
 
 from flexapod import plots
 from flexapod.conventions import TWO_PI, JointModel
+from flexapod.design.catalogue import assumed_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.at_rest import pose_state
 from flexapod.mechanics.cautions import other_than_vibration
@@ -82,7 +83,8 @@ def _hexapod(hexapod: Hexapod) -> str:
         picture = _drawing(partial(plots.machine, hexapod), f"{hexapod.name} at home")
     listed = "".join(_table(table) for table in inputs.section(hexapod).items if isinstance(table, Table))
     facts = f"{hexapod.platform_mass:.6g} kg on the platform"
-    return f"<b>{escape(hexapod.name)}</b>, {facts}{picture}<details><summary>Inputs</summary>{listed}</details>"
+    told = f"<p>{escape(assumed)}</p>" if (assumed := assumed_of(hexapod)) else ""
+    return f"<b>{escape(hexapod.name)}</b>, {facts}{picture}{told}<details><summary>Inputs</summary>{listed}</details>"
 
 
 def _modes(modes: NaturalModes | DampedModes) -> str:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import TYPE_CHECKING, Any, Literal
 
+from flexapod.design.catalogue import assumed_of
 from flexapod.mechanics.cautions import Caution
 
 if TYPE_CHECKING:
@@ -115,8 +116,17 @@ class Study:
     dataset: xr.Dataset | None = None
 
     def to_dict(self) -> dict[str, Any]:
-        """The results by name, and the cautions as `warnings`; arrays stay arrays, what is not available is None."""
-        return {**self.data, "warnings": [caution.text for caution in self.cautions]}
+        """The results by name, and the cautions as `warnings`; arrays stay arrays, what is not available is None.
+
+        Of a packaged design for which numbers are assumed, `assumed` says which.
+        """
+        told = {**self.data, "warnings": [caution.text for caution in self.cautions]}
+        return {**told, "assumed": self.assumed} if self.assumed else told
+
+    @property
+    def assumed(self) -> str:
+        """What the design assumes, for want of data; "" where that is nothing."""
+        return assumed_of(self.hexapod)
 
     def to_dataset(self) -> xr.Dataset | None:
         """The results as a Dataset, where the study has one."""

@@ -30,6 +30,8 @@ def show(study: Study, out: Console) -> None:
                 _item(item, section.title, out)
     for caution in study.cautions:
         out.print(Text.assemble(("Warning: ", "bold yellow"), caution.text), soft_wrap=True)
+    if study.assumed:
+        out.print(Text(study.assumed), soft_wrap=True)
 
 
 def _words(row: Row) -> str:

@@ -25,10 +25,12 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
     Exit code 2 means that DESIGN is no hexapod; warnings and exceeded limits are printed and leave it at 0.
     """
     from flexapod.cli.output import read_back
+    from flexapod.design.catalogue import assumed_of
 
     hexapod = common.load_design(design, changes)
     where = common.pose_or_none(hexapod, pose)
     found = {"design": hexapod.name, "digest": hexapod.digest, "warnings": hexapod.warnings, **_at(hexapod, where)}
+    found["assumed"] = assumed_of(hexapod)
     found["ok"] = not (found["warnings"] or found["cautions"] or found["limits_exceeded"])
     if as_json:
         found |= {"values": hexapod.values(), "radii_of_gyration_m": read_back.gyration(hexapod)}
@@ -84,5 +86,7 @@ def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:
             f"  legs {lengths.min():.4g} to {lengths.max():.4g} m, axes at least {found['leg_distance_m']:.4g} m apart"
         )
         out.print(f"  condition number of H {found['condition_number']:.4g} (in metres)")
+    if found["assumed"]:
+        out.print(found["assumed"], markup=False, soft_wrap=True)
     common.print_warnings((*found["cautions"], *found["warnings"], *(found["limits_exceeded"] or ())))
     out.print("[bold green]OK[/bold green]" if found["ok"] else "A valid design, with warnings.")

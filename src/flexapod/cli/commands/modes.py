@@ -33,6 +33,7 @@ def command(
 
     DESIGN is a packaged design's name (see `flexapod designs`) or the path of a .toml file.
     """
+    from flexapod.design.catalogue import assumed_of
     from flexapod.mechanics import kinematics, modes
     from flexapod.mechanics.at_rest import pose_state
     from flexapod.mechanics.inputs import as_point, point_attributes
@@ -72,6 +73,7 @@ def command(
                 "mode_shapes": moved,
                 "descriptions": descriptions,
                 "warnings": warnings,
+                "assumed": assumed_of(hexapod),
             }
         )
         return
@@ -81,6 +83,8 @@ def command(
     click.echo(f"Condition number of H: {condition:.6g}{scaled}")
     click.echo("Leg lengths: " + "  ".join(f"{length:.6g}" for length in lengths) + " m")
     common.print_warnings(warnings)
+    if assumed := assumed_of(hexapod):
+        click.echo(assumed)
 
 
 def _show(title: str, omega: Array, descriptions: list[str]) -> None:
