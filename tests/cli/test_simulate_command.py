@@ -226,12 +226,13 @@ def test_a_recording_gives_the_duration(capsys, tmp_path):
         ("base", "yawoffset", (), "begins at 90 degrees in its first row"),
         ("base", "acc2", (), "has a mean of 9.81 m/s2, which holds gravity, and drifts by 19.5 m within 1.99 s"),
         ("base", "offset", ("--start", "carried"), None),
-        ("base", "offset", ("--detrend", "first"), None),
-        ("base", "yawoffset", ("--detrend", "first"), None),
+        ("base", "offset", ("--detrend", "first"), "begins in motion, z with 0.006283 m/s, up to 100% of the greatest"),
+        ("base", "yawoffset", ("--detrend", "first"), "begins in motion, yaw with 0.06283 degrees/s"),
         ("base", "wrap", ("--start", "carried"), None),
         ("base", "wrap2", ("--start", "carried"), None),
         ("base", "nowrap2", ("--start", "carried"), None),
-        ("leg", "leglen", ("--detrend", "first"), None),
+        ("leg", "leglen", ("--detrend", "first"), "of leg_command begin in motion, 1 with 0.01 m/s, 2 with"),
+        ("base", "offset", ("--detrend", "first", "--ramp", "100ms"), None),
     ],
 )
 def test_recordings_as_people_have_them(capsys, use, name, options, words):

@@ -70,6 +70,7 @@ def test_a_bad_row_is_told_by_its_line(tmp_path):
 @pytest.mark.parametrize(
     ("unit", "use"), [("mm", "motion"), ("N", "force"), ("Nm", "moment"), ("kN·m", "moment"), ("g", "motion")]
 )
+@pytest.mark.filterwarnings("ignore:.*begins in motion")
 def test_a_column_drives_what_its_unit_can_drive(tmp_path, unit, use):
     rows = "\n".join(f"{0.01 * i:g},{1e-3 * np.sin(i):.6f}" for i in range(20))
     found = fx.read_time_series(written(tmp_path / "a.csv", f"time,x_{unit}\n{rows}"))

@@ -556,7 +556,7 @@ def test_velocity_and_acceleration_are_those_seen_from_the_base():
 def test_a_recording_gives_the_duration():
     hexapod, pose = machine()
     times = np.arange(0.0, 0.01, 1e-5)
-    record = fx.excitation.time_series(times, 1e-9 * np.sin(100 * times), "z")
+    record = fx.excitation.time_series(times, 1e-9 * (1 - np.cos(100 * times)), "z")
     for duration in (None, 0.01, 0.009995):
         dataset = fx.simulate(hexapod, pose, base_motion=record, duration=duration, samples=3)
         assert dataset.time.values[-1] == pytest.approx(times[-1], rel=1e-15)
@@ -593,15 +593,38 @@ def test_limits_of_many_runs_are_told_once():
 def test_coarse_recording_warns():
     hexapod, pose = machine()
     times = np.linspace(0, 0.1, 101)
-    record = fx.excitation.time_series(times, 1e-6 * np.sin(100 * times), "z")
+    record = fx.excitation.time_series(times, 1e-6 * (1 - np.cos(100 * times)), "z")
     with pytest.warns(UserWarning, match=r"sampled every 0\.001 s and holds nothing above 3142 rad/s") as caught:
         dataset = fx.simulate(hexapod, pose, base_motion=record, duration=0.05)
     assert caught[0].filename == __file__
     assert len(dataset.attrs["warnings"]) == 1
     fine = np.linspace(0, 0.1, 1001)
     fx.simulate(
-        hexapod, pose, base_motion=fx.excitation.time_series(fine, np.sin(100 * fine) * 1e-6, "z"), duration=0.05
+        hexapod, pose, base_motion=fx.excitation.time_series(fine, 1e-6 - np.cos(100 * fine) * 1e-6, "z"), duration=0.05
     )
+
+
+@pytest.mark.filterwarnings("ignore:the recording")
+def test_recordings_of_several_channels_are_told_of_once():
+    """Of all six coarse ones one sentence, and one of those that begin in motion, with its speed."""
+    hexapod, pose = machine()
+    times = np.linspace(0, 0.1, 101)
+    record = sum(
+        (
+            fx.excitation.time_series(
+                times, 1e-6 * (np.sin(90 * times) if axis == "y" else 1 - np.cos(90 * times)), axis
+            )
+            for axis in fx.conventions.AXES
+        ),
+        fx.Excitation(),
+    )
+    first, second = fx.simulate(hexapod, pose, base_motion=record, duration=0.01, samples=3).attrs["warnings"]
+    assert first.startswith(
+        "the recordings of base_motion x, y, z, roll, pitch, yaw are sampled every 0.001 s and hold "
+    )
+    assert second.startswith("the recording of base_motion begins in motion, y with 9e-05 m/s, up to 100% of")
+    carried = fx.simulate(hexapod, pose, base_motion=record, duration=0.01, samples=3, start="carried")
+    assert list(carried.attrs["warnings"]) == [first]
 
 
 def test_a_quiet_recording_is_not_stepped_over():

@@ -44,6 +44,7 @@ _SIZES = {
     "figure.titlesize": 1.1,
     "axes.labelsize": 1.0,
 }
+_LEGEND = 0.15  # of a figure's height: what a legend may take of it
 LEAST = 2.0  # inches: panels narrower than this stand below one another,
 NARROW = 4.0  # inches: axes of space below this need more room for their words
 LOW = 0.68  # and are then so high, at most, beside their width
@@ -220,8 +221,17 @@ def legend_of(ax: Axes, below: bool, ncols: int) -> None:
     """What lines mean: below the axes where the figure is theirs alone, else inside them."""
     if below:
         legend_below(ax.figure, ncols)
+        _make_room(ax.figure)
     else:
         legend(ax)
+
+
+def _make_room(figure: Any) -> None:
+    """A page as narrow as it is asked to be is higher by what the legend takes of the axes."""
+    if PRINTING.get().width is None:
+        return
+    taken = figure.legends[-1].get_window_extent().height / figure.bbox.height
+    figure.set_figheight(figure.get_figheight() * (1 + max(0.0, taken - _LEGEND)))
 
 
 def legend_below(figure: Any, ncols: int, handles: Any = None, labels: Any = None) -> None:

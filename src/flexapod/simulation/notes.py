@@ -20,6 +20,7 @@ from flexapod.simulation.datasets import platform_pose
 from flexapod.simulation.run import SimulationRun
 
 JUMPS = 0.01  # of a recording's range: where it begins farther off zero, its start is a blow
+KICKS = 0.1  # of a recording's greatest speed: where it begins with more, its start is a blow
 ABSOLUTE = 0.5  # of a leg: a command that begins with more is the leg's length, and no change of it
 BALANCE = 1e-3  # of the largest of kinetic energy and works
 
@@ -29,24 +30,66 @@ def of_recordings(run: SimulationRun, highest: float) -> list[str]:
 
     Raises ArgumentError for leg lengths that are given as commands.
     """
-    notes = []
+    notes: list[str] = []
+    slow: dict[tuple[str, float], list[str]] = {}
+    kicks: dict[str, list[tuple[float, str]]] = {}
     for use, history in run.histories().items():
         for term in history.terms:
             if term.sampled > 0:
                 name = f"the recording of {use} {term.channel}" + (f" ({term.origin})" if term.origin else "")
-                notes += [f"{name} {words}." for words in _of_recording(run, use, term, name, highest)]
-    return notes
+                notes += [f"{name} {words}." for words in _of_recording(run, use, term, name)]
+                if np.pi / term.sampled < highest:
+                    slow.setdefault((use, term.sampled), []).append(term.channel)
+                if _at_rest(run, use) and (kick := _kick(term)):
+                    kicks.setdefault(use, []).append(kick)
+    sampling = (_of_sampling(run, *of, channels, highest) for of, channels in slow.items())
+    return [*sampling, *notes, *(_of_kicks(use, each) for use, each in kicks.items())]
 
 
-def _of_recording(run: SimulationRun, use: str, term: Term, name: str, highest: float) -> Iterator[str]:
-    if np.pi / term.sampled < highest:
-        yield (
-            f"is sampled every {term.sampled:.4g} s and holds nothing above {np.pi / term.sampled:.4g} rad/s, but "
-            f"{run.hexapod.name!r} has natural frequencies up to {highest:.4g} rad/s: what excites them is not in it"
-        )
+def _at_rest(run: SimulationRun, use: str) -> bool:
+    """Whether what a recording drives, base or leg, is at rest as it begins."""
+    return isinstance(run.start, str) and (use == "leg_command" or (use == "base_motion" and run.start == "rest"))
+
+
+def _kick(term: Term) -> tuple[float, str] | None:
+    """Speed with which a recording begins, over its greatest, and in words; None where it is little."""
+    rates = Excitation((term,)).evaluate(np.linspace(0.0, term.last, 2001))[1][:, _column(term)]
+    speed, fastest = float(rates[0]), float(np.abs(rates).max())
+    if abs(speed) <= KICKS * fastest:
+        return None
+    value = f"{np.degrees(speed):.4g} degrees/s" if term.channel in ROTATIONS else f"{speed:.4g} m/s"
+    return abs(speed) / fastest, f"{term.channel} with {value}"
+
+
+def _of_kicks(use: str, kicks: list[tuple[float, str]]) -> str:
+    """That recordings of one use begin in motion, all their channels at once."""
+    several, most, named = len(kicks) > 1, max(share for share, _ in kicks), ", ".join(words for _, words in kicks)
+    carried = "" if use == "leg_command" else ", or let the platform start with the base (start 'carried')"
+    return (
+        f"the recording{'s' * several} of {use} begin{'s' * (not several)} in motion, {named}, "
+        f"up to {most:.0%} of the greatest speed, and what is driven is at rest: a blow at the start, whose ringing is "
+        f"in the results. Let it rise smoothly (a ramp){carried}."
+    )
+
+
+def _column(term: Term) -> int:
+    return (LEGS if term.channel in LEGS else (*TRANSLATIONS, *ROTATIONS)).index(term.channel)
+
+
+def _of_sampling(run: SimulationRun, use: str, sampled: float, channels: list[str], highest: float) -> str:
+    """That recordings of one use lack what excites the machine, for all their channels at once."""
+    named, several = ", ".join(dict.fromkeys(channels)), len(set(channels)) > 1
+    return (
+        f"the recording{'s' * several} of {use} {named} {'are' if several else 'is'} sampled every {sampled:.4g} s and "
+        f"hold{'s' * (not several)} nothing above {np.pi / sampled:.4g} rad/s, but {run.hexapod.name!r} has natural "
+        f"frequencies up to {highest:.4g} rad/s: what excites them is not in {'them' if several else 'it'}."
+    )
+
+
+def _of_recording(run: SimulationRun, use: str, term: Term, name: str) -> Iterator[str]:
     if term.remark:
         yield term.remark
-    column = (LEGS if term.channel in LEGS else (*TRANSLATIONS, *ROTATIONS)).index(term.channel)
+    column = _column(term)
     values = Excitation((term,)).evaluate(np.linspace(0.0, term.last, 2001))[0][:, column]
     first, span = float(values[0]), float(np.ptp(values))
     if use == "leg_command":
@@ -56,8 +99,7 @@ def _of_recording(run: SimulationRun, use: str, term: Term, name: str, highest: 
                 f"{name} begins at {first:.6g} m in its first row; a command is a change of the leg's length, which is "
                 f"{length:.6g} m at rest. Take the first row out of all rows (detrend 'first')."
             )
-    rests = isinstance(run.start, str) and (run.start == "rest" or use == "leg_command")
-    if use in ("base_motion", "leg_command") and rests and abs(first) > JUMPS * span and first != 0:
+    if _at_rest(run, use) and abs(first) > JUMPS * span and first != 0:
         value = f"{np.degrees(first):.6g} degrees" if term.channel in ROTATIONS else f"{first:.6g} m"
         what = "the legs change by it at once" if use == "leg_command" else "the legs take it up at once"
         carried = "" if use == "leg_command" else ", or let the platform start with the base (start 'carried')"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import Any
 
@@ -27,6 +28,9 @@ _PLANE = (
     "Each line is a motor along the path, and each dot its RMS torque at its RMS speed. The motor drives where speed "
     "and torque have one sign, and brakes where they have not. Peak torque bounds lines, continuous torque dots."
 )
+
+
+_NUMBERS = re.compile(r"\bleg \d|[-+]?\d[\d.e+-]*")
 
 
 @dataclass(frozen=True)
@@ -94,8 +98,20 @@ def _motors(hexapod: Hexapod, f: PathFindings) -> list[Section]:
     """The motors, of a design with a drive."""
     if (motors := f.motors) is None:
         return []
-    plane = Drawing("motors", "Torque and speed of the motors", lambda: plots.path.motors(motors), _PLANE)
+    drawn, said = _hardest(motors, f.case_motors, "motor_torque")
+    plane = Drawing("motors", "Torque and speed of the motors", lambda: plots.path.motors(drawn), f"{_PLANE}{said}")
     return [Section("Motors", [plane, *path_motors.tables(hexapod, motors)])]
+
+
+def _hardest(own: xr.Dataset, cases: xr.Dataset | None, variable: str) -> tuple[xr.Dataset, str]:
+    """What a figure shows, of the payload with the largest of a variable if it is more than the design's, and words."""
+    if cases is None:
+        return own, ""
+    peaks = [float(np.abs(cases[variable].sel(case=name)).max()) for name in cases.case.values]
+    name = str(cases.case.values[int(np.argmax(peaks))])
+    if name == str(cases.case.values[0]):
+        return own, " Drawn is the design without payloads, which needs most."
+    return cases.sel(case=name), f" Drawn is the payload {name}, which needs most of all."
 
 
 def _cases(f: PathFindings) -> list[Section]:
@@ -125,7 +141,8 @@ def _drawings(f: PathFindings) -> list[Drawing]:
     drawings = [Drawing("index", title, lambda: plots.path.index_along(f.along, f.beside), where + note)]
     if (plane := f.plane) is not None:
         drawings.append(Drawing("plane", "Round the weak region", lambda: plots.path.plan_map(plane), words))
-    return [*drawings, Drawing("loads", "Leg forces and travel", lambda: plots.path.loads(f.loads), forces)]
+    hardest, said = _hardest(f.loads, f.cases, "leg_force")
+    return [*drawings, Drawing("loads", "Leg forces and travel", lambda: plots.path.loads(hardest), f"{forces}{said}")]
 
 
 def _order(drawing: Drawing) -> int:
@@ -178,14 +195,24 @@ def _case_cautions(hexapod: Hexapod, f: PathFindings) -> list[Caution]:
     """The same with each payload."""
     if f.cases is None:
         return []
-    found = []
+    told: dict[tuple[str, str], list[tuple[str, Caution]]] = {}
     for name in map(str, f.cases.case.values[1:]):
-        if warning := str(f.cases.warning.sel(case=name).values):
-            found.append(Caution("payload", f"With the payload {name}: {warning}"))
         motors = None if f.case_motors is None else f.case_motors.sel(case=name)
-        for one in leg_cautions(hexapod, f.cases.sel(case=name), motors):
-            found.append(Caution(one.code, f"With the payload {name}: {one.text}", one.numbers))
-    return found
+        own = [Caution("payload", text)] if (text := str(f.cases.warning.sel(case=name).values)) else []
+        for one in [*own, *leg_cautions(hexapod, f.cases.sel(case=name), motors)]:
+            alike = _NUMBERS.sub("", one.text).partition(";")[0] if one.numbers else one.text
+            told.setdefault((one.code, alike), []).append((name, one))
+    return [_of_payloads(each) for each in told.values()]
+
+
+def _of_payloads(alike: list[tuple[str, Caution]]) -> Caution:
+    """Cautions that differ in numbers alone, as one: with which payloads, and that of the worst."""
+    names = [name for name, _ in alike]
+    worst, one = max(alike, key=lambda item: abs(item[1].numbers.get("value", 0.0)))
+    if len(alike) == 1:
+        return Caution(one.code, f"With the payload {worst}: {one.text}", one.numbers)
+    which = f"; with {worst}, the worst" if one.numbers else ""
+    return Caution(one.code, f"With the payloads {', '.join(names)}{which}: {one.text}", one.numbers)
 
 
 def _rows(hexapod: Hexapod, f: PathFindings) -> list[Row]:
