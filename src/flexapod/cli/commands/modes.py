@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import click
@@ -13,6 +14,7 @@ from flexapod.report.numbers import pose_numbers
 
 if TYPE_CHECKING:
     from flexapod.conventions import Array, JointModel
+    from flexapod.mechanics.cautions import Caution
 
 
 @click.command()
@@ -49,10 +51,7 @@ def command(
     attributes = point_attributes(hexapod, point)
     moved = shift(where, as_point(hexapod, point)) @ shape
     descriptions = [mode.text for mode in state.descriptions]
-    warnings = [caution.text for caution in state.cautions if caution.code != "limit"]
-    exceeded = len(state.cautions) - len(warnings)
-    if exceeded:
-        warnings.append(f"{exceeded} limits are exceeded at this pose; `flexapod check` lists them.")
+    warnings = _warnings(state.cautions)
     if as_json:
         common.print_json(
             {
@@ -85,6 +84,14 @@ def command(
     common.print_warnings(warnings)
     if assumed := assumed_of(hexapod):
         click.echo(assumed)
+
+
+def _warnings(cautions: Sequence[Caution]) -> list[str]:
+    """All cautions but those of limits, which are only counted."""
+    told = [caution.text for caution in cautions if caution.code != "limit"]
+    exceeded = len(cautions) - len(told)
+    counted = f"{exceeded} limits are exceeded at this pose; `flexapod check` lists them."
+    return [*told, counted] if exceeded else told
 
 
 def _show(title: str, omega: Array, descriptions: list[str]) -> None:
