@@ -26,7 +26,7 @@ def module(path: str):
 reference = module("_hooks/reference.py")
 commands = module("_hooks/commands.py")
 core_sources = module("_hooks/core_sources.py")
-keys = module("_hooks/keys.py")
+tables = module("tables/write.py")
 outside = module("_hooks/outside.py")
 check_site = module("check_site.py")
 pictures = module("images/draw.py").PICTURES
@@ -57,7 +57,7 @@ def test_help_texts_are_safe_in_tables():
 
 
 def test_every_key_of_a_design_is_in_the_table():
-    table = keys.table()
+    table = tables.keys.table()
     assert all(f"| `{key}` |" in table for key in KEYS)
 
 
@@ -128,3 +128,9 @@ def test_every_picture_is_shown_and_has_the_script_that_draws_it():
     assert set(pictures.values()) == {path.name for path in folder.glob("draw_*.py")}
     pages = "\n".join(path.read_text(encoding="utf-8") for path in DOCS.rglob("*.md"))
     assert [name for name in pictures if f"(images/{name}" not in pages] == []
+
+
+@pytest.mark.parametrize("page", tables.TABLES)
+def test_tables_in_pages_are_those_of_the_sources(page):
+    """Whoever reads a page where it is not built sees them too; python docs/tables/write.py writes them."""
+    assert (DOCS / page).read_text(encoding="utf-8") == tables.filled(page)

@@ -1,17 +1,10 @@
-"""Tables of the keys of a design file and their units, for pages that say `<!-- keys -->` or `<!-- units -->`."""
+"""Tables of the keys of a design file and of their units."""
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 from flexapod.design.key import Key
 from flexapod.design.schema import KEYS, POINT, POINTS
 from flexapod.design.units import UNITS, printed, si_unit
-
-if TYPE_CHECKING:
-    from mkdocs.config.defaults import MkDocsConfig
-    from mkdocs.structure.files import Files
-    from mkdocs.structure.pages import Page
 
 
 def table() -> str:
@@ -35,10 +28,3 @@ def bounds(key: Key) -> str:
     least = "" if key.least is None else f"{'>' if key.open_ else '≥'} {key.least:g}"
     most = "" if key.most is None or key.most > 1e50 else f"≤ {key.most:g}"
     return ", ".join(filter(None, (least, most)))
-
-
-def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
-    for mark, tabulated in (("<!-- keys -->", table), ("<!-- units -->", units)):
-        if mark in markdown:
-            markdown = markdown.replace(mark, tabulated())
-    return markdown

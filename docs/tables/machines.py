@@ -1,15 +1,8 @@
-"""The packaged designs and their sources, from their files: `<!-- machines -->` and `<!-- sources -->` of a page."""
+"""Tables of the packaged designs and of their sources, from their files."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from flexapod.design.catalogue import catalogue
-
-if TYPE_CHECKING:
-    from mkdocs.config.defaults import MkDocsConfig
-    from mkdocs.structure.files import Files
-    from mkdocs.structure.pages import Page
 
 
 def table() -> str:
@@ -28,10 +21,3 @@ def sources() -> str:
         assumed = f" Assumed: {one.assumed}" if one.assumed else ""
         lines += [f"- `{name}`: {one.source}{assumed}"] if one.source else []
     return "\n".join(lines)
-
-
-def on_page_markdown(markdown: str, page: Page, config: MkDocsConfig, files: Files) -> str:
-    for mark, made in (("<!-- machines -->", table), ("<!-- sources -->", sources)):
-        if mark in markdown:
-            markdown = markdown.replace(mark, made())
-    return markdown
