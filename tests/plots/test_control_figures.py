@@ -27,7 +27,16 @@ def test_root_locus_runs_from_crosses_to_circles_and_marks_the_best_gain():
     found = fx.control.root_locus(*isolator(), "force", leak=3.0)
     figure = control.root_locus(found)
     left, right = figure.axes
-    np.testing.assert_array_equal(line_of(left, "no control").get_ydata(), found.omega.values)
+    crosses = line_of(left, "no control")
+    start = crosses.get_xdata() + 1j * crosses.get_ydata()
+    damped = fx.linearise(*isolator()).modes().pole
+    np.testing.assert_allclose(np.sort(start.imag), np.sort(damped.imag[damped.imag > 0]), rtol=1e-12)
+    first = found.pole.values[0]  # at a negligible gain the curves begin at the crosses
+    assert np.abs(start[:, None] - first).min(axis=1).max() < 0.02 * abs(start).max()
+    seen = np.minimum(np.abs(found.pole.values[1:]), np.abs(found.pole.values[:-1])) < 2 * float(found.omega[-1])
+    steps = np.abs(np.diff(found.pole.values, axis=0)) / float(found.omega[-1])
+    assert np.median(steps[seen]) < 0.04  # no corners
+    assert (steps[seen] > 0.06).mean() < 0.01
     zeros = found.zero.values[np.isfinite(found.zero.values)]
     assert not zeros.size  # legs that meet the plates in ball joints have none, and the legend names none
     assert [text.get_text() for text in left.get_legend().get_texts()] == ["no control", "most damping"]

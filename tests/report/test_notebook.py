@@ -7,6 +7,7 @@ import numpy as np
 from tests.helpers.public import CLASSES, PUBLIC
 
 import flexapod as fx
+from flexapod.report.numbers import shown
 
 BASE = fx.load("motion-base")
 
@@ -94,3 +95,15 @@ def test_colours_follow_the_page():
     assert "--ink: currentColor" in text
     assert "#20262d" not in text
     assert "#000000" not in re.sub(r"clip-path.*?;", "", text).replace("stroke: #000000", "")
+
+
+def test_an_envelope_shows_how_far_and_how_fast():
+    """The numbers of its page: travels in mm and degrees, what stops them, and the largest box."""
+    machine = fx.load("motion-base")
+    found = fx.envelope(machine, directions=8)
+    page = found._repr_html_()
+    for axis in found.axes:
+        assert axis.axis in page
+    assert shown(1e3 * found.axes[0].most) in page
+    assert "Largest box" in page
+    assert shown(found.axes[0].least_index) in page

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import get_args
 
 import numpy as np
@@ -22,6 +22,9 @@ from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import Linearisation, linearise
 from flexapod.mechanics.symmetric_pencil import pencil_squares
 from flexapod.pose import PoseLike
+
+_STEP = 0.04  # of the highest natural frequency: poles that move farther from gain to gain are looked at between
+_HALVINGS = 7  # of the steps between gains, at most
 
 
 def open_zeros(linear: Linearisation, feedback: Feedback, legs: Sequence[int] = ALL_LEGS) -> Array:
@@ -129,8 +132,9 @@ def root_locus(
     xarray.Dataset
         Over ``gain``: ``pole`` (gain, branch) in rad/s, each branch followed from gain to gain; ``damping_ratio``
         (gain, branch); ``least_damping``, that of the least damped vibrating pole. Over ``zero_number``: ``zero`` in
-        rad/s, see `open_zeros`. Over ``mode``: ``omega`` in rad/s, without control. The attributes ``best_gain`` and
-        ``best_damping`` are the gain, refined between samples, at which ``least_damping`` is largest, and its value.
+        rad/s, see `open_zeros`. Over ``mode``: ``omega`` and ``open_pole`` in rad/s, without control. The attributes
+        ``best_gain`` and ``best_damping`` are the gain, refined between samples, at which ``least_damping`` is largest,
+        and its value.
 
     Raises
     ------
@@ -160,9 +164,15 @@ def root_locus(
     plant = Plant(linearise(hexapod, pose, base=base, force=force, moment=moment, joint=joint))
     row = default_gains(plant, feedback) if gains is None else ascending_gains(np.sort(numbers(gains, "gains")), 2)
     row = np.sort(row)
-    pole = _followed(np.stack([poles(plant, damping_law(feedback, g, leak, legs).on(plant.linear)) for g in row]))
-    least = np.array([least_damping(p) for p in pole])
+
+    def of(gain: float) -> Complex:
+        return poles(plant, damping_law(feedback, gain, leak, legs).on(plant.linear))
+
     gain, damping = best_gain(plant, lambda g: damping_law(feedback, g, leak, legs), row)
+    pole = _followed(np.stack([of(g) for g in row]))
+    if gains is None:
+        row, pole = _finer(plant, of, row, pole)
+    least = np.array([least_damping(p) for p in pole])
     zeros = open_zeros(plant.linear, feedback, legs)
     return xr.Dataset(
         {
@@ -170,6 +180,7 @@ def root_locus(
             "damping_ratio": (("gain", "branch"), damping_ratios(pole), in_unit("1", "damping ratio")),
             "least_damping": ("gain", least, in_unit("1", "least damping ratio")),
             "zero": ("zero_number", zeros, in_unit("rad/s", "frequencies at infinite gain")),
+            "open_pole": ("mode", _upper(plant.linear.modes().pole), in_unit("rad/s", "poles without control")),
             "omega": ("mode", plant.omega, in_unit("rad/s", "natural frequencies without control")),
         },
         {"gain": ("gain", row, in_unit(GAIN_UNIT[feedback], "gain"))},
@@ -185,6 +196,26 @@ def root_locus(
             **response_attributes(plant.linear),
         },
     )
+
+
+def _upper(pole: Complex) -> Complex:
+    """The six poles with frequencies >= 0, and of pairs that do not swing the faster ones."""
+    order = np.lexsort((pole.real, -pole.imag))
+    return np.asarray(pole[order][:6][::-1], dtype=np.complex128)
+
+
+def _finer(plant: Plant, of: Callable[[float], Complex], row: Array, pole: Complex) -> tuple[Array, Complex]:
+    """More gains between those where a pole that the modes' band holds moves far, as where two of them meet."""
+    reach = float(plant.omega[-1])
+    for _ in range(_HALVINGS):
+        seen = np.minimum(np.abs(pole[1:]), np.abs(pole[:-1])) < 2 * reach
+        far = np.flatnonzero((np.where(seen, np.abs(np.diff(pole, axis=0)), 0.0)).max(axis=1) > _STEP * reach)
+        if not far.size:
+            break
+        between = np.sqrt(row[far] * row[far + 1])
+        row = np.insert(row, far + 1, between)
+        pole = _followed(np.insert(pole, far + 1, np.stack([of(g) for g in between]), axis=0))
+    return row, pole
 
 
 def _followed(pole: Complex) -> Complex:

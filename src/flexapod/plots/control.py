@@ -126,7 +126,10 @@ def root_locus(dataset: xr.Dataset, chosen: float | None = None, *, figure: Figu
     for number, k in enumerate(moving):
         left.plot(shown[:, k].real, shown[:, k].imag, color=SIX[number % 6], lw=wide(1.6))
     _damping_rays(left, top)
-    left.plot(np.zeros_like(omega), omega, ls="none", marker="x", ms=8, mew=1.8, color=ink(), label="no control")
+    start = dataset.open_pole.values
+    left.plot(
+        start.real, start.imag, ls="none", marker="x", ms=8, mew=1.8, color=ink(), label="no control", clip_on=False
+    )
     zero = dataset.zero.values[np.isfinite(dataset.zero.values)]
     zero = zero[zero <= top]
     if zero.size:

@@ -29,8 +29,9 @@ from flexapod.pose import Pose
 from flexapod.report import figures
 from flexapod.report import html as pages
 from flexapod.report.numbers import shown
-from flexapod.report.studies import inputs
+from flexapod.report.studies import envelope, inputs
 from flexapod.report.study import Column, Table, shown_on
+from flexapod.workspace.envelope import Envelope
 
 _STYLE = """<style>
 .flexapod { --ink: currentColor; --faint: #8a929b; --base: #8492a1; --leg: #7d8b9a; --platform: #2f8fd0; }
@@ -123,8 +124,20 @@ def at_pose(hexapod: Hexapod, pose: Pose, joint: JointModel) -> str:
     return _page(f"<b>{escape(hexapod.name)}</b> {place}{picture}{_table(modes, 'Natural modes')}{cautions}")
 
 
+def _envelope(found: Envelope) -> str:
+    """Travel along each axis, and the largest box."""
+    told = [" ".join(filter(None, (row.label, str(row.value), row.note))) for row in envelope.rows(found)[:1]]
+    listed = "".join(_table(table, table.title or "Envelope") for table in envelope.tables(found))
+    return f"{listed}<p>{escape(told[0])}</p>"
+
+
 #: Types with a view of their own.
-_VIEWS: Mapping[type, Callable[[Any], str]] = {Hexapod: _hexapod, NaturalModes: _modes, DampedModes: _modes}
+_VIEWS: Mapping[type, Callable[[Any], str]] = {
+    Hexapod: _hexapod,
+    NaturalModes: _modes,
+    DampedModes: _modes,
+    Envelope: _envelope,
+}
 
 
 def _attributes(thing: Any, title: str) -> str:

@@ -156,14 +156,14 @@ def _rows(f: ControlFindings) -> list[Row]:
     advised = f"ms (at most {1e3 * f.recommended:.4g} ms advised), order {loop.controller.order}"
     rows = [
         Row("Worst damping ratio, sampled", loop.worst_damping, digits=3, on="page"),
-        Row("without sampling", f.ideal.worst_damping, digits=3, on="page"),
+        Row("if the law acted without sampling and delay", f.ideal.worst_damping, digits=3, on="page"),
         Row("Sampling time", 1e3 * f.dt, "ms", 3, on="page"),
         Row("at most", 1e3 * f.recommended, "ms", 3, on="page"),
         *_lowered(f),
         Row("natural frequencies", "  ".join(f"{w:.5g}" for w in loop.omega), "rad/s", on="terminal"),
         Row("sampled every", f"{1e3 * f.dt:.4g}", advised, on="terminal"),
         Row("worst damping ratio", f"{loop.worst_damping:.4g}",
-            note=f"(without sampling {f.ideal.worst_damping:.4g})", on="terminal"),
+            note=f"(if the law acted without sampling and delay {f.ideal.worst_damping:.4g})", on="terminal"),
     ]  # fmt: skip
     if f.locus is not None:
         best, at = f.locus.attrs["best_damping"], f.locus.attrs["best_gain"]

@@ -33,9 +33,9 @@ def study(hexapod: Hexapod, found: Envelope, bounded: bool) -> Study:
         subject="envelope",
         about=f"Motions{point} from {pose_words(found.home)}.",
         data=_data(hexapod, found),
-        rows=_rows(found),
+        rows=rows(found),
         sections=[
-            Section("Each axis", _tables(found)),
+            Section("Each axis", tables(found)),
             Section("Two axes at once", [drawing, _pairs(found)]),
         ],
         cautions=_cautions(hexapod, found, bounded),
@@ -91,7 +91,8 @@ def _shown(values: Array) -> Array:
     return np.concatenate([1e3 * values[:3], np.degrees(values[3:])])
 
 
-def _rows(found: Envelope) -> list[Row]:
+def rows(found: Envelope) -> list[Row]:
+    """The largest box."""
     box = found.box
     half = f"\u00b1 {six_words(box.half)}"
     stops = f"stopped by {_words(box.stopped)}" if box.stopped else "nothing stops it"
@@ -117,7 +118,8 @@ def _words(stops: tuple[str, ...]) -> str:
     )
 
 
-def _tables(found: Envelope) -> list[Table]:
+def tables(found: Envelope) -> list[Table]:
+    """Motions along each axis, and how fast they may be."""
     axes = found.axes
     units = ["mm" if axis in TRANSLATIONS else "deg" for axis in AXES]
     travel = [
@@ -129,7 +131,7 @@ def _tables(found: Envelope) -> list[Table]:
         Column("stopped above by", [_words(axis.stopped_at_most) for axis in axes]),
         Column("least index", [axis.least_index for axis in axes], "rad/s"),
     ]
-    tables = [Table(travel, "Each axis alone, from home. The index is the least over the travel.")]
+    shown = [Table(travel, "Each axis alone, from home. The index is the least over the travel.")]
     speeds = [_speed(axes, name) for name in ("velocity", "acceleration")]
     if any(np.isfinite(getattr(axis, name).value) for axis in axes for name in ("velocity", "acceleration")):
         columns = [travel[0], *(column for pair in speeds for column in pair)]
@@ -137,8 +139,8 @@ def _tables(found: Envelope) -> list[Table]:
             "At home, the lesser of both ways: velocity is steady, acceleration from rest. Least: over the travel "
             "along the axis."
         )
-        tables.append(Table(columns, note, title="How fast"))
-    return tables
+        shown.append(Table(columns, note, title="How fast"))
+    return shown
 
 
 def _speed(axes: tuple[AxisTravel, ...], name: str) -> list[Column]:
