@@ -158,3 +158,16 @@ def test_the_report_puts_the_tangent_beside_the_mode_that_moves_alike():
     assert rows["roll"] == pytest.approx(20.4144, rel=1e-5)
     assert found.to_dict()["tangent"]["of_undamped_mode"] == [3, 1, 2, 5, 4, 6]
     assert found.to_dict()["stability"] == machine.study(found).rows[0].value == "falls over"
+
+
+@pytest.mark.parametrize("width", [None, 0.088])
+def test_a_mode_fills_its_figure(width):
+    """Without ticks no room is kept for them: what is drawn takes more than half the page, and nothing is cut off."""
+    machine = fx.load("motion-base")
+    with fx.plots.for_print(width=width):
+        figure = fx.plots.mode(machine, None, fx.natural_modes(machine), 1).figure
+    figure.canvas.draw()
+    inked = np.asarray(figure.canvas.buffer_rgba())[..., :3].min(axis=2) < 250
+    for along in (inked.any(axis=0), inked.any(axis=1)):
+        assert along.mean() > 0.55
+        assert not along[[0, -1]].any()

@@ -133,9 +133,13 @@ def mode(
         raise ArgumentError(
             f"mode {number} of modes of shape {np.shape(modes.omega)}: give modes of one pose and 1 to 6."
         )
-    ax = _axes_3d() if ax is None else ax
     b, p = hexapod.base_joints, _at(where, hexapod.platform_joints)
+    alone = ax is None
+    ax = _axes_3d() if ax is None else ax
     size = _frame(ax, b, p, margin=0.12)
+    if alone:  # without ticks it fills the page
+        ax.set_position((0.0, 0.0, 1.0, 1.0))
+        ax.set_box_aspect(np.ptp(np.reshape(ax.get_w_lims(), (3, 2)), axis=1), zoom=1.3)
     x = _enlarged(modes.shape[:, number - 1], p - where.position, size / 6)
     strain = force_transformation(hexapod, where).T @ x
     moved = _at(Pose(where.position + x[:3], rotation_from_vector(x[3:]) @ where.matrix), hexapod.platform_joints)
