@@ -350,6 +350,7 @@ FORCE = fx.excitation.flat_spectrum(3.0, 10.0, 90.0, quantity="force")
         (lambda: fx.sine_sweep("x", 1.0, 1.0, 2.0, 1.0, law="cubic"), "law is 'cubic'"),
         (lambda: fx.sine_sweep("x", 1.0, 1.0, 2.0, 1.0, hold="power"), "hold is 'power'"),
         (lambda: fx.half_sine_shock("x", 1.0, 0.0), "duration is 0"),
+        (lambda: fx.half_sine_shock("x", 50.0, 5e-324), "too far apart in size"),
         (lambda: fx.half_sine_shock("x", 50.0, 1e308), "too far apart in size"),
         (lambda: fx.half_sine_shock("x", 1e300, 0.01, recovery=1e308), "too far apart in size"),
         (lambda: fx.excitation.smooth_step("x", 1.0, 1e-308), "too far apart in size"),

@@ -155,7 +155,11 @@ def test_a_front_and_a_search_do_not_share_a_file(tmp_path):
 def test_files_that_are_no_studies_are_refused(tmp_path):
     text = tmp_path / "notes.txt"
     text.write_text("no data base")
-    for place, words in ((text, "is no study file"), (tmp_path / "no" / "where.db", "is no directory")):
+    for place, words in (
+        (text, "is no study file"),
+        (tmp_path / "no" / "where.db", "is no directory"),
+        (tmp_path / "a\0b", "cannot be written: embedded null"),
+    ):
         with pytest.raises(fx.errors.OutputError, match=words):
             Study(problem(), place)
     assert text.read_text() == "no data base"

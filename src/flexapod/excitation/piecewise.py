@@ -203,4 +203,4 @@ def _piece(start: float, coefficients: ArrayLike, sine: float = 0.0, omega: floa
 def _half_sine(start: float, travel: float, speed: float, peak: float, duration: float) -> NDArray[np.void]:
     """x'' = peak sin(pi t / duration) from the travel and speed given."""
     scale = duration / np.pi
-    return _piece(start, [travel, speed + peak * scale], -peak * scale * scale, 1 / scale)
+    return _piece(start, [travel, speed + peak * scale], -peak * scale * scale, np.pi / duration)

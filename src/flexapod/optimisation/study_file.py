@@ -72,8 +72,9 @@ def open_storage(file: Path | None) -> Any:
             return _storage(file)
     except OutputError:
         raise
-    except OSError as error:
-        raise OutputError(f"{file} cannot be written: {error.strerror or error}. Choose another place.") from error
+    except (OSError, ValueError) as error:  # the second for a name with a null character
+        words = getattr(error, "strerror", None) or error
+        raise OutputError(f"{file} cannot be written: {words}. Choose another place.") from error
 
 
 def _begins(file: Path) -> bytes:
