@@ -429,7 +429,7 @@ class Hexapod(Value, metaclass=Suggesting):
         if self.legs.stiffness_law is not None:
             k = f"stiffness by a {self.legs.stiffness_law.kind.name} law"
         leg_mass = self.legs.lower.mass.mean() + self.legs.upper.mass.mean()
-        notes = f", {len(self.warnings)} warnings" if self.warnings else ""
+        notes = f", {len(self.warnings)} warning{'s' * (len(self.warnings) > 1)}" if self.warnings else ""
         return (
             f"<Hexapod {self.name!r}: platform {self.platform_mass:.4g} kg, legs of {leg_mass:.4g} kg "
             f"and {k}{notes}, digest {self.digest}>"

@@ -90,7 +90,8 @@ def _warnings(cautions: Sequence[Caution]) -> list[str]:
     """All cautions but those of limits, which are only counted."""
     told = [caution.text for caution in cautions if caution.code != "limit"]
     exceeded = len(cautions) - len(told)
-    counted = f"{exceeded} limits are exceeded at this pose; `flexapod check` lists them."
+    what = f"{exceeded} limits are" if exceeded > 1 else "A limit is"
+    counted = f"{what} exceeded at this pose; `flexapod check` says more."
     return [*told, counted] if exceeded else told
 
 

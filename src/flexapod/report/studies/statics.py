@@ -35,13 +35,14 @@ def study(hexapod: Hexapod, f: StaticsFindings) -> Study:
     """The study of load cases."""
     lengths = "without weight and load" if f.reference is None else f"in case {f.names[f.reference]}"
     point = point_words(f.cases.attrs["point_m"], f.cases.attrs["point"]) or "the platform's origin"
+    cases = f"{len(f.names)} load case{'s' * (len(f.names) > 1)}"
     drawing = Drawing(
         "statics", "Forces and deflections", lambda: plots.statics.load_cases(f.cases, f.elevation), "", wide=True
     )
     return Study(
         hexapod=hexapod,
         subject="statics",
-        about=f"{len(f.names)} load cases at rest. Leg lengths are held as they are {lengths}; the point is {point}.",
+        about=f"{cases} at rest. Leg lengths are held as they are {lengths}; the point is {point}.",
         data=_data(hexapod, f),
         rows=_rows(f),
         sections=[
@@ -267,8 +268,9 @@ def _cautions(hexapod: Hexapod, f: StaticsFindings) -> list[Caution]:
         told.append(Caution("reversal", text, {"legs": len(turned)}))
     beyond = _ok(f) & ~f.cases.force_within_limits.values
     if beyond.any():
-        first = f.names[int(np.argmax(beyond))]
-        text = f"Leg forces are beyond the design's limits in {beyond.sum()} cases, first in case {first}."
+        first, several = f.names[int(np.argmax(beyond))], beyond.sum() > 1
+        where = f"{beyond.sum()} cases, first in case {first}" if several else f"case {first}"
+        text = f"Leg forces are beyond the design's limits in {where}."
         told.append(Caution("force_limit", text, {"cases": int(beyond.sum())}))
     for name, status in zip(f.names, f.cases.status.values, strict=True):
         if status != "ok":
