@@ -1,6 +1,5 @@
 """The published machines that come with Flexapod: each has the number that its source prints, and says what it assumes."""
 
-import importlib.util
 import json
 import re
 from pathlib import Path
@@ -205,13 +204,7 @@ def test_designs_are_found_by_name_maker_kind_author_and_year(run, result, words
 
 
 def test_the_page_of_the_manual_has_them_all():
-    place = Path(__file__).parents[2] / "docs" / "_hooks" / "machines.py"
-    spec = importlib.util.spec_from_file_location("machines", place)
-    hook = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(hook)
-    page = (place.parents[1] / "machines.md").read_text(encoding="utf-8")
-    made = hook.on_page_markdown(page, None, None, None)
-    assert "<!--" not in made
+    made = (Path(__file__).parents[2] / "docs" / "machines.md").read_text(encoding="utf-8")
     for name, one in CATALOGUE.items():
         assert f"| `{name}` |" in made
         assert one.source in made

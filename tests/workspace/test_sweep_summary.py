@@ -12,7 +12,7 @@ import flexapod as fx
 from flexapod.conventions import AXES
 from flexapod.workspace import descents, distribution
 from flexapod.workspace import summary as module
-from flexapod.workspace.box_minimum import smooth_minimum
+from flexapod.workspace.box_minimum import constrained_minimum, smooth_minimum
 
 POSES = fx.random_poses(BOX, 20_000, seed=1)
 FOUND = fx.sweep(I, POSES)
@@ -272,3 +272,19 @@ def test_the_worst_of_poses_is_one_of_them():
 def test_what_is_no_sweep_is_told(given):
     with pytest.raises(fx.errors.ArgumentError, match=r"sweep is .*; it must be a Dataset, as flexapod.sweep"):
         fx.summarise(given)
+
+
+@pytest.mark.parametrize("descend", ["smooth", "constrained"])
+def test_a_descent_begins_where_the_value_is_nothing(descend):
+    """As the index is at a singular pose: there is no value then to measure others in."""
+
+    def sloped(point):
+        return float(point.sum()), np.ones(2)
+
+    low, high, start = np.full(2, -1.0), np.full(2, 1.0), np.zeros(2)
+    with np.errstate(all="raise"):
+        if descend == "smooth":
+            found = smooth_minimum(sloped, start, low, high)
+        else:
+            found = constrained_minimum(sloped, lambda p: (np.ones(1), np.zeros((1, 2))), start, low, high)
+    assert found == pytest.approx(low)

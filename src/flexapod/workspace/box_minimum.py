@@ -77,6 +77,12 @@ class _FreeShares:
         """Derivatives by the shares, from those by the coordinates (..., n)."""
         return (slope * self.width)[..., self.free]
 
+    def unit(self, value: float, slope: Array) -> float:
+        """What values are measured in: this one, or its change over the box where it is nothing beside that."""
+        changes = np.abs(self.slope(slope))
+        change = changes[np.isfinite(changes)].max(initial=0.0)
+        return float(abs(value) if abs(value) > 1e-12 * change else change) or 1.0
+
 
 def smooth_minimum(function: Smooth, start: Array, low: Array, high: Array) -> Array:
     """Where a descent from `start` ends: L-BFGS-B on a smooth function that gives its value and gradient."""
@@ -85,7 +91,7 @@ def smooth_minimum(function: Smooth, start: Array, low: Array, high: Array) -> A
     shares = _FreeShares(low, high)
     if not shares.free.any():
         return low
-    unit = max(abs(function(start)[0]), np.finfo(float).tiny)
+    unit = shares.unit(*function(start))
 
     def scaled(u: Array) -> tuple[float, Array]:
         value, slope = function(shares.place(u))
@@ -133,7 +139,7 @@ def constrained_minimum(
 
     constraint = {"type": "ineq", "fun": kept, "jac": by_shares}
     for _ in range(_CONSTRAINED_RESTARTS):  # each measures values anew, so that one that goes to zero gets there
-        before, unit = least, max(abs(least), np.finfo(float).tiny)
+        before, unit = least, shares.unit(*function(best))
         u = shares.of(best)
         end = minimize(
             scaled,
