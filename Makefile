@@ -9,7 +9,7 @@ SECONDS ?= 300
 CORE := CMakeLists.txt $(wildcard src/core/*/*)
 CPP  := $(wildcard src/core/*/*.?pp tests/core/*.?pp)
 
-.PHONY: report paper test coverage build lint types bench bench-readme docs validation core-test sanitize portable contradictions fuzz attack dist \
+.PHONY: report paper test coverage build lint types bench bench-readme docs validation core-test sanitized sanitize portable contradictions fuzz attack dist \
         clean web web-types web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
@@ -86,7 +86,9 @@ LONG       := thousand_periods or keeps_its_energy or progress_goes or settles_t
               (in_the_proof and table) or boxes_outside_of_limits
 PRELOADED   = $(shell $(CXX) -print-file-name=libasan.so) $(shell $(CXX) -print-file-name=libstdc++.so)
 
-sanitize: $(SANITIZED)/.built ## any finding ends the run
+sanitized: $(SANITIZED)/.built ## the core compiled with them, so far
+
+sanitize: sanitized ## any finding ends the run
 	LD_PRELOAD="$(PRELOADED)" ASAN_OPTIONS=detect_leaks=0 PYTHONPATH=$(SANITIZED)/site:$(PACKAGES) \
 	PYTEST_DISABLE_PLUGIN_AUTOLOAD=1 $(BARE) -m pytest -p xdist.plugin $(AT_ONCE) -p no:cacheprovider $(CORE_TESTS) -k 'not ($(LONG))'
 
