@@ -192,6 +192,8 @@ def test_limits_of_push_and_pull(machine):
     ("more", "error", "words"),
     [
         ({"force": np.zeros((2, 3)), "gravity": np.zeros((3, 3))}, fx.ArgumentError, "one row, or one for each"),
+        ({"pose": np.zeros((0, 6))}, fx.ArgumentError, "the same number for all, at least one"),
+        ({"gravity": np.zeros((0, 3))}, fx.ArgumentError, "the same number for all, at least one"),
         ({"force": [1, 2]}, fx.ArgumentError, "force has shape"),
         ({"gravity": [0, 0, np.nan]}, fx.ArgumentError, "gravity holds NaN"),
         ({"reference": 1}, fx.ArgumentError, "number of one of 1 cases"),

@@ -214,10 +214,10 @@ def _spread(hexapod: Hexapod, pose: PoseLike | None, gravity: ArrayLike | None, 
         shape = np.broadcast_shapes(*shapes)
     except ValueError:
         shape = (0, 0)
-    if len(shape) > 1:
+    if len(shape) > 1 or 0 in shape:
         raise ArgumentError(
             f"pose, gravity, force, moment and at have {', '.join(map(str, shapes))} cases; each must have one row, or "
-            "one for each case, the same number for all."
+            "one for each case, the same number for all, at least one."
         )
     count = shape[0] if shape else 1
     poses = Pose(np.broadcast_to(where.position, (count, 3)), np.broadcast_to(where.matrix, (count, 3, 3)))
