@@ -23,7 +23,7 @@ from flexapod.web import limits
 from flexapod.web.security import HEADERS
 
 OWN_MEMORY = 160 * limits.MIB  # of a process beside what it shares: 93 MB at its start, 115 MB after all questions
-STATUSES = {200, 204, 303, 304, 400, 403, 404, 405, 408, 413, 421, 422, 429, 503}
+STATUSES = {200, 204, 206, 303, 304, 400, 403, 404, 405, 408, 413, 416, 421, 422, 429, 503}
 #: What each handler reads beside the design, its changes, the pose and the joint model.
 READ = {
     "state": (),
