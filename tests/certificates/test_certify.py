@@ -273,6 +273,12 @@ def test_the_bound_that_only_the_middle_has_ends_the_search(monkeypatch):
         fx.certified_box(BASE, fx.Workspace.about_home(0.05, 0.05), bound)
 
 
+@pytest.mark.parametrize("tolerance", [5e-324, 0.0, -1.0, 1.0, 2.0])
+def test_a_tolerance_of_the_largest_box_that_no_search_reaches_is_told(tolerance):
+    with pytest.raises(fx.ArgumentError, match=r"tolerance is .*; it must be at least 1e-09 and less than 1"):
+        fx.certified_box(BASE, fx.Workspace.about_home(0.05, 0.05), 26.0, tolerance=tolerance)
+
+
 def test_a_box_through_the_pole_of_pitch_is_a_set_of_poses_as_any():
     start = fx.Pose.from_rpy(0, 0, 0, 0, np.radians(89.9), 0).matrix
     turned = BASE.replace({"platform.joints": BASE.platform_joints @ start, "home": None})

@@ -17,7 +17,7 @@ from flexapod.certificates.known import Known, least_index, least_of_corners
 from flexapod.certificates.largest_file import Progress
 from flexapod.certificates.proving import Setup
 from flexapod.certificates.question import Uncertainty, question
-from flexapod.checks import positive, stop_asked, thread_count
+from flexapod.checks import number, positive, stop_asked, thread_count
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.strays import data_of
@@ -32,6 +32,7 @@ from flexapod.workspace.region import as_region, home_of
 _GREATEST = 2.0**12  # of a scale that is tried
 _LEAST = 2.0**-20  # of the first scale that is tried
 _TURN = 2 * np.pi  # widest range of an angle that is tried, rad
+_FINEST = 1e-9  # tolerance of the scale: what is finer takes more than anyone waits for, or is less than rounding
 _GAP = 0.01  # what a certificate says where a bound is asked for
 MOST_BOXES = 1e6  #: of the proof for one size, where no time is given
 
@@ -92,7 +93,8 @@ def certified_box(
     at_least : float
         The bound, rad/s.
     tolerance : float, optional
-        How far the scale may be from the one at which a pose below the bound is known, as a share of that.
+        How far the scale may be from the one at which a pose below the bound is known, as a share of that: at least
+        1e-9, and less than 1.
     joint : {"universal", "spin_free"}, optional
         Joint model.
     within_limits, uncertain : optional
@@ -148,7 +150,9 @@ def certified_box(
     """
     as_hexapod(hexapod)
     as_joint(joint)
-    tolerance = positive(tolerance, "tolerance")
+    tolerance = number(tolerance, "tolerance")
+    if not _FINEST <= tolerance < 1:
+        raise ArgumentError(f"tolerance is {tolerance:.6g}; it must be at least {_FINEST:g} and less than 1.")
     until = np.inf if time_limit is None else time.monotonic() + positive(time_limit, "time_limit", "s")
     given = {"joint": joint, "uncertain": uncertain, "within_limits": within_limits}
     search = _Search(hexapod, box, positive(at_least, "at_least", "rad/s"), given, thread_count(threads))
