@@ -196,6 +196,19 @@ def test_a_fault_within_a_simulation_reaches_the_job(job: Work, monkeypatch: pyt
     assert "MemoryError" in job.failure("time", duration=0.01)
 
 
+def test_numbers_too_large_to_compute_with_are_not_told_on_the_terminal(
+    job: Work, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def absurd(asked: dict[str, Any]) -> Iterator[tuple[dict[str, Any], bytes]]:
+        yield {"type": "rows"}, (np.array([1e308]) * 10).astype("<f4").tobytes()
+
+    monkeypatch.setitem(work.KINDS, "cloud", absurd)
+    rows, done = job("cloud")
+    assert done[0]["type"] == "done"
+    assert np.frombuffer(rows[1], "<f4") == np.inf
+    assert capfd.readouterr().err == ""
+
+
 def test_a_job_whose_page_has_gone_ends_its_loop() -> None:
     ours, theirs = multiprocessing.Pipe()
     ours.send(("slice", as_bytes(ASKED | {"box": BOX, "across": "x", "up": "y", "side": 2})))

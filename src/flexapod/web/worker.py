@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from typing import Any
 
@@ -37,14 +38,15 @@ QUESTIONS: dict[str, Callable[[dict[str, Any]], Mapping[str, Any]]] = {
 
 
 def serve(pipe: Connection) -> None:
-    """Answer what comes from the pipe until it closes. What fails sends its error, and the process goes on."""
-    while True:
-        try:
+    """Answer what comes from the pipe until it closes. What fails sends its error, and the process goes on.
+
+    Numbers of a request that are too large to compute with show in the answer, not on the server's terminal.
+    """
+    with np.errstate(all="ignore"), suppress(EOFError, BrokenPipeError, ConnectionResetError):
+        while True:
             kind, body = pipe.recv()
             for message in _messages(kind, body) if kind in KINDS else (_answer(kind, body),):
                 pipe.send(message)
-        except (EOFError, BrokenPipeError, ConnectionResetError):
-            return
 
 
 def _messages(kind: str, body: bytes) -> Iterator[tuple[Any, bytes]]:
