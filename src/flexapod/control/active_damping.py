@@ -168,8 +168,9 @@ def root_locus(
     def of(gain: float) -> Complex:
         return poles(plant, damping_law(feedback, gain, leak, legs).on(plant.linear))
 
-    gain, damping = best_gain(plant, lambda g: damping_law(feedback, g, leak, legs), row)
-    pole = _followed(np.stack([of(g) for g in row]))
+    pole = np.stack([of(g) for g in row])
+    gain, damping = best_gain(plant, lambda g: damping_law(feedback, g, leak, legs), row, pole)
+    pole = _followed(pole)
     if gains is None:
         row, pole = _finer(plant, of, row, pole)
     least = np.array([least_damping(p) for p in pole])

@@ -12,7 +12,7 @@ from flexapod.control.closed_loop_poles import least_damping
 from flexapod.control.controllers import Feedback
 from flexapod.control.linear_controller import ControlLaw, controller_for
 from flexapod.control.plant import Plant, poles
-from flexapod.conventions import Array
+from flexapod.conventions import Array, Complex
 from flexapod.errors import ArgumentError
 
 _STILL = 1 - 1e-6  # damping ratio that counts as no vibration
@@ -27,20 +27,26 @@ def ascending_gains(gains: ArrayLike, least: int) -> Array:
     return row
 
 
-def best_gain(plant: Plant, law: Callable[[float], ControlLaw], gains: Array) -> tuple[float, float]:
+def best_gain(
+    plant: Plant, law: Callable[[float], ControlLaw], gains: Array, at_gains: Complex | None = None
+) -> tuple[float, float]:
     """The gain at which the least damped pole has the most damping, refined between those given, and that damping.
 
     If nothing vibrates any more at high gain, the smallest such gain is taken: more only slows the platform. Gains that
     nearly cancel the static stiffness, as force feedback can, are excluded: a pole then hardly decays.
+
+    at_gains: the poles at those gains, (n, poles), where they are known.
     """
 
     def damping(log_gain: float) -> float:
-        pole = poles(plant, controller_for(plant.linear, law(float(np.exp(log_gain)))))
+        return of(poles(plant, controller_for(plant.linear, law(float(np.exp(log_gain))))))
+
+    def of(pole: Complex) -> float:
         creeps = (pole.real > -_CREEP * plant.omega[0]) & (np.abs(pole) > 1e-9 * np.abs(pole).max())
         return least_damping(pole) if not creeps.any() else -1.0
 
     logs = np.log(gains)
-    values = np.array([damping(x) for x in logs])
+    values = np.array([damping(x) for x in logs] if at_gains is None else [of(pole) for pole in at_gains])
     still = np.flatnonzero(values >= _STILL)
     if still.size:
         return _first_still(damping, logs, int(still[0]))
