@@ -234,7 +234,7 @@ class Pose(metaclass=Suggesting):
     def displaced(self, by: PoseLike) -> Pose:
         """Give the pose displaced by another: positions add, and `by` turns it about the outer frame's axes."""
         by = as_pose(by, "by")
-        return Pose(self.position + by.position, by.matrix @ self.matrix)
+        return Pose.trusted(self.position + by.position, by.matrix @ self.matrix)
 
     @classmethod
     def trusted(cls, position: Array, matrix: Array) -> Pose:

@@ -87,7 +87,7 @@ def _leg_columns(table: Table) -> Array:
 def _lengths(hexapod: Hexapod, head: dict[str, Any], rows: Array, origin: Pose | None) -> Conversion:
     pose = Pose.trusted(rows[:, :3], rpy_matrix(rows[:, 3:]))
     if origin is not None:
-        pose = Pose.trusted(pose.position + origin.position, pose.matrix @ origin.matrix)
+        pose = origin.displaced(pose)
     lengths = inverse_kinematics(hexapod, pose)
     status = np.where(np.isfinite(rows).all(axis=1), "no_leg", "not_finite")
     status = np.where(np.isfinite(lengths).all(axis=1), "ok", status)
