@@ -53,11 +53,6 @@ struct ReadyMachine {
   ~ReadyMachine() { kernel.delete_machine(own); }
 
   Geometry<double> geometry(const State& s) const { return {machine.design, s.platform.pose, s.base.pose}; }
-  /// NaN where H is singular.
-  Vec6<double> leg_forces(const Geometry<double>& g, const State& s, const double (&wrench)[6]) const {
-    const Vec6<double> load = external_wrench(s.platform.pose.R, *reinterpret_cast<const Vec6<double>*>(wrench));
-    return flexapod::inverse_dynamics(machine, g, s.platform, s.base, load);
-  }
   /// Force, length, unstretched length, axial stiffness and stiffness against a command of leg i at rest.
   void rest_of_leg(int i, double force, double length, double (&legs)[5][6]) const {
     using D = Dual<1>;
@@ -110,7 +105,7 @@ class OnePose {
     if (!read(platform, base, s) || !read_wrench(force, moment, wrench)) return nb::none();
     const Geometry<double> g = of_.geometry(s);
     if (!usual(LegFit(g))) return nb::none();
-    const Vec6<double> found = of_.leg_forces(g, s, wrench);
+    const Vec6<double> found = leg_forces(g, s, wrench);
     return finite(found.a, 6) ? six(found.a) : nb::none();
   }
 
@@ -123,7 +118,7 @@ class OnePose {
     const Geometry<double> g = of_.geometry(s);
     const LegFit fit(g);
     if (!usual(fit)) return nb::none();
-    const Vec6<double> needed = of_.leg_forces(g, s, wrench);
+    const Vec6<double> needed = leg_forces(g, s, wrench);
     for (int i = 0; i < 6; ++i) of_.rest_of_leg(i, needed[i], fit.length[i], legs);
     if (!finite(legs[0], 30)) return nb::none();
     of_.kernel.tangent(of_.own, numbers(s), wrench, legs[2], matrices);
@@ -157,6 +152,11 @@ class OnePose {
   /// A base that is not given is at the origin, at rest.
   static bool read(const nb::tuple& platform, const nb::tuple& base, State& s) {
     return read(GivenState(platform), s.platform) && (nb::handle(base[0]).is_none() || read(GivenState(base), s.base));
+  }
+  /// To the last bit those of many poses; NaN where H is singular.
+  Vec6<double> leg_forces(const Geometry<double>& g, const State& s, const double (&wrench)[6]) const {
+    const Vec6<double> load = external_wrench(s.platform.pose.R, *reinterpret_cast<const Vec6<double>*>(wrench));
+    return flexapod::inverse_dynamics(of_.machine, g, s.platform, s.base, load);
   }
   static bool read_wrench(nb::handle force, nb::handle moment, double (&to)[6]) {
     return read_finite(force, to, 3) && read_finite(moment, to + 3, 3);
@@ -230,20 +230,19 @@ class Compiled {
     if (!read(pose, s) || !read_six(twist, &s.platform.v.x) || !read_six(acceleration, &s.platform.a.x) ||
         !read_six(wrench, load))
       return nb::none();
-    return six(of_.leg_forces(of_.geometry(s), s, load).a);
+    return new_array({6}, [&](double* to) { of_.kernel.leg_forces(of_.own, numbers(s), load, to); });
   }
-  /// M, C, K and H, (4, 6, 6).
+  /// M, C, K and H, (6, 6) each.
   nb::object linearised(nb::handle pose, nb::handle wrench) const {
     State s = start();
-    double load[6] = {}, legs[5][6], matrices[7][36];
+    double load[6] = {}, force[6], legs[5][6], matrices[7][36];
     if (!read(pose, s) || !read_six(wrench, load)) return nb::none();
     const Geometry<double> g = of_.geometry(s);
-    const Vec6<double> force = of_.leg_forces(g, s, load);
+    of_.kernel.leg_forces(of_.own, numbers(s), load, force);
     for (int i = 0; i < 6; ++i) of_.rest_of_leg(i, force[i], norm(g.S[i]), legs);
     of_.kernel.tangent(of_.own, numbers(s), load, legs[2], matrices);
-    return new_array({4, 6, 6}, [&](double* to) {
-      for (const int k : {0, 1, 2, 6}) to = std::copy_n(matrices[k], 36, to);
-    });
+    const auto shown = [&](int k) { return new_array({6, 6}, [&](double* to) { std::copy_n(matrices[k], 36, to); }); };
+    return nb::make_tuple(shown(0), shown(1), shown(2), shown(6));
   }
 
  private:
@@ -307,7 +306,8 @@ void bind_one_pose(nb::module_& m) {
           nb::sig("def inverse_dynamics(self, pose: object, twist: object, acceleration: object, wrench: object, /) -> "
                   "ndarray | None"))
       .def("linearised", &Compiled::linearised, any, any,
-           nb::sig("def linearised(self, pose: object, wrench: object, /) -> ndarray | None"));
+           nb::sig("def linearised(self, pose: object, wrench: object, /) -> "
+                   "tuple[ndarray, ndarray, ndarray, ndarray] | None"));
   m.attr("least_sine") = least_sine;
   m.def("shortest_leg", [](const Input& design) { return shortest_leg(machine_of(design).design); });
 }

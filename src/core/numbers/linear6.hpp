@@ -156,8 +156,9 @@ inline bool solve_general(Mat6<double> m, Vec6<double> b, Vec6<double>& x) {
     double largest = 0;
     for (int j = 0; j < 6; ++j) largest = std::max(largest, std::abs(m[i][j]));
     if (!(largest > 0)) return false;
-    for (int j = 0; j < 6; ++j) m[i][j] /= largest;
-    b[i] /= largest;
+    const double scale = 1.0 / largest;
+    for (int j = 0; j < 6; ++j) m[i][j] *= scale;
+    b[i] *= scale;
   }
   for (int k = 0; k < 6; ++k) {
     int pivot = k;
@@ -166,9 +167,10 @@ inline bool solve_general(Mat6<double> m, Vec6<double> b, Vec6<double>& x) {
     if (!(std::abs(m[pivot][k]) > 1e-14)) return false;
     std::swap(m.a[k], m.a[pivot]);
     std::swap(b[k], b[pivot]);
+    const double reciprocal = 1.0 / m[k][k];
     for (int i = k + 1; i < 6; ++i) {
-      const double factor = m[i][k] / m[k][k];
-      for (int j = k; j < 6; ++j) m[i][j] -= factor * m[k][j];
+      const double factor = m[i][k] * reciprocal;
+      for (int j = k + 1; j < 6; ++j) m[i][j] -= factor * m[k][j];
       b[i] -= factor * b[k];
     }
   }

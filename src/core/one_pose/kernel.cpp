@@ -21,23 +21,25 @@ void delete_machine(void* machine) { delete static_cast<MachineAtPose*>(machine)
 /// B = L^-1 F of the springs along the legs.
 FLEXAPOD_FLAT SpringMatrix<double> scaled_springs(const MachineAtPose& m, const Pose<double>& platform,
                                                   const Pose<double>& base) {
+  const LegPlaces places(m.legs, platform, base);
   SpatialInertia<Lanes> J{};
-  double h[6][leg_groups * Lanes::lanes], length[leg_groups * Lanes::lanes];
+  Mat6<double> H;
+  PerLeg length;
   for (int g = 0; g < leg_groups; ++g) {
-    const LegPlaces::Group at = leg_places(m.legs, g, platform, base);
+    const LegPlaces::Group& at = places.group[g];
     const LegAxes<Lanes> leg(at.S, at.k, m.legs.joint);
     add_leg_inertia(J, leg, m.legs.group[g].inertia, at.q_p);
-    const Vec6<Lanes> column = leg_wrench(at.q_p, leg.s());
-    for (int r = 0; r < 6; ++r) column[r].store(h[r] + g * Lanes::lanes);
-    leg.L.store(length + g * Lanes::lanes);
+    set_force_transformation(H, g, at, leg);
+    length.group[g] = leg.L;
   }
   SpatialInertia<double> all = platform_inertia(m.legs.design, platform.R);
   all.top = all.top + sum(J.top), all.bottom = all.bottom + sum(J.bottom);
   for (int i = 0; i < 3; ++i) all.bottom_left.row[i] += sum(J.bottom_left.row[i]);
+  const Vec6<double> L = length.six();
   SpringMatrix<double> B;
   for (int j = 0; j < 6; ++j) {
-    const double root = std::sqrt(m.machine.stiffness(j, length[j]));
-    for (int r = 0; r < 6; ++r) B[r][j] = root * h[r][j];
+    const double root = std::sqrt(m.machine.stiffness(j, L[j]));
+    for (int r = 0; r < 6; ++r) B[r][j] = root * H[r][j];
   }
   Cholesky<double>(all.matrix()).forward_all(B);
   return B;
@@ -71,6 +73,13 @@ void accelerations(const void* machine, const State& at, const double* leg_force
   std::copy_n(found.a, 6, acceleration);
 }
 
+void leg_forces(const void* machine, const State& at, const double* wrench, double* force) {
+  const Motion<double>& platform = motion(at.platform);
+  const Vec6<double> found = inverse_dynamics(machine_at(machine).legs, platform, motion(at.base),
+                                              external_wrench(platform.pose.R, vec6(wrench)));
+  std::copy_n(found.a, 6, force);
+}
+
 void tangent(const void* machine, const State& at, const double* wrench, const double* unstretched,
              double (*matrices)[36]) {
   RestLoad load{vec6(wrench), {}};
@@ -84,7 +93,7 @@ void tangent(const void* machine, const State& at, const double* wrench, const d
 }  // namespace
 
 extern const one_pose_task::Kernel one_pose_kernel;
-const one_pose_task::Kernel one_pose_kernel = {FLEXAPOD_ISA, &new_machine,   &delete_machine,
-                                               &frequencies, &accelerations, &tangent};
+const one_pose_task::Kernel one_pose_kernel = {FLEXAPOD_ISA,   &new_machine, &delete_machine, &frequencies,
+                                               &accelerations, &leg_forces,  &tangent};
 
 }  // namespace flexapod

@@ -23,25 +23,12 @@ struct MachineAtPose {
       : machine(design, joint), legs(machine), friction(has_friction(design)) {}
 };
 
-inline LegPlaces::Group leg_places(const SixLegs& legs, int g, const Pose<double>& platform, const Pose<double>& base) {
-  const SixLegs::Group& group = legs.group[g];
-  LegPlaces::Group at{platform.R * group.p, base.R * group.b, {}, base.R * group.k};
-  at.S = (platform.t - base.t) + at.q_p - at.q_b;
-  return at;
-}
-
-/// Adds a wrench's derivatives, summed over the lanes, to the columns of a matrix.
-template <int N, int m>
-void add_derivatives(double (&to)[6][m], const Vec3<Dual<N, Lanes>>& force, const Vec3<Dual<N, Lanes>>& moment) {
-  const Vec6<Dual<N, Lanes>> wrench = Vec6<Dual<N, Lanes>>::of(force, moment);
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < N; ++j) to[i][j] += sum(wrench[i].d[j]);
-}
-
 /// Of platform and legs at rest, in inertial axes.
 class TangentAtRest {
-  using Moved = Dual<6, Lanes>;   // by a displacement of the platform
-  using Moving = Dual<9, Lanes>;  // by its velocity and angular velocity, and by the angular velocity of the base
+  /// By three displacements of the platform at once: by more, numbers would be too large for compilers to keep apart, and
+  /// their sums would go through memory.
+  static constexpr int at_once = 3;
+  using Moved = Dual<at_once, Lanes>;
   const MachineAtPose& of;
   const SixLegs& legs;
   const Pose<double>&platform, &base;
@@ -52,11 +39,12 @@ class TangentAtRest {
 
   TangentAtRest(const MachineAtPose& m, const Pose<double>& p, const Pose<double>& b, const RestLoad& l)
       : of(m), legs(m.legs), platform(p), base(b), load(l) {
+    const LegPlaces places(legs, platform, base);
     SpatialInertia<Lanes> J{};
     Mat6<Lanes> J_b;
     Vec6<Lanes> residual;
     for (int g = 0; g < leg_groups; ++g) {
-      const LegPlaces::Group at = leg_places(legs, g, platform, base);
+      const LegPlaces::Group& at = places.group[g];
       const LegAxes<Lanes> leg(at.S, at.k, legs.joint);
       set_inertia(g, at, leg, J, J_b);
       add_stiffness(g, at, residual);
@@ -74,12 +62,7 @@ class TangentAtRest {
                                  Mat6<Lanes>& J_b) {
     add_leg_inertia(J, leg, legs.group[g].inertia, at.q_p);
     add_base_coupling(J_b, leg, legs.group[g].inertia, at.q_p, at.q_b, legs.joint);
-    const Vec6<Lanes> h = leg_wrench(at.q_p, leg.s());
-    for (int r = 0; r < 6; ++r) {
-      double lane[Lanes::lanes];
-      h[r].store(lane);
-      for (int i = 0; i < Lanes::lanes && g * Lanes::lanes + i < 6; ++i) found.H[r][g * Lanes::lanes + i] = lane[i];
-    }
+    set_force_transformation(found.H, g, at, leg);
   }
   void finish_inertia(const SpatialInertia<Lanes>& J, const Mat6<Lanes>& J_b) {
     SpatialInertia<double> all = platform_inertia(legs.design, platform.R);
@@ -93,53 +76,69 @@ class TangentAtRest {
   /// Weight and springs of the legs and their joints, less what holds them: its derivatives by the platform's place.
   FLEXAPOD_FLAT void add_stiffness(int g, const LegPlaces::Group& at, Vec6<Lanes>& residual) {
     const SixLegs::Group& group = legs.group[g];
-    const Vec3<Moved> e = variables<Moved>(3), swing = cross(e, at.q_p), q_p = at.q_p + swing;
-    const LegAxes<Moved> leg(at.S + (variables<Moved>(0) + swing), at.k, legs.joint);
-    SphericalLoad<Moved> carried = weight_load(leg, group.inertia, leg.axes * (-legs.design.gravity));
     double stiffness[Lanes::lanes] = {}, length[Lanes::lanes] = {};
     for (int i = 0; i < Lanes::lanes && g * Lanes::lanes + i < 6; ++i) {
       const int which = g * Lanes::lanes + i;
       length[i] = load.L_0[which], stiffness[i] = of.machine.stiffness(which, length[i]);
     }
-    carried.force.x += Lanes::load(stiffness) * (leg.L - Lanes::load(length));
-    if (legs.features.joints) add_springs(carried, g, leg, at);
-    const Vec3<Moved> force = transposed(leg.axes, carried.force);
-    const Vec3<Moved> moment = cross(q_p, force) - transposed(leg.axes, carried.moment);
-    add_derivatives(found.K.a, force, moment);
-    add(residual, Vec3<Lanes>(force.x.v, force.y.v, force.z.v), Vec3<Lanes>(moment.x.v, moment.y.v, moment.z.v));
+    Vec6<Moved> wrench;
+    for (int first = 0; first < 6; first += at_once) {
+      const Vec3<Moved> r = displaced(first), e = displaced(first - 3), swing = cross(e, at.q_p), q_p = at.q_p + swing;
+      const LegAxes<Moved> leg(at.S + (r + swing), at.k, legs.joint);
+      SphericalLoad<Moved> carried = weight_load(leg, group.inertia, leg.axes * (-legs.design.gravity));
+      carried.force.x += Lanes::load(stiffness) * (leg.L - Lanes::load(length));
+      if (legs.features.joints) add_springs(carried, g, leg, at, e);
+      const Vec3<Moved> force = transposed(leg.axes, carried.force);
+      wrench = Vec6<Moved>::of(force, cross(q_p, force) - transposed(leg.axes, carried.moment));
+      for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < at_once; ++j) found.K[i][first + j] += sum(wrench[i].d[j]);
+    }
+    for (int i = 0; i < 6; ++i) residual[i] += wrench[i].v;
+  }
+  /// Three displacements, of which those from `first` on are the variables.
+  static Vec3<Moved> displaced(int first) {
+    Vec3<Moved> r;
+    Moved* const component[3] = {&r.x, &r.y, &r.z};
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < at_once; ++j) component[i]->d[j] = Lanes(i == first + j);
+    return r;
   }
   FLEXAPOD_APART void add_springs(SphericalLoad<Moved>& carried, int g, const LegAxes<Moved>& leg,
-                                  const LegPlaces::Group& at) const {
+                                  const LegPlaces::Group& at, const Vec3<Moved>& e) const {
     Mat3<Moved> R;
     const Mat3<double> columns = transpose(platform.R);
     for (int j = 0; j < 3; ++j) {
       const Vec3<Lanes> column(columns.row[j]);
-      R.row[j] = column + cross(variables<Moved>(3), column);
+      R.row[j] = column + cross(e, column);
     }
     add_joint_springs(carried, legs.joints[g].springs, legs.joints[g].rest, leg, Vec3<Moved>(at.k), transpose(R),
                       base.R, legs.joint);
   }
 
-  /// The joints' friction by the rates; by the velocity of the base it is that by the platform's, reversed.
+  /// The joints' friction by the rates, which is linear in them: by each of nine unit velocities in turn. By the velocity of
+  /// the base it is that by the platform's, reversed.
   FLEXAPOD_FLAT void add_friction(int g, const LegPlaces::Group& at, const LegAxes<Lanes>& leg) {
-    const Vec3<Moving> w = variables<Moving>(3), w_b = variables<Moving>(6);
-    LegEnds<Moving> end;
-    end.v = leg.axes * (variables<Moving>(0) + cross(w, at.q_p) - cross(w_b, at.q_b));
-    end.omega_p = leg.axes * w, end.omega_b = leg.axes * w_b;
-    const SphericalLoad<Moving> lost =
-        friction_load(leg, legs.group[g].leg, end, LegMotion<Moving>(leg, end, legs.joint));
-    const Vec3<Moving> force = transposed(leg.axes, lost.force);
-    double by[6][9] = {};
-    add_derivatives(by, force, cross(at.q_p, force) - transposed(leg.axes, lost.moment));
-    for (int i = 0; i < 6; ++i)
-      for (int j = 0; j < 3; ++j) {
-        found.C[i][j] += by[i][j], found.C[i][3 + j] += by[i][3 + j];
-        found.C_b[i][j] -= by[i][j], found.C_b[i][3 + j] += by[i][6 + j];
+    for (int j = 0; j < 9; ++j) {
+      double unit[9] = {};
+      unit[j] = 1;
+      const Vec3<double> v(unit[0], unit[1], unit[2]), w(unit[3], unit[4], unit[5]), w_b(unit[6], unit[7], unit[8]);
+      LegEnds<Lanes> end;
+      end.v = leg.axes * (v + cross(w, at.q_p) - cross(w_b, at.q_b));
+      end.omega_p = leg.axes * Vec3<Lanes>(w), end.omega_b = leg.axes * Vec3<Lanes>(w_b);
+      const SphericalLoad<Lanes> lost =
+          friction_load(leg, legs.group[g].leg, end, LegMotion<Lanes>(leg, end, legs.joint));
+      const Vec3<Lanes> force = transposed(leg.axes, lost.force);
+      const Vec6<Lanes> wrench = Vec6<Lanes>::of(force, cross(at.q_p, force) - transposed(leg.axes, lost.moment));
+      for (int i = 0; i < 6; ++i) {
+        const double c = sum(wrench[i]);
+        if (j < 6) found.C[i][j] += c;
+        if (j < 3) found.C_b[i][j] -= c;
+        if (j >= 6) found.C_b[i][j - 3] += c;
       }
+    }
   }
-
   /// The platform's weight, the external wrench and a suspension.
-  void add_others(Vec6<double>& r) {
+  FLEXAPOD_FLAT void add_others(Vec6<double>& r) {
     using D = Dual<6>;
     const Motion<D> moved = at_rest(displaceable<D>(platform, 0));
     const Vec3<D> arm = moved.pose.R * legs.design.R_0;

@@ -21,6 +21,8 @@ struct Kernel {
   /// Six accelerations of the platform for six leg forces and a wrench in the platform's axes.
   void (*accelerations)(const void* machine, const State& at, const double* leg_force, const double* wrench,
                         double* acceleration);
+  /// Six leg forces that give the platform's accelerations, for a wrench in its axes; NaN where H is singular.
+  void (*leg_forces)(const void* machine, const State& at, const double* wrench, double* force);
   /// M, C, K, M_b, C_b, K_b, H about rest, for a wrench in the platform's axes and the legs' unstretched lengths.
   void (*tangent)(const void* machine, const State& at, const double* wrench, const double* unstretched,
                   double (*matrices)[36]);

@@ -95,7 +95,26 @@ struct LegPlaces {
     Vec3<Lanes> q_p, q_b, S, k;
   };
   Group group[leg_groups];
+
+  LegPlaces() = default;
+  LegPlaces(const SixLegs& legs, const Pose<double>& platform, const Pose<double>& base) {
+    for (int g = 0; g < leg_groups; ++g) {
+      const SixLegs::Group& of = legs.group[g];
+      group[g] = {platform.R * of.p, base.R * of.b, {}, base.R * of.k};
+      group[g].S = (platform.t - base.t) + group[g].q_p - group[g].q_b;
+    }
+  }
 };
+
+/// Sets the columns of H that belong to a group.
+inline void set_force_transformation(Mat6<double>& H, int g, const LegPlaces::Group& at, const LegAxes<Lanes>& leg) {
+  const Vec6<Lanes> h = leg_wrench(at.q_p, leg.s());
+  for (int r = 0; r < 6; ++r) {
+    double lane[Lanes::lanes];
+    h[r].store(lane);
+    for (int i = 0; i < Lanes::lanes && g * Lanes::lanes + i < 6; ++i) H[r][g * Lanes::lanes + i] = lane[i];
+  }
+}
 
 /// What legs add to J_p, and the wrench that they take from a platform with the accelerations given.
 struct LegSums {
@@ -104,8 +123,13 @@ struct LegSums {
 
   FLEXAPOD_FLAT void add(const SixLegs& legs, int g, const LegPlaces::Group& at, const Motion<double>& platform,
                          const Motion<double>& base, const Lanes& leg_force) {
-    const SixLegs::Group& group = legs.group[g];
     const LegAxes<Lanes> leg(at.S, at.k, legs.joint);
+    add_load(legs, g, at, leg, platform, base, leg_force);
+    add_leg_inertia(J, leg, legs.group[g].inertia, at.q_p);
+  }
+  void add_load(const SixLegs& legs, int g, const LegPlaces::Group& at, const LegAxes<Lanes>& leg,
+                const Motion<double>& platform, const Motion<double>& base, const Lanes& leg_force) {
+    const SixLegs::Group& group = legs.group[g];
     const LegEnds<Lanes> end = leg_ends(leg, at.q_p, at.q_b, platform, base, legs.design.gravity);
     const LegMotion<Lanes> motion(leg, end, legs.joint);
     SphericalLoad<Lanes> load = spherical_load(leg, group.inertia, group.leg, end, motion);
@@ -113,7 +137,6 @@ struct LegSums {
     const Vec3<Lanes> F_s = transposed(leg.axes, load.force);
     force += F_s;
     moment += cross(at.q_p, F_s) - transposed(leg.axes, load.moment);
-    add_leg_inertia(J, leg, group.inertia, at.q_p);
   }
   /// The part of the springs in the joints; apart, so that a machine without them goes through nothing new.
   FLEXAPOD_APART void add_springs(const SixLegs& legs, int g, const LegPlaces::Group& at,
@@ -158,14 +181,28 @@ FLEXAPOD_FLAT inline Vec6<double> forward_dynamics(const SixLegs& legs, const Le
 /// The same from poses.
 inline Vec6<double> forward_dynamics(const SixLegs& legs, const Motion<double>& platform, const Motion<double>& base,
                                      const Vec6<double>& leg_force, const Vec6<double>& wrench) {
-  LegPlaces places;
+  return forward_dynamics(legs, LegPlaces(legs, platform.pose, base.pose), platform, base, PerLeg(leg_force), wrench);
+}
+
+/// Leg forces that give the accelerations of `platform`, from H F = load - wrench; NaN where H is singular.
+FLEXAPOD_FLAT inline Vec6<double> inverse_dynamics(const SixLegs& legs, const Motion<double>& platform,
+                                                   const Motion<double>& base, const Vec6<double>& wrench) {
+  const LegPlaces at(legs, platform.pose, base.pose);
+  LegSums sums{};
+  Mat6<double> H;
   for (int g = 0; g < leg_groups; ++g) {
-    const SixLegs::Group& group = legs.group[g];
-    LegPlaces::Group& at = places.group[g];
-    at = {platform.pose.R * group.p, base.pose.R * group.b, {}, base.pose.R * group.k};
-    at.S = (platform.pose.t - base.pose.t) + at.q_p - at.q_b;
+    const LegAxes<Lanes> leg(at.group[g].S, at.group[g].k, legs.joint);
+    sums.add_load(legs, g, at.group[g], leg, platform, base, Lanes(0.0));
+    set_force_transformation(H, g, at.group[g], leg);
   }
-  return forward_dynamics(legs, places, platform, base, PerLeg(leg_force), wrench);
+  if (legs.features.joints)
+    for (int g = 0; g < leg_groups; ++g) sums.add_springs(legs, g, at.group[g], platform, base);
+  Vec6<double> load = platform_wrench(legs.design, platform), force;
+  add(load, sum(sums.force), sum(sums.moment));
+  for (int i = 0; i < 6; ++i) load[i] -= wrench[i];
+  if (legs.features.suspension) add_suspension_load(load, legs.design, platform, base);
+  if (!solve_general(H, load, force)) force = Vec6<double>{{NAN, NAN, NAN, NAN, NAN, NAN}};
+  return force;
 }
 
 /// What the machine does to its base and loses to friction, for the accelerations in the motions given.

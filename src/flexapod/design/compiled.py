@@ -149,7 +149,7 @@ class CompiledHexapod:
     def linearised(self, pose: ArrayLike, wrench: ArrayLike = _ZERO) -> LinearMatrices:
         """Compute M, C, K and H, (6, 6) each, about the pose held at rest under gravity and a wrench."""
         found = self._core.linearised(pose, wrench)
-        return LinearMatrices(*(self._again("linearised", pose=pose, wrench=wrench) if found is None else found))
+        return LinearMatrices._make(self._again("linearised", pose=pose, wrench=wrench) if found is None else found)
 
     def _again(self, method: str, **given: ArrayLike) -> Any:
         """The answer to what the core does not read at once. Raises ArgumentError for the first that is wrong."""
