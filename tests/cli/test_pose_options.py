@@ -135,3 +135,20 @@ def test_planned_waypoints_say_how_they_turn(result, tmp_path):
     again = result("path", BASE, tmp_path / "waypoints.csv")
     assert (tmp_path / "waypoints.csv").read_text().startswith("t_s,x_m,y_m,z_m,angle_1_deg,")
     assert again["least_index_rad_s"] == pytest.approx(found["least_index_rad_s"], rel=1e-9)
+
+
+def test_an_option_and_a_column_that_contradict_each_other_are_refused(run, tmp_path):
+    """Neither is taken in silence; the same said twice is fine."""
+    file = tmp_path / "poses.csv"
+    file.write_text("x,y,z,roll,pitch,yaw,rotation_order,pivot_x,pivot_y,pivot_z\n0,0,2.4,0,5,9,ZYX,0,0,0.5\n")
+    for option, words in (
+        (("--rotation-order", "XYZ"), "line 2: the order is ZYX, and --rotation-order is XYZ"),
+        (("--pivot", "0", "0", "0.4"), "pivot_x, ... and --pivot name different points"),
+    ):
+        code, _, err = run("kinematics", "motion-base", file, *option)
+        assert code == 2
+        assert words in " ".join(err.split())
+    alone = run("kinematics", "motion-base", file)
+    both = run("kinematics", "motion-base", file, "--rotation-order", "ZYX", "--pivot", 0, 0, 0.5)
+    assert alone[0] == both[0] == 0
+    assert alone[1] == both[1]

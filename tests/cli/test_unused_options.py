@@ -29,6 +29,11 @@ GRID = ["sweep", "cubic-isolator", "--grid", "x=0:0.001:2"]
         [*SIMULATE, "--seed", "2"],
         [*SIMULATE, "--exaggeration", "2"],
         ["statics", "cubic-isolator", "--axes", "base"],
+        ["modes", "cubic-isolator", "--pivot", *"000"],
+        ["envelope", "motion-base", "--pivot", *"001"],
+        ["control", "cubic-isolator", "force", "--rotation-order", "XYZ"],
+        [*CERTIFY, "--pivot", *"001"],
+        ["statics", "cubic-isolator", "loads.csv", "--pivot", *"001"],
         [*SWEEP, "--chunk", "7"],
         [*SWEEP, "--no-poses"],
         [*SWEEP, "--timeout", "1"],
@@ -39,6 +44,7 @@ GRID = ["sweep", "cubic-isolator", "--grid", "x=0:0.001:2"]
 def test_it_is_named_with_what_it_is_for(line, run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "given.csv").write_text("t,x,y,z,roll,pitch,yaw\n0,0,0,0.89,0,0,0\n1,0,0,0.9,0,0,0\n")
+    (tmp_path / "loads.csv").write_text("case,force_x\n1,2\n")
     code, out, err = run(*line)
     assert (code, out) == (2, "")
     assert " is for " in err

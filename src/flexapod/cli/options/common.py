@@ -20,12 +20,14 @@ import json
 import math
 import os
 from collections.abc import Callable, Iterable, Mapping
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 from click.shell_completion import CompletionItem
 
+from flexapod.cli.options.given import needed
 from flexapod.cli.options.quantities import FREQUENCY, LENGTH, POSITIVE_LENGTH, SIX
 from flexapod.conventions import JOINT_MODELS
 from flexapod.errors import OutputError
@@ -119,7 +121,8 @@ set_option = click.option(
     metavar="KEY=VALUE",
     help="Change a number of the design, as platform.mass=400 or legs.stiffness_N_per_um[2]=10. Repeatable.",
 )
-_TURNS = "flexapod.turns"  # in a context's meta: the order and the pivot of its poses
+_TURNS = "flexapod.turns"  # in a context's meta: the order and the pivot of its poses, and whether it names one
+_POSE_FILES = ("file", "path_file", "mean")  # parameters: a file may have poses
 
 
 def _keep(context: click.Context, parameter: click.Parameter, value: Any) -> None:
@@ -128,6 +131,11 @@ def _keep(context: click.Context, parameter: click.Parameter, value: Any) -> Non
 
         check_order(value)
     context.meta.setdefault(_TURNS, {})[parameter.name] = value
+
+
+def turning_needs(there: object) -> None:
+    """Raise UsageError for --rotation-order or --pivot without a pose that it turns."""
+    needed(there, "the angles of poses that are given, and here is none", "rotation_order", "pivot")
 
 
 def turns() -> tuple[str | None, tuple[float, float, float] | None]:
@@ -141,6 +149,7 @@ def _as_rpy(context: click.Context, _: click.Parameter, six: tuple[float, ...] |
     """x, y, z, roll, pitch, yaw (m, deg) of a pose in the context's order and about its pivot."""
     given = context.meta[_TURNS]
     order, pivot = given["rotation_order"], given["pivot"]
+    given["turned"] = given.get("turned", False) or six is not None
     if six is None or (order is None and pivot is None):
         return six
     from flexapod.pose import Pose
@@ -173,7 +182,14 @@ def rotation_options(function: Any) -> Any:
         help="Point of the platform, in its frame, m, that the angles of poses turn it about. Default: its origin.",
         **early,
     )
-    return order(pivot(function))
+
+    @wraps(function)
+    def turned(*args: Any, **given: Any) -> Any:
+        named = click.get_current_context().meta[_TURNS].get("turned")
+        turning_needs(named or any(given.get(name) for name in _POSE_FILES))
+        return function(*args, **given)
+
+    return order(pivot(turned))
 
 
 def pose_option(function: Any) -> Any:

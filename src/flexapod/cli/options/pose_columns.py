@@ -64,6 +64,10 @@ def _orders(table: Table, angles: tuple[str, ...]) -> np.ndarray:
             check_order(word)
         except PoseError as error:
             raise table.error(f"line {line}: {error}") from None
+        if said not in (None, word):
+            raise table.error(
+                f"line {line}: the order is {word}, and --rotation-order is {said}. Leave one of them out."
+            )
         if angles == ROTATIONS and sorted(word.lower()) != ["x", "y", "z"]:
             raise table.error(
                 f"line {line}: roll, pitch and yaw turn about x, y and z once each, the order {word} does not. Name "
@@ -79,7 +83,11 @@ def _pivots(table: Table) -> Array:
         return np.tile(np.asarray(common.turns()[1] or (0.0, 0.0, 0.0)), (len(table.lines), 1))
     if missing := [name for name, column in zip(PIVOT, columns, strict=True) if column is None]:
         raise table.error(f"there is no column {', '.join(missing)}; a pivot has three. Add the others.")
-    return np.column_stack([table.numbers(column, QUANTITIES["length"], "m") for column in columns if column])
+    found = np.column_stack([table.numbers(column, QUANTITIES["length"], "m") for column in columns if column])
+    said = common.turns()[1]
+    if said is not None and np.any(found != said):
+        raise table.error("its columns pivot_x, ... and --pivot name different points. Leave one of them out.")
+    return found
 
 
 def written(pose: Pose) -> dict[str, Array]:

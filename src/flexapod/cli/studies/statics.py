@@ -148,7 +148,9 @@ def _of_file(hexapod: Hexapod, options: Options) -> _Cases:
             gravity = _gravity(hexapod, elevation, roll)
         elif table.column("base_roll") is not None:
             raise table.error("base_roll turns the base at an elevation. Give a column elevation as well.")
-        if any(column.name in pose_columns.TITLES for column in table.columns):
+        posed = any(column.name in pose_columns.TITLES for column in table.columns)
+        common.turning_needs(posed or options.pose)
+        if posed:
             rows = pose_columns.six(table, _FORM)
             loads["pose"] = Pose(rows[:, :3], rpy_matrix(rows[:, 3:]))
         given = table.column("case")
