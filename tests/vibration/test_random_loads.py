@@ -208,6 +208,10 @@ def test_modes_outside_the_band_of_a_spectrum_are_told_with_the_result():
         assert f"The spectrum of fan is from {low:.4g} to 60 Hz" in found.attrs["spectrum_caution"]
         assert f"there lie modes, at {missed} Hz" in found.attrs["spectrum_caution"]
         assert "the base" not in found.attrs["spectrum_caution"]
+    pump = fx.vibration.RandomLoad([1.0, 1.0], frequency=[low, 60.0], axis="force_y", name="pump")
+    twice = fx.random_response(MACHINE, HOME, loads=[load, pump]).attrs["spectrum_caution"]
+    assert f"The spectra of fan and pump are from {low:.4g} to 60 Hz" in twice
+    assert twice.count("there lie modes") == 1
     stiff = fx.control.ForceFeedback(26.0, leak=2.9)
     wide = fx.vibration.RandomLoad([1.0, 1.0], frequency=[0.1, 60.0], axis="force_x")
     assert not fx.control.controlled_random_response(MACHINE, HOME, controller=stiff, loads=wide).attrs[

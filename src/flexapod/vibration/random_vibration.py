@@ -173,23 +173,28 @@ def stationary(
     panels = Panels(graded(np.unique(np.concatenate([source.spectrum.grid for source in sources])), poles))
     answer = answers(panels.omega)
     found = _dataset(panels, {source.name: answer.densities(panels.omega, source) for source in sources})
-    told = " ".join(filter(None, (_outside(source, poles) for source in sources)))
-    return found.assign_attrs({**origin, "spectrum_caution": told})
+    return found.assign_attrs({**origin, "spectrum_caution": _outside(sources, poles)})
 
 
-def _outside(source: Source, poles: Complex) -> str:
-    """That a spectrum says nothing of frequencies at which the machine vibrates, where it does not."""
+def _outside(sources: Sequence[Source], poles: Complex) -> str:
+    """That spectra say nothing of frequencies at which the machine vibrates, where it is so: those alike together."""
     moving = poles.imag > 1e-6 * np.abs(poles)  # and not rounding of what only creeps
-    natural, (low, high) = np.sort(poles.imag[moving]) / TWO_PI, source.spectrum.grid[[0, -1]] / TWO_PI
-    missed = natural[(natural < low) | (natural > high)]
-    if not missed.size:
-        return ""
-    told = ", ".join(f"{f:.4g}" for f in missed)
-    of = "the base" if source.name == "base" else source.name
-    return (
-        f"The spectrum of {of} is from {low:.4g} to {high:.4g} Hz; outside it counts as no excitation, and there lie "
-        f"modes, at {told} Hz. Where they are excited too, more moves than is told here: extend the spectrum."
-    )
+    natural = np.sort(poles.imag[moving]) / TWO_PI
+    alike: dict[tuple[float, float], list[str]] = {}
+    for source in sources:
+        low, high = source.spectrum.grid[[0, -1]] / TWO_PI
+        alike.setdefault((low, high), []).append("the base" if source.name == "base" else source.name)
+    told = []
+    for (low, high), names in alike.items():
+        missed = ", ".join(f"{f:.4g}" for f in natural[(natural < low) | (natural > high)])
+        if missed:
+            what, are = ("spectrum", "is") if len(names) == 1 else ("spectra", "are")
+            told.append(
+                f"The {what} of {' and '.join(names)} {are} from {low:.4g} to {high:.4g} Hz; outside it counts as no "
+                f"excitation, and there lie modes, at {missed} Hz. Where they are excited too, more moves than is told "
+                f"here: extend the {what}."
+            )
+    return " ".join(told)
 
 
 def _dataset(panels: Panels, by_source: dict[str, dict[str, Array]]) -> xr.Dataset:
