@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -52,18 +51,13 @@ def without_rounding(values: Array, share: float = 1e-12) -> Array:
     return np.where(np.abs(values) < share * np.nanmax(np.abs(values), initial=0.0), 0.0, values)
 
 
-def placed(pose: Sequence[float] | Array) -> list[float]:
-    """The six numbers of a pose in m and degrees, with 0 for less than 0.1 nm or 0.1 nrad: symmetry."""
-    numbers = [0.0 if abs(value) < 1e-10 else float(value) for value in pose]
-    return [*numbers[:3], *map(math.degrees, numbers[3:])]
-
-
 def pose_words(pose: Pose) -> str:
     """A pose in m and degrees."""
-    x, y, z, *turned = placed([*pose.position, *pose.rpy])
-    words = f"x {x:.6g}, y {y:.6g}, z {z:.6g} m"
-    if any(turned):
-        roll, pitch, yaw = (f"{value:.5g}" for value in turned)
+    x, y, z = (f"{value + 0.0:.6g}" for value in pose.position)
+    turned = [math.degrees(angle) for angle in pose.rpy]
+    words = f"x {x}, y {y}, z {z} m"
+    if max(map(abs, turned)) > 1e-9:
+        roll, pitch, yaw = (f"{0.0 if abs(value) < 1e-9 else value:.5g}" for value in turned)
         words += f", roll {roll}\u00b0, pitch {pitch}\u00b0, yaw {yaw}\u00b0"
     return words
 
@@ -75,9 +69,8 @@ def pose_numbers(pose: Pose) -> list[float]:
 
 def six_words(pose: Array) -> str:
     """Six numbers (m, rad) in mm and degrees."""
-    numbers = placed(pose)
-    x, y, z = (brief(1e3 * v) for v in numbers[:3])
-    roll, pitch, yaw = map(brief, numbers[3:])
+    x, y, z = (brief(1e3 * v) for v in pose[:3])
+    roll, pitch, yaw = (brief(math.degrees(v)) for v in pose[3:])
     return f"x {x}, y {y}, z {z} mm, roll {roll}, pitch {pitch}, yaw {yaw} deg"
 
 

@@ -19,7 +19,7 @@ from flexapod.plots.style import SHORTENED, STRETCHED
 from flexapod.report import springs
 from flexapod.report.findings import Findings
 from flexapod.report.influence import MOVE, leading
-from flexapod.report.numbers import DASH, brief, file_name, percent, pose_words, shown
+from flexapod.report.numbers import DASH, brief, file_name, percent, pose_words, shown, without_rounding
 from flexapod.report.studies import inputs
 from flexapod.report.studies.inputs import limits
 from flexapod.report.study import Bars, Column, Drawing, Row, Section, Study, Table
@@ -244,7 +244,7 @@ def _legs(f: Findings) -> Section:
     if f.rest is not None:
         columns += [
             Column("unstretched", 1e3 * f.rest.unstretched_length, "mm", 6, on="page"),
-            Column("static force", f.rest.leg_force, "N", marked=beyond.get("force at rest N")),
+            Column("static force", without_rounding(f.rest.leg_force), "N", marked=beyond.get("force at rest N")),
         ]
     for name, angles in (("universal", f.angles.universal), ("spherical", f.angles.spherical)):
         words = [f"{x:.2f}" for x in np.degrees(angles)]

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from flexapod import plots
@@ -14,7 +15,6 @@ from flexapod.conventions import AXES, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.load_limits import motion_limits_words
-from flexapod.report.numbers import placed
 from flexapod.report.studies import least_index
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 from flexapod.workspace.summary import At, SweepSummary
@@ -71,8 +71,8 @@ def _cautions(
 
 def pose_text(pose: Array) -> str:
     """x, y, z in m and roll, pitch, yaw in degrees."""
-    x, y, z, *angles = placed(pose)
-    return f"({x:.5g}, {y:.5g}, {z:.5g}) m, ({', '.join(f'{a:.4g}' for a in angles)})°"
+    x, y, z, *angles = pose
+    return f"({x:.5g}, {y:.5g}, {z:.5g}) m, ({', '.join(f'{math.degrees(a):.4g}' for a in angles)})°"
 
 
 def _summary_rows(summary: SweepSummary, within: str) -> list[Row]:
@@ -118,7 +118,7 @@ def _extremes(summary: SweepSummary, within: str) -> Table:
         "most cond": summary.worst_conditioned,
     }
     found = {words: at for words, at in all_of_them.items() if at is not None}
-    poses = [[f"{v:.3g}" for v in placed(at.pose)] for at in found.values()]
+    poses = [[f"{v:.3g}" for v in (*at.pose[:3], *np.degrees(at.pose[3:]))] for at in found.values()]
     columns = [
         Column("", list(found)),
         Column("ω1 rad/s", [f"{at.omega_1:.5g}" for at in found.values()]),
