@@ -196,6 +196,7 @@ def test_a_changed_design_or_box_is_refused_by_name(tmp_path, capsys):
     code, _, said = run(capsys, "sweep", "mukherjee-i", *AROUND, "--points", 1000, *out)
     assert code == 2
     assert "exists already" in said
+    assert "cannot be written" not in said
     code, _, said = run(capsys, "sweep", "mukherjee-ii", *AROUND, "--points", 1000, *out, "--resume")
     assert code == 2
     for word in ("'mukherjee-i'", I.digest, "'mukherjee-ii'", fx.load("mukherjee-ii").digest):

@@ -62,6 +62,8 @@ def make_store(job: Job) -> None:
         with passing(path.with_name(f".{path.name}.{job.token}")) as making:
             _write_metadata(making, job)
             os.replace(making, path)
+    except OutputError:
+        raise
     except (OSError, ValueError) as error:  # ValueError: a name with a null character
         words = getattr(error, "strerror", None) or error
         raise OutputError(f"{path} cannot be written: {words}. Choose another place.") from error
