@@ -15,10 +15,10 @@ from flexapod.showing import in_notebooks
 
 _KEPT_DAMPING = 0.2  # of the continuous loop: a sampled one that keeps less is sampled too slowly
 _HALVINGS = 20
-_CREEP = 0.02  # of the lowest natural frequency: slower decay comes of what the law does to stiffness or friction
+_TOLD_AS_CREEP = 0.02  # of the lowest natural frequency: slower decay is the law's work on stiffness or friction
 _NEUTRAL = 1e-9  # the same: below, a pole is at zero but for rounding, and its motion neither decays nor grows
 #: What slow decay means, by what a law of each leg measures.
-_CREEPING: dict[tuple[Measurement, ...], str] = {
+_CREEP_MEANS: dict[tuple[Measurement, ...], str] = {
     ("leg_force",): "a gain not far above takes the stiffness away, and the platform falls over",
     ("leg_rate",): "the loops are dampers so strong that the legs hardly yield",
 }
@@ -79,10 +79,10 @@ def creep_words(loop: ClosedLoop) -> str:
 
     Force feedback can nearly take the static stiffness away, velocity feedback can be a damper that hardly yields.
     """
-    means = _CREEPING.get(loop.controller.measures)
+    means = _CREEP_MEANS.get(loop.controller.measures)
     pole = loop.pole
     still = np.abs(pole.imag) < 1e-3 * np.abs(pole.real)
-    slow = pole[still & (pole.real < -_NEUTRAL * loop.omega[0]) & (pole.real > -_CREEP * loop.omega[0])]
+    slow = pole[still & (pole.real < -_NEUTRAL * loop.omega[0]) & (pole.real > -_TOLD_AS_CREEP * loop.omega[0])]
     if means is None or not slow.size:
         return ""
     rate = float(-slow.real.max())

@@ -16,7 +16,7 @@ from flexapod.conventions import Array, Complex
 from flexapod.errors import ArgumentError
 
 _STILL = 1 - 1e-6  # damping ratio that counts as no vibration
-_CREEP = 1e-3  # of the lowest natural frequency: a pole that decays more slowly comes of stiffness taken away
+_NEARLY_CANCELLED = 1e-3  # of the lowest natural frequency: a pole below comes of stiffness that a gain takes away
 
 
 def ascending_gains(gains: ArrayLike, least: int) -> Array:
@@ -42,7 +42,7 @@ def best_gain(
         return of(poles(plant, controller_for(plant.linear, law(float(np.exp(log_gain))))))
 
     def of(pole: Complex) -> float:
-        creeps = (pole.real > -_CREEP * plant.omega[0]) & (np.abs(pole) > 1e-9 * np.abs(pole).max())
+        creeps = (pole.real > -_NEARLY_CANCELLED * plant.omega[0]) & (np.abs(pole) > 1e-9 * np.abs(pole).max())
         return least_damping(pole) if not creeps.any() else -1.0
 
     logs = np.log(gains)
