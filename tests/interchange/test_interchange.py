@@ -358,6 +358,17 @@ def test_export_writes_the_files(run, result, tmp_path, kind):
     assert "pitch=5" in text
 
 
+def test_the_ending_of_a_file_says_its_format(run, result, tmp_path):
+    for name, kind in {"m.xml": "mjcf", "m.URDF": "urdf", "m.sdf": "sdf", "m.mat": "mat"}.items():
+        assert result("export", file("motion-base"), "--out", tmp_path / name)["format"] == kind
+    code, _, err = run("export", "motion-base", "--out", tmp_path / "m.txt")
+    assert code == 2
+    assert "Give --to as well, or end it in .xml, .urdf, .sdf, .mat." in " ".join(err.split())
+    code, _, err = run("export", "motion-base")
+    assert code == 2
+    assert "Missing option '--to'. Choose from: mjcf, urdf, sdf, mat." in " ".join(err.split())
+
+
 def test_export_replaces_bodies_when_told_to(run, result, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     code, _, err = run("export", "mukherjee-ii", "--to", "mjcf")

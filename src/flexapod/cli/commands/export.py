@@ -26,9 +26,9 @@ SUFFIXES = {"mjcf": ".xml", "urdf": ".urdf", "sdf": ".sdf", "mat": ".mat"}
     "--to",
     "kind",
     type=click.Choice(tuple(SUFFIXES)),
-    required=True,
+    default=None,
     help="mjcf: MuJoCo. urdf: a tree, with its loops and springs in a JSON file beside it. sdf: a world. mat: the "
-    "state space about rest, for MATLAB and SciPy.",
+    "state space about rest, for MATLAB and SciPy. Default: what the ending of --out says, .xml being mjcf.",
 )
 @click.option(
     "--out",
@@ -49,7 +49,7 @@ SUFFIXES = {"mjcf": ".xml", "urdf": ".urdf", "sdf": ".sdf", "mat": ".mat"}
 @common.json_option
 def command(
     design: str,
-    kind: str,
+    kind: str | None,
     out: Path | None,
     nearest_physical: bool,
     pose: tuple[float, ...] | None,
@@ -66,6 +66,7 @@ def command(
     from flexapod.interchange.rigid_bodies import nearest_physical as nearest
     from flexapod.mechanics.modes import natural_modes
 
+    kind = kind or _kind_of(out)
     if joint != "universal" and kind != "mat":
         raise click.UsageError(f"--joint {joint} cannot be written as {kind}: its legs are real bodies. Leave it out.")
     given = common.load_design(design, changes)
@@ -99,6 +100,19 @@ def command(
     if found["bodies_replaced"]:
         click.echo(f"Bodies were replaced; its natural frequencies change by {found['frequency_change']:.3g} at most.")
     common.print_warnings(told)
+
+
+def _kind_of(out: Path | None) -> str:
+    """The format that the ending of a file says. Raises UsageError where it says none."""
+    if out is None:
+        raise click.UsageError(f"Missing option '--to'. Choose from: {', '.join(SUFFIXES)}.")
+    kinds = {suffix: kind for kind, suffix in SUFFIXES.items()}
+    if out.suffix.lower() not in kinds:
+        raise click.UsageError(
+            f"{out} ends in {out.suffix!r}, which is the ending of no format. Give --to as well, or end it in "
+            f"{', '.join(kinds)}."
+        )
+    return kinds[out.suffix.lower()]
 
 
 def _write(kind: str, path: Path, hexapod: Hexapod, pose: Pose, joint: JointModel) -> tuple[Path, ...]:
