@@ -70,6 +70,10 @@ def test_a_plot_takes_the_users_style_and_width(name):
     assert max((text.get_size() for text in words), default=5.0) <= 5.5
     widths = [line.get_linewidth() for ax in figure.axes for line in ax.lines]
     assert max(widths, default=0.0) <= 2.5  # of 5, the thickest line that is drawn otherwise
+    marked = [line for ax in figure.axes for line in ax.lines if line.get_marker() not in ("None", "", None)]
+    for line in marked:  # half of 10, of strokes half of 17
+        assert line.get_markersize() <= (8.5 if line.get_marker() in ("|", "_") else 5.0)
+        assert line.get_markeredgewidth() <= 1.1
     boxes = [ax.get_position() for ax in flat if ax.get_label() != "<colorbar>"]
     for i, one in enumerate(boxes):
         assert one.width > 0.1

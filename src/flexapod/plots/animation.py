@@ -278,7 +278,8 @@ def _stage(top: Array, feet: Array, width: float) -> tuple[Figure, Callable[[Arr
         plates.append(Poly3DCollection([joints], facecolor=to_rgba(color, 0.25), edgecolor=color, linewidth=wide(1.5)))
         ax.add_collection3d(plates[-1])
     legs = [
-        ax.plot(*np.zeros((3, 2)), color=LEG, lw=wide(2.4), marker="o", ms=4, mec="white", mew=0.5)[0] for _ in range(6)
+        ax.plot(*np.zeros((3, 2)), color=LEG, lw=wide(2.4), marker="o", ms=wide(4), mec="white", mew=wide(0.5))[0]
+        for _ in range(6)
     ]
     both = np.vstack([top, feet])
     middle = 0.5 * (both.max(axis=0) + both.min(axis=0))

@@ -12,7 +12,7 @@ import xarray as xr
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure, SubFigure
 
-from flexapod.conventions import TWO_PI, Array, printed_unit
+from flexapod.conventions import TWO_PI, Array, Complex, printed_unit
 from flexapod.mechanics.point_motion import of_point
 from flexapod.plots.style import (
     BLUE,
@@ -81,7 +81,7 @@ def gain_map(dataset: xr.Dataset, *, figure: Figure | SubFigure | None = None) -
             near = dataset.near.values.astype(float)
             ax.contour(kd, kp, near, levels=[0.5], colors=[ORANGE], linewidths=wide(1.8))
         rows, columns = np.nonzero(unstable)
-        ax.plot(kd[columns], kp[rows], ls="none", marker="x", ms=3, mew=0.8, color=ink())
+        ax.plot(kd[columns], kp[rows], ls="none", marker="x", ms=wide(3), mew=wide(0.8), color=ink())
         ax.set_xlabel(f"derivative gain kd, {printed_unit(dataset.kd.attrs['units'])}")
         dress(ax)
         _spread(ax, kd, kp)
@@ -126,19 +126,16 @@ def root_locus(dataset: xr.Dataset, chosen: float | None = None, *, figure: Figu
     for number, k in enumerate(moving):
         left.plot(shown[:, k].real, shown[:, k].imag, color=SIX[number % 6], lw=wide(1.6))
     _damping_rays(left, top)
-    start = dataset.open_pole.values
-    left.plot(
-        start.real, start.imag, ls="none", marker="x", ms=8, mew=1.8, color=ink(), label="no control", clip_on=False
-    )
+    _marks(left, dataset.open_pole.values, "x", 8, 1.8, color=ink(), label="no control")
     zero = dataset.zero.values[np.isfinite(dataset.zero.values)]
     zero = zero[zero <= top]
     if zero.size:
-        left.plot(np.zeros_like(zero), zero, "o", ms=7, mfc="none", mec=ink(), mew=1.3, label="zeros", clip_on=False)
+        _marks(left, 1j * zero, "o", 7, 1.3, mfc="none", mec=ink(), label="zeros")
     helps = dataset.attrs["best_damping"] > 0
     if helps:
         best = int(np.argmin(np.abs(dataset.gain.values - dataset.attrs["best_gain"])))
         at = shown[best][shown[best].imag > 1e-6 * top]
-        left.plot(at.real, at.imag, "D", ms=6, color=ORANGE, mec="white", mew=0.8, label="most damping")
+        left.plot(at.real, at.imag, "D", ms=wide(6), color=ORANGE, mec="white", mew=wide(0.8), label="most damping")
     if chosen is not None:
         _mark_chosen(left, right, dataset, chosen, top)
     left.set(
@@ -163,6 +160,11 @@ def root_locus(dataset: xr.Dataset, chosen: float | None = None, *, figure: Figu
     return page
 
 
+def _marks(ax: Axes, pole: Complex, marker: str, size: float, edge: float, **style: Any) -> None:
+    """Marks in the complex plane, whole also at the edges."""
+    ax.plot(pole.real, pole.imag, ls="none", marker=marker, ms=wide(size), mew=wide(edge), clip_on=False, **style)
+
+
 def _least_damping(right: Axes, dataset: xr.Dataset) -> None:
     """The least damping against the gain, and the gain that has most of it."""
     least = np.maximum(dataset.least_damping.values, -0.2)  # below zero it is unstable, however much
@@ -174,7 +176,7 @@ def _least_damping(right: Axes, dataset: xr.Dataset) -> None:
     )
     if dataset.attrs["best_damping"] > 0:
         peak = (dataset.attrs["best_gain"], dataset.attrs["best_damping"])
-        right.plot(*peak, "D", ms=7, color=ORANGE, mec="white")
+        right.plot(*peak, "D", ms=wide(7), color=ORANGE, mec="white")
         words = f"{peak[1]:.3g} at {peak[0]:.4g} {dataset.gain.attrs['units']}"
         right.annotate(
             words, peak, xytext=(-8, 4), textcoords="offset points", ha="right", color=ink(), fontsize=letters()
@@ -190,7 +192,7 @@ def _mark_chosen(left: Axes, right: Axes, dataset: xr.Dataset, gain: float, top:
         return
     pole = np.array([np.interp(at, row, branch) for branch in dataset.pole.values.T])
     pole = pole[(pole.imag > 1e-6 * top) & (np.abs(pole) < 2 * top)]
-    style: dict[str, Any] = {"ls": "none", "marker": "s", "ms": 6, "mfc": "none", "mec": ink(), "mew": 1.4}
+    style: dict[str, Any] = {"ls": "none", "marker": "s", "ms": wide(6), "mfc": "none", "mec": ink(), "mew": wide(1.4)}
     left.plot(pole.real, pole.imag, label="chosen gain", **style)
     right.plot(gain, np.interp(at, row, np.maximum(dataset.least_damping.values, -0.2)), **style)
 
@@ -294,7 +296,9 @@ def controlled_run(dataset: xr.Dataset, axis: str = "z", *, figure: Figure | Sub
         expected = dataset.predicted_rms_acceleration.sel(case=case).values[shaken] / passive[shaken]
         right.bar(place + shift, ratio, 0.38, color=color, label=_WORDS[case])
         label = "tangent" if case == "controlled" else None
-        right.plot(place + shift, expected, ls="none", marker="_", ms=17, mew=2.2, color=ORANGE, label=label)
+        right.plot(
+            place + shift, expected, ls="none", marker="_", ms=wide(17), mew=wide(2.2), color=ORANGE, label=label
+        )
     right.set_xticks(place, list(dataset.axis.values[shaken]))
     right.set_ylabel("RMS acceleration over that without control")
     right.set_ylim(0, 1.3 * max(1.0, right.get_ylim()[1] / 1.05))

@@ -50,7 +50,7 @@ def _pair(ax: Axes, pair: PairTravel, first: AxisTravel, second: AxisTravel) -> 
     low = pair.share * scale * [first.least, second.least]
     width, height = pair.share * scale * [first.most, second.most] - low
     ax.add_patch(Rectangle((low[0], low[1]), width, height, fill=False, color=ORANGE, lw=wide(1.2)))
-    ax.plot(0, 0, "+", color=ink(), ms=6)
+    ax.plot(0, 0, "+", color=ink(), ms=wide(6))
     ax.axhline(0, color=FAINT, lw=wide(0.4), zorder=0)
     ax.axvline(0, color=FAINT, lw=wide(0.4), zorder=0)
     ax.set(xlabel=f"{pair.axes[0]}, {_shown(pair.axes[0])[1]}", ylabel=f"{pair.axes[1]}, {_shown(pair.axes[1])[1]}")

@@ -82,7 +82,9 @@ def machine(hexapod: Hexapod, pose: PoseLike | None = None, *, ax: Axes3D | None
     _triad(ax, Pose(np.zeros(3)), 0.2 * size, names=True)
     _triad(ax, where, 0.14 * size, names=False)
     center = _at(where, hexapod.platform_mass_center[None])[0]
-    ax.plot(*center[:, None], marker="P", ms=8, color=PLATFORM, mec="white", mew=0.8, ls="none", clip_on=False)
+    ax.plot(
+        *center[:, None], marker="P", ms=wide(8), color=PLATFORM, mec="white", mew=wide(0.8), ls="none", clip_on=False
+    )
     _ticks(ax)
     return ax
 
@@ -250,7 +252,7 @@ def _numbers(ax: Axes3D, b: Array, size: float) -> None:
 
 
 def _points(ax: Axes3D, points: Array, color: str) -> None:
-    ax.plot(*points.T, "o", ms=5, color=color, mec="white", mew=0.6, clip_on=False)
+    ax.plot(*points.T, "o", ms=wide(5), color=color, mec="white", mew=wide(0.6), clip_on=False)
 
 
 def _triad(ax: Axes3D, frame: Pose, length: float, names: bool) -> None:

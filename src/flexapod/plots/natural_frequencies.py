@@ -57,7 +57,7 @@ def frequencies(
     hz = np.asarray(omega) / TWO_PI
     seen = hz > 0
     ax.hlines(y, 0, 1, transform=ax.get_yaxis_transform(), color=FAINT, lw=wide(0.4), alpha=0.5)
-    ax.plot(hz[seen], y[seen], "o", ms=8, color=PLATFORM, label="Eq. 5", clip_on=False, zorder=3)
+    ax.plot(hz[seen], y[seen], "o", ms=wide(8), color=PLATFORM, label="Eq. 5", clip_on=False, zorder=3)
     if tangent is not None:
         hz = np.append(hz, _tangent(ax, y, np.asarray(tangent)))
         ax.legend(
@@ -92,7 +92,7 @@ def _tangent(ax: Axes, rows: NDArray[np.int64], tangent: NDArray[Any]) -> Array:
     pole = tangent if np.iscomplexobj(tangent) else 1j * np.abs(tangent)
     vibrates = pole.imag > 0
     hz = np.where(vibrates, np.abs(pole), np.nan) / TWO_PI
-    ax.plot(hz, rows, "|", ms=17, mew=2.2, color=STRETCHED, label="exact tangent", clip_on=False, zorder=4)
+    ax.plot(hz, rows, "|", ms=wide(17), mew=wide(2.2), color=STRETCHED, label="exact tangent", clip_on=False, zorder=4)
     grows = pole.real > GROWS * np.nanmax(np.abs(pole), initial=0.0)
     across = ax.get_yaxis_transform()
     for row, one, grown in zip(rows, pole, grows, strict=True):

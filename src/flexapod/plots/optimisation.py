@@ -71,12 +71,14 @@ def search(found: OptimalDesign, *, ax: Axes | None = None) -> Axes:
     trial, index = found.history.trial.values, found.history["index"].values
     feasible = found.history["feasible"].values
     if trial.size:
-        ax.plot(trial[~feasible], index[~feasible], "x", ms=5, color=FAINT, mew=1.0, label="breaks a constraint")
-        ax.plot(trial[feasible], index[feasible], "o", ms=4, color=BLUE, mew=0, alpha=0.75, label="trial")
+        ax.plot(
+            trial[~feasible], index[~feasible], "x", ms=wide(5), color=FAINT, mew=wide(1.0), label="breaks a constraint"
+        )
+        ax.plot(trial[feasible], index[feasible], "o", ms=wide(4), color=BLUE, mew=0, alpha=0.75, label="trial")
         best = np.fmax.accumulate(np.where(feasible, index, np.nan))
         ax.step(trial, best, where="post", color=BLUE, lw=wide(1.4), label="best so far")
         if trial[0] == 0:
-            ax.plot(0, index[0], "s", ms=10, color=ORANGE, mfc="none", label="the same as the variables make it")
+            ax.plot(0, index[0], "s", ms=wide(10), color=ORANGE, mfc="none", label="the same as the variables make it")
     ax.axhline(found.index, color=GREEN, lw=wide(1.8), label=f"finished and verified: {found.index:.5g}")
     ax.axhline(
         found.start_index, color=ORANGE, lw=wide(1.4), ls=DASHED, label=f"design begun with: {found.start_index:.5g}"
@@ -126,15 +128,15 @@ def plan(found: OptimalDesign, *, figure: Figure | SubFigure | None = None) -> F
         for ax, (i, k) in views:
             for b, p in zip(base, platform, strict=True):
                 ax.plot([b[i], p[i]], [b[k], p[k]], color=color, lw=width, ls=style)
-            ax.plot(base[:, i], base[:, k], "s", ms=5, color=color, mec="white", mew=0.7, zorder=4)
-            ax.plot(platform[:, i], platform[:, k], "o", ms=6, color=color, mec="white", mew=0.7, zorder=4)
+            ax.plot(base[:, i], base[:, k], "s", ms=wide(5), color=color, mec="white", mew=wide(0.7), zorder=4)
+            ax.plot(platform[:, i], platform[:, k], "o", ms=wide(6), color=color, mec="white", mew=wide(0.7), zorder=4)
     _one_scale(views, np.concatenate(corners))
     for ax, (i, k) in views:
         _number(ax, base[:, (i, k)], platform[:, (i, k)])
     above.set(xlabel="x, mm", ylabel="y, mm", aspect="equal", title="from above")
     beside.set(xlabel="x, mm", ylabel="z, mm", aspect="equal", title="from the side")
     lines = [Line2D([], [], color=c, ls=s, lw=w) for _, c, s, w in shapes]
-    lines += [Line2D([], [], color=FAINT, ls="none", marker=m, ms=6) for m in "so"]
+    lines += [Line2D([], [], color=FAINT, ls="none", marker=m, ms=wide(6)) for m in "so"]
     names = ["design begun with", "design found", "base joint", "platform joint"]
     for ax in (above, beside):
         dress(ax)
@@ -198,18 +200,28 @@ def front(found: ParetoFront, *, ax: Axes | None = None) -> Axes:
     ax = _axes(7.2, 4.6) if ax is None else ax
     told = found.history
     keep = told["feasible"].values & (told["index"].values > 0)
-    ax.plot(told["against"].values[keep], told["index"].values[keep], ".", ms=5, color=FAINT, mew=0, label="trial")
     ax.plot(
-        found.against, found.index, "-o", ms=5.5, lw=wide(1.6), color=BLUE, mec="white", mew=0.7, label="Pareto front"
+        told["against"].values[keep], told["index"].values[keep], ".", ms=wide(5), color=FAINT, mew=0, label="trial"
+    )
+    ax.plot(
+        found.against,
+        found.index,
+        "-o",
+        ms=wide(5.5),
+        lw=wide(1.6),
+        color=BLUE,
+        mec="white",
+        mew=wide(0.7),
+        label="Pareto front",
     )
     ax.plot(
         found.start[1],
         found.start[0],
         "D",
-        ms=8,
+        ms=wide(8),
         color=ORANGE,
         mec="white",
-        mew=0.9,
+        mew=wide(0.9),
         ls="none",
         label="design begun with",
     )

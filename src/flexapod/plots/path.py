@@ -77,7 +77,7 @@ def index_along(
         above.plot(x, result.samples["index"], color=color, ls=style, lw=wide(1.9), label=label)
         below.plot(x, result.samples.condition_number, color=color, ls=style, lw=wide(1.5))
     where = np.interp(found.minimum_time, found.samples.time.values, _x(found, shared))
-    above.plot(where, found.minimum, "o", ms=6, color=BLUE, mec="white", mew=0.9)
+    above.plot(where, found.minimum, "o", ms=wide(6), color=BLUE, mec="white", mew=wide(0.9))
     above.annotate(
         f"{found.minimum:.4g}", (where, found.minimum), xytext=(0, -14), textcoords="offset points", ha="center",
         color=ink(), fontsize=letters(),
@@ -147,7 +147,7 @@ def plan_map(dataset: xr.Dataset, *, ax: Axes | None = None) -> Axes:
     ax.plot(dataset.path_along, dataset.path_aside, color="white", lw=wide(4.0))
     ax.plot(dataset.path_along, dataset.path_aside, color=ink(), lw=wide(2.2), label="planned path")
     for place, name in ((0.0, "start"), (dataset.attrs["straight"], "goal")):
-        ax.plot(place, 0.0, "o", ms=8, color="white", mec=ink(), mew=1.5, zorder=5)
+        ax.plot(place, 0.0, "o", ms=wide(8), color="white", mec=ink(), mew=wide(1.5), zorder=5)
         ax.annotate(name, (place, 0.0), xytext=(0, -17), textcoords="offset points", ha="center", color="white")
     ax.set(
         xlabel="along the straight line from start to goal, m",
@@ -238,7 +238,7 @@ def motors(dataset: xr.Dataset, *, ax: Axes | None = None) -> Axes:
             _RPM * dataset.rms_speed[i],
             dataset.rms_torque[i],
             "o",
-            ms=7,
+            ms=wide(5),
             color=SIX[i],
             mec=ink(),
             mew=wide(0.8),

@@ -69,10 +69,11 @@ def for_print(*, width: float | None = None, font_size: float | None = None, tit
     """
     from matplotlib import rc_context
 
-    inches = None if width is None else _within(width, "width", "m", _WIDTHS) / INCH
+    check_sizes(width, font_size)
+    inches = None if width is None else width / INCH
     words: Any = {}
     if font_size is not None:
-        words["font.size"] = _within(font_size, "font_size", "pt", _SIZES)
+        words["font.size"] = font_size
     elif inches is not None and changed("font.size") is None:
         words["font.size"] = _FONT
     if words and changed("lines.linewidth") is None:
@@ -85,11 +86,14 @@ def for_print(*, width: float | None = None, font_size: float | None = None, tit
         PRINTING.reset(token)
 
 
-def _within(value: float, name: str, unit: str, ends: tuple[float, float]) -> float:
-    found, (least, most) = positive(value, name, unit), ends
-    if not least <= found <= most:
-        raise ArgumentError(f"{name} is {found:.6g} {unit}; it must be from {least:g} to {most:g} {unit}.")
-    return found
+def check_sizes(width: float | None, font_size: float | None) -> None:
+    """Raises ArgumentError for a width (m) or a size of words (points) that no figure for print has."""
+    for value, name, unit, (least, most) in (
+        (width, "width", "m", _WIDTHS),
+        (font_size, "font_size", "pt", _SIZES),
+    ):
+        if value is not None and not least <= (found := positive(value, name, unit)) <= most:
+            raise ArgumentError(f"{name} is {found:.6g} {unit}; it must be from {least:g} to {most:g} {unit}.")
 
 
 def save(made: Drawn, path: str | PathLike[str], *, design: str = "") -> None:

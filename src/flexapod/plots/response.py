@@ -249,7 +249,7 @@ def stepped_ratio(
         ax.set_xscale(scale)
         ax.semilogy(line.omega.values / per, _positive(smooth), color=FAINT, lw=wide(1.2), label="tangent")
         ax.semilogy(
-            dataset.omega.values / per, _positive(dots), "o", color=COLOURS[0], ms=2.6, mew=0, label="non-linear"
+            dataset.omega.values / per, _positive(dots), "o", color=COLOURS[0], ms=wide(2.6), mew=0, label="non-linear"
         )
         _span(ax)
         if scale == "log":

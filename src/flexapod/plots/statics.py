@@ -58,7 +58,7 @@ def load_cases(
     """
     page, (forces, moved, turned) = stage(figure, (12.0, 4.6), (1, 3))
     over = found.case.values + 1 if elevation is None else np.degrees(elevation)
-    marks: dict[str, Any] = {"marker": "o", "ms": 4, "lw": 0} if elevation is None else {"lw": wide(1.4)}
+    marks: dict[str, Any] = {"marker": "o", "ms": wide(4), "lw": 0} if elevation is None else {"lw": wide(1.4)}
     for legs in _together(found.leg_force.values):
         i, named = legs[0], ", ".join(str(leg + 1) for leg in legs)
         style = {"color": SIX[i], "ls": STYLES[i], "label": f"leg{'s' * (len(legs) > 1)} {named}", **marks}

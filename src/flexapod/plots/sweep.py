@@ -103,7 +103,7 @@ def _marks(
     if counted.count() and numbers.max() > numbers.min():
         worst = np.unravel_index(np.ma.argmin(counted), counted.shape)
         words = "least of all" if beyond is None or all_poses else "least within the limits"
-        style: dict[str, Any] = {"color": ORANGE, "mec": "white", "ms": 10, "zorder": 5, "clip_on": False}
+        style: dict[str, Any] = {"color": ORANGE, "mec": "white", "ms": wide(10), "zorder": 5, "clip_on": False}
         place = axes[0][worst[1]], axes[1][worst[0]]
         shown += ax.plot(*place, "X", ls="none", label=f"{words}: {counted.min():.5g}", **style)
     if beyond is not None and beyond.any():

@@ -9,7 +9,7 @@ import numpy as np
 
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError, PoseError
-from flexapod.plots.style import BLUE, VALUES
+from flexapod.plots.style import BLUE, VALUES, wide
 from flexapod.plots.sweep_axes import LABELS, data_range, entitle, new_axes
 from flexapod.workspace.summary import Counted
 
@@ -79,7 +79,7 @@ def index_scatter(
     logarithmic = high[1] > 5 * low[1]
     if cloud.count <= _DOTS:
         for omega, cond in cloud.pairs():
-            ax.plot(cond, omega, ".", color=BLUE, ms=_dot_size(cloud.count), mew=0, alpha=0.6, rasterized=True)
+            ax.plot(cond, omega, ".", color=BLUE, ms=wide(_dot_size(cloud.count)), mew=0, alpha=0.6, rasterized=True)
     else:
         _shaded(cloud, ax, logarithmic, colorbar)
     if logarithmic:

@@ -40,8 +40,7 @@ def options(needed: str = "") -> Callable[[Any], Any]:
                 option = {"figure_format": "--format"}.get(asked[0], f"--{asked[0].replace('_', '-')}")
                 raise click.UsageError(f"{option} is of figures, and none is written. Give {needed} as well.")
             if asked:
-                with printed():  # a width that cannot be is told before anything is computed
-                    pass
+                _check_sizes()
             return function(*args, **given)
 
         return _stack(checked)
@@ -95,6 +94,13 @@ def check(path: Path) -> None:
     (ending,) = endings((path.suffix[1:].lower(),))
     if path.suffix[1:].lower() != ending:
         raise click.UsageError(f"{path} ends in {path.suffix!r}, and --format is {ending}. Leave --format out.")
+
+
+def _check_sizes() -> None:
+    """Raises ArgumentError for a width or a size of words that cannot be, before anything is computed."""
+    from flexapod.plots.printing import check_sizes
+
+    check_sizes(_given().get("width"), _given().get("font_size"))
 
 
 def printed() -> AbstractContextManager[None]:
