@@ -148,3 +148,10 @@ def test_the_frequency_axis_has_ticks_and_holds_all_marks(omega):
     assert low < tangent.min() / (2 * np.pi)
     assert high > max(omega) / (2 * np.pi)
     assert not any("," in label.get_text() for label in ax.get_xticklabels())
+
+
+def test_limits_have_their_units_as_people_write_them():
+    limited = plain_machine("motion-base").replace({"limits.leg_acceleration": 5, "limits.leg_rate": 0.5})
+    words = inputs.limits(limited)
+    assert "acceleration of legs 5 m/s\u00b2, of motions" in words
+    assert "rate of legs 0.5 m/s, of motions" in words

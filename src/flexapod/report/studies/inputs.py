@@ -97,7 +97,7 @@ def _drive(hexapod: Hexapod) -> list[Table]:
 
 
 def _unit(key: str) -> str:
-    return printed(si_unit(KEYS[key].dimension)).replace("m2", "m\u00b2")
+    return printed(si_unit(KEYS[key].dimension)).replace("m2", "m\u00b2").replace("s2", "s\u00b2")
 
 
 def _springs(hexapod: Hexapod) -> list[Table]:
