@@ -1,6 +1,7 @@
 """Figures for print: drawn where the user says, in the user's style, as wide as a column, with words that are text."""
 
 import inspect
+import itertools
 import re
 
 import matplotlib
@@ -188,3 +189,17 @@ def test_bad_arguments_of_print():
             pass
     with pytest.raises(fx.errors.OutputError, match="no format of figures"):
         plots.save(plots.frequencies(np.arange(1.0, 7.0)), "six.doc")
+
+
+@pytest.mark.parametrize("name", ["path.motors", "envelope.pairs", "response.stepped_ratio"])
+def test_numbers_below_a_narrow_axis_do_not_touch(name, tmp_path):
+    with plots.for_print(width=0.088, title=False):
+        figure = style.figure_of(figures.prepared(name)())
+        plots.save(figure, tmp_path / "narrow.pdf")
+    figure.draw_without_rendering()
+    for ax in figure.axes:
+        low, high = sorted(ax.get_xlim())
+        labels = [tick.label1 for tick in ax.xaxis.get_major_ticks() if low <= tick.get_loc() <= high]
+        ends = [label.get_window_extent() for label in labels if label.get_visible() and label.get_text()]
+        for left, right in itertools.pairwise(sorted(ends, key=lambda box: box.x0)):
+            assert right.x0 > left.x1 + 2

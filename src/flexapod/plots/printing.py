@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import pairwise
 from os import PathLike
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
@@ -135,17 +136,19 @@ def save(made: Drawn, path: str | PathLike[str], *, design: str = "") -> None:
     figure = figure_of(made)
     kind = str(path).rpartition(".")[2].lower()
     dpi = _DPI["print" if PRINTING.get().width else "vectors" if kind in ("svg", "pdf") else "screen"]
-    _break_labels(figure)
+    _fit_words(figure)
     given = changed("savefig.dpi")
     write_figure(figure, path, dpi=dpi if given is None else given, metadata=_metadata(figure, kind, design))
 
 
-def _break_labels(figure: Any) -> None:
-    """Labels that are longer than their axes, in narrow figures, in two lines or three."""
+def _fit_words(figure: Any) -> None:
+    """In narrow figures: labels that are longer than their axes in two lines or three, and fewer numbers than touch."""
     if figure.get_figwidth() > _NARROW:
         return
     figure.draw_without_rendering()
     for ax in figure.axes:
+        if not hasattr(ax, "get_zlabel"):
+            _thin_numbers(ax.xaxis)
         for axis, side in ((ax.xaxis, "width"), (ax.yaxis, "height")):
             words, room = axis.label.get_text(), getattr(ax.bbox, side)
             for lines in (2, 3):
@@ -153,6 +156,27 @@ def _break_labels(figure: Any) -> None:
                     axis.label.set_text(
                         "\n".join(wrap(words, math.ceil(len(words) / lines) + 2, break_long_words=False))
                     )
+
+
+def _thin_numbers(axis: Any) -> None:
+    """Fewer numbers below an axis whose numbers would touch one another."""
+    from matplotlib.ticker import MaxNLocator
+
+    for most in (6, 5, 4, 3, 2):
+        if not isinstance(axis.get_major_locator(), MaxNLocator) or not numbers_touch(axis):
+            return
+        axis.set_major_locator(MaxNLocator(most))
+
+
+def numbers_touch(axis: Any) -> bool:
+    """Whether the numbers below an axis leave less than half the width of a letter between them."""
+    low, high = sorted(axis.get_view_interval())
+    axis.get_majorticklabels()  # brings the ticks up to date
+    ticks = [tick for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high and tick.label1.get_visible()]
+    boxes = [tick.label1.get_window_extent() for tick in ticks if tick.label1.get_text()]
+    boxes.sort(key=lambda box: box.x0)
+    room = 0.25 * max((box.height for box in boxes), default=0.0)
+    return any(right.x0 - left.x1 < room for left, right in pairwise(boxes))
 
 
 def _metadata(figure: Any, kind: str, design: str) -> dict[str, Any] | None:
