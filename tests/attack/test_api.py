@@ -10,6 +10,7 @@ import warnings
 import numpy as np
 import pytest
 from tests.attack.bounded import limited, rounds, tried
+from tests.helpers.everything import machine_with_everything
 from tests.helpers.plain import plain_machine
 from tests.helpers.public import FUNCTIONS, PUBLIC
 
@@ -23,6 +24,7 @@ pytest.importorskip("ompl")
 pytest.importorskip("zarr")
 
 H = plain_machine("precision-positioner")
+FULL = machine_with_everything()  # the same machine with all that a design may say
 HOME = fx.home_pose(H)
 UP = fx.Pose(HOME.position + np.array([0, 0, 0.002]))
 SHAKEN = fx.harmonic("z", 1e-6, 100.0)
@@ -44,7 +46,7 @@ RIGHT = {
     "gains": [10.0, 100.0, 1000.0], "psd": fx.vc_curve("VC-C"), "amplitude": 1e-6, "duration": 0.005, "times": np.linspace(0.0, 0.003, 7),
     "base_motion": SHAKEN, "path": LINE, "start": HOME, "goal": UP, "requirements": fx.PathRequirements(10.0), "box": BOX,
     "variables": [fx.Variable("platform.mass", 20.0, 30.0)], "against": optimisation.TotalMass(), "trials": 2, "verify": 32,
-    "uncertain": [fx.Uncertain("legs.stiffness", 0.1)], "sweep": SWEPT, "linear": LINEAR, "feedback": "velocity",
+    "uncertain": [fx.Uncertain("legs.damping.prismatic", 0.1), fx.Uncertain("platform.mass", 0.1)], "sweep": SWEPT, "linear": LINEAR, "feedback": "velocity",
     "runs": [SimulationRun(H, HOME)], "modes": fx.natural_modes(H), "damped": LINEAR.modes(), "spectrum": fx.vc_curve("VC-C"),
     "rms": 1.0, "omega_min": 1.0, "omega_max": 10.0, "peak": 1.0, "acceleration": 1.0, "coefficients": [0.0, 1.0], "change": 1.0,
     "omega_start": 1.0, "omega_end": 10.0, "height": 2.0, "period": 8.0, "waypoints": fx.Pose(np.stack([HOME.position, UP.position])),
@@ -83,6 +85,9 @@ NEEDED = {
     "animate_simulation": ("frames",), "sampling_time": ("region", "samples"), "path_index": ("samples",), "pose_grid": ("z",), "cluster": ("timeout",),
     "payload_loads": ("samples",), "simulate_control": ("pose",), "gain_map": ("nearness",), "certified_box": ("time_limit",),
 }  # fmt: skip
+FULL_LOADS = fx.paths.path_loads(FULL, LINE, samples=8)
+#: What the machine with everything is refused by, and why.
+REFUSED = {"certify_limits": "limits leg forces"}
 #: Not called rightly here: what they need takes long to make, or a cluster.
 NEVER_RIGHT = {"cluster", "plan_slice"}
 
@@ -100,11 +105,14 @@ def _right(name, parameter):
     return OWN.get((name, parameter), RIGHT.get(parameter))
 
 
-def _arguments(name):
-    """The right arguments of a short call."""
+def _arguments(name, machine=H):
+    """The right arguments of a short call, for one of the machines."""
     parameters = inspect.signature(PUBLIC[name]).parameters.values()
     required = [p.name for p in parameters if p.default is p.empty and p.kind not in (p.VAR_KEYWORD, p.VAR_POSITIONAL)]
-    return {parameter: _right(name, parameter) for parameter in (*required, *NEEDED.get(name, ()))}
+    right = {parameter: _right(name, parameter) for parameter in (*required, *NEEDED.get(name, ()))}
+    if machine is FULL and "hexapod" in right:
+        right |= {"hexapod": FULL} | ({"dataset": FULL_LOADS} if name == "motor_loads" else {})
+    return right
 
 
 def _is_flag(name, parameter):
@@ -132,13 +140,20 @@ def _call(name, given):
                 pass
 
 
-def test_every_function_has_right_arguments_here(files):
+@pytest.mark.parametrize("machine", [H, FULL], ids=["plain", "everything"])
+def test_every_function_has_right_arguments_here(machine, files):
     """Else an attack stops at the first of them, and the others are never reached."""
-    lacking = {n for n in FUNCTIONS if any(value is None for value in _arguments(n).values())}
-    assert lacking <= NEVER_RIGHT
+    right = {name: _arguments(name, machine) for name in FUNCTIONS}
+    assert {name for name, given in right.items() if any(value is None for value in given.values())} <= NEVER_RIGHT
     for name in sorted(set(FUNCTIONS) - NEVER_RIGHT):
+        if machine is FULL and "hexapod" not in right[name]:
+            continue
+        if machine is FULL and name in REFUSED:
+            with pytest.raises(fx.FlexapodError, match=REFUSED[name]):
+                _call(name, right[name])
+            continue
         try:
-            _call(name, _arguments(name))
+            _call(name, right[name])
         except Exception as error:
             pytest.fail(f"{name}: {type(error).__name__}: {error}")
 
@@ -148,7 +163,7 @@ def test_bad_values_are_answered_by_flexapods_errors(part, files):
     names = [name for name in FUNCTIONS[part::8] if name != "cluster"]  # test_cluster.py
     for draw in rounds(0.7 / 8, f"part {part}", most=150):
         name = draw.choice(names)
-        given = _arguments(name)
+        given = _arguments(name, draw.choice((H, FULL)))
         accepted = [p.name for p in inspect.signature(PUBLIC[name]).parameters.values() if p.kind != p.VAR_KEYWORD]
         changed = draw.sample(accepted, k=min(len(accepted), draw.choice((1, 1, 1, 2))))
         given |= {parameter: draw.choice(BAD) for parameter in changed}

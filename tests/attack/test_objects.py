@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 from tests.attack.bounded import limited, rounds, tried
-from tests.attack.test_api import BAD, BOX, HOME, LINE, LINEAR, SHAKEN, UP, H
+from tests.attack.test_api import BAD, BOX, FULL, HOME, LINE, LINEAR, SHAKEN, UP, H
 from tests.helpers.public import CLASSES, PUBLIC
 
 import flexapod as fx
@@ -70,7 +70,7 @@ def _with_law(law: Any) -> object:
 
 
 def _driven(drive: Any) -> object:
-    return fx.paths.motor_loads(fx.Hexapod(**(WHOLE | {"drive": drive})), LOADS)
+    return fx.paths.motor_loads(fx.Hexapod(**(PLAIN | {"drive": drive})), LOADS)
 
 
 def _of_motion(motion: Any) -> object:
@@ -88,6 +88,7 @@ WHOLE = {
     "platform_mass_center": H.platform_mass_center, "platform_inertia": H.platform_inertia, "legs": H.legs, "home": HOME,
     "name": "own", "gravity": H.gravity, "limits": H.limits, "universal_axes": H.universal_axes, "short_forms": (), "suspension": None, "drive": None, "points": {"vertex": [0.0, 0.0, 0.1]},
 }  # fmt: skip
+PLAIN, MACHINES = WHOLE, (H, FULL)
 LOADS = fx.paths.path_loads(fx.Hexapod(**WHOLE), LINE, samples=8)
 CIRCLES = {
     "base_radius": 0.2, "platform_radius": 0.15, "height": 0.2, "platform_mass": 3.0, "platform_inertia": [0.02, 0.02, 0.03],
@@ -145,7 +146,7 @@ MADE = {
     "Variable": Made(fx.Variable, {"targets": "platform.mass", "low": 20.0, "high": 30.0, "kind": "set", "name": "m", "log": False}, _searched),
     "JointCircle": Made(optimisation.JointCircle, {"plate": "base", "radius": (0.2, 0.25), "half_angle": None, "turn": None, "height": None,
                                                    "axes": "tangent"}, _searched),
-    "Uncertain": Made(fx.Uncertain, {"target": "legs.stiffness", "spread": 0.1, "distribution": "uniform", "relative": True, "each": True}, _spread),
+    "Uncertain": Made(fx.Uncertain, {"target": "platform.mass", "spread": 0.1, "distribution": "uniform", "relative": True, "each": True}, _spread),
     "RandomLoad": Made(fx.vibration.RandomLoad, {"psd": [1.0, 2.0], "omega": [10.0, 20.0], "frequency": None, "axis": "force_x",
                                                  "point": (0.0, 0.0, 0.1), "name": "wind"},
                        lambda load: fx.random_response(H, HOME, loads=[load], loss_factor=0.01)),
@@ -223,6 +224,21 @@ FOUND = {"Certificate", "CompiledHexapod", "Constraint", "ConstraintQuantity", "
          "Check"}  # fmt: skip
 
 
+#: What the machine with everything has besides, of the arguments that make a machine.
+MORE = {"suspension": FULL.suspension, "drive": FULL.drive, "points": FULL.points}
+
+
+@pytest.fixture
+def turned(monkeypatch):
+    """Takes the machine with everything for the plain one, or the plain one again, in what is done with what is made."""
+
+    def take(machine):
+        monkeypatch.setitem(globals(), "H", machine)
+        monkeypatch.setitem(globals(), "WHOLE", PLAIN | MORE if machine is FULL else PLAIN)
+
+    return take
+
+
 @pytest.fixture
 def store(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -236,7 +252,9 @@ def _used(made, given):
         made.use(made.make(**given))
 
 
-def test_every_constructor_is_attacked_and_its_right_arguments_are_right(store):
+@pytest.mark.parametrize("machine", [H, FULL], ids=["plain", "everything"])
+def test_every_constructor_is_attacked_and_its_right_arguments_are_right(machine, store, turned):
+    turned(machine)
     plain = {name for name in CLASSES if not issubclass(PUBLIC[name], tuple | BaseException)}
     assert {name for name in MADE if "." not in name} - {"SimulationRun"} == plain - FOUND - {"SimulationRun"}
     for name, made in MADE.items():
@@ -250,9 +268,10 @@ def test_every_constructor_is_attacked_and_its_right_arguments_are_right(store):
 
 
 @pytest.mark.parametrize("part", range(4))
-def test_what_is_made_of_bad_values_is_refused_or_of_use(part, store):
+def test_what_is_made_of_bad_values_is_refused_or_of_use(part, store, turned):
     names = sorted(MADE)[part::4]
     for draw in rounds(0.9 / 4, f"objects {part}", most=100):
+        turned(draw.choice(MACHINES))
         name = draw.choice(names)
         made = MADE[name]
         changed = draw.sample(sorted(made.right), k=min(len(made.right), draw.choice((1, 1, 1, 2))))
