@@ -145,6 +145,7 @@ WRONG = {
     "no such key": (["modes", "mukherjee-ii", "--set", "platform.mas=4"], "platform.mass"),
     "no value": (["modes", "mukherjee-ii", "--set", "platform.mass"], "KEY=VALUE"),
     "negative mass": (["modes", "mukherjee-ii", "--set", "platform.mass=-1"], "platform.mass"),
+    "unit at a number": (["modes", "mukherjee-ii", "--set", "platform.mass=4kg"], "its unit at the end of the key"),
     "no such option": (["modes", "mukherjee-ii", "--pos"], "--pose"),
     "no such command": (["mods"], "mods"),
     "no design": (["report"], "DESIGN"),

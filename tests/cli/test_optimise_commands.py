@@ -97,6 +97,7 @@ def test_robust(capsys, tmp_path):
     [
         (["--vary", "platform.mass"], "write KEY=LEAST:LARGEST"),
         (["--vary", "platform.mass=5:x"], "'x' is no number"),
+        (["--vary", "platform.mass=5kg:6kg"], "'5kg' is no number. A unit stands at the end of the key"),
         (["--vary", "platform.mass=5:2"], "contradict each other"),
         (["--vary", "platform.circle.radus=1:2"], "there is no 'radus'"),
         ([*VARY, "--keep", "stroke_kg=3"], "there is no 'stroke_kg'"),

@@ -154,5 +154,5 @@ def _check_sampling(source: Source, law: Controller) -> None:
         raise ArgumentError(
             f"the spectrum of {source.name} reaches {top:.5g} rad/s; what is above {np.pi / law.dt:.5g} rad/s (pi/dt) "
             f"is seen as slower motion by a controller sampled every {law.dt:.5g} s. Sample at least every "
-            f"{np.pi / top:.4g} s, or end the spectrum below."
+            f"{np.pi / top:.4g} s (dt, on the command line --dt), or end the spectrum below."
         )

@@ -135,7 +135,7 @@ def _parsed(key: str, value: Any) -> Any:
     except (ValueError, RecursionError):
         parsed = {}
     if list(parsed) != ["value"]:
-        must = "it must be a TOML value: a number such as 400 or a list [1, 2, 3]"
+        must = "it must be a TOML value: a number such as 400 or a list [1, 2, 3], its unit at the end of the key"
         raise DesignError(f"{key} is {shown(value)}; {must}.")
     return parsed["value"]
 

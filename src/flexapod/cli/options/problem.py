@@ -163,7 +163,8 @@ def _number(option: str, text: str, number: str) -> float:
     try:
         return float(number)
     except ValueError:
-        raise click.UsageError(f"{option} {text}: {number!r} is no number.") from None
+        unit = " A unit stands at the end of the key, as in base.circle.radius_mm." if number[:1].isdigit() else ""
+        raise click.UsageError(f"{option} {text}: {number!r} is no number.{unit}") from None
 
 
 def _named(option: str, given: str, known: Mapping[str, str | None]) -> tuple[str, str]:
