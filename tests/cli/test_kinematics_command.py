@@ -126,6 +126,31 @@ def test_poses_may_count_from_home(run, result, lengths, tmp_path):
     assert (code, "names no home pose for --from-home" in err) == (2, True)
 
 
+def test_what_is_written_is_read_by_every_command_that_takes_poses(run, result, tmp_path):
+    """A log of lengths becomes a path and a sweep, and what counts from home is not taken for poses in the base."""
+    rows = np.column_stack([[0.0, 0.5, 1.0], fx.inverse_kinematics(fx.load("motion-base"), POSES[:3])])
+    log = tmp_path / "log.csv"
+    log.write_text("t,leg1,leg2,leg3,leg4,leg5,leg6\n" + "".join(",".join(map(str, row)) + "\n" for row in rows))
+    for more, name in (((), "base.csv"), (("--from-home",), "home.csv")):
+        assert run("kinematics", "motion-base", log, *more, "--out", tmp_path / name)[0] == 0
+    along = [result("path", "motion-base", tmp_path / name, *more) for name, more in (
+        ("base.csv", ()), ("home.csv", ("--from-home",)))]  # fmt: skip
+    assert along[0]["least_index_rad_s"] == pytest.approx(along[1]["least_index_rad_s"], rel=1e-9)
+    assert result("sweep", "motion-base", "--poses", tmp_path / "base.csv")["summary"]["poses"] == 3
+    for command, name, more, words in (
+        (("kinematics", "motion-base"), "home.csv", (), "Give --from-home."),
+        (("path", "motion-base"), "home.csv", (), "Give --from-home."),
+        (("sweep", "motion-base", "--poses"), "home.csv", (), "Measure them from the base."),
+    ):
+        code, _, err = run(*command, tmp_path / name, *more)
+        assert code == 2
+        assert f"measured from home, and is taken from base. {words}" in " ".join(err.split())
+    base = (tmp_path / "home.csv").read_text().replace(",home,", ",base,")
+    (tmp_path / "base.csv").write_text(base)
+    code, _, err = run("path", "motion-base", tmp_path / "base.csv", "--from-home")
+    assert (code, "taken from home. Leave --from-home out." in " ".join(err.split())) == (2, True)
+
+
 @pytest.mark.parametrize(
     ("text", "more", "words"),
     [

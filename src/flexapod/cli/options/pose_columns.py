@@ -3,11 +3,13 @@
 roll, pitch and yaw are the angles about x, y and z, in whichever order `rotation_order` turns them ("xyz" if nothing
 else is said); angle_1, angle_2 and angle_3 are those of any order, the first turn first. A pivot is a point of the
 platform, pivot_x, pivot_y, pivot_z in its frame. Order and pivot may differ from row to row; what a table does not say
-is as --rotation-order and --pivot say.
+is as --rotation-order and --pivot say. A table that says what its poses are measured from, base or home, is read for
+nothing else.
 """
 
 from __future__ import annotations
 
+import click
 import numpy as np
 
 from flexapod.cli.options import common
@@ -20,9 +22,11 @@ from flexapod.tables import Table
 
 ANGLES = ("angle_1", "angle_2", "angle_3")
 PIVOT = ("pivot_x", "pivot_y", "pivot_z")
-ORDER = "rotation_order"
+ORDER, FROM = "rotation_order", "measured_from"
 #: What the titles of a table of poses may be, for `tables.parse_table`.
-TITLES = {name: name for name in (*AXES, *ANGLES, *PIVOT, ORDER)}
+TITLES = {name: name for name in (*AXES, *ANGLES, *PIVOT, ORDER, FROM)}
+#: What `kinematics` writes beside poses: read again, and left out.
+BESIDE = ("line", "assembly", "side", "within_limits", "misfit", "status")
 
 
 def six(table: Table, form: str, bare_angle: str | None = "deg", *, finite: bool = True) -> Array:
@@ -37,6 +41,7 @@ def six(table: Table, form: str, bare_angle: str | None = "deg", *, finite: bool
     length, angle = QUANTITIES["length"], QUANTITIES["angle"]
     place = [table.numbers(given[name], length, "m", finite) for name in TRANSLATIONS]
     rows = np.column_stack([*place, *(table.numbers(given[name], angle, bare_angle, finite) for name in angles)])
+    _check_origin(table)
     orders, pivots = _orders(table, angles), _pivots(table)
     for order in np.unique(orders):
         these = np.flatnonzero((orders == order) & np.isfinite(rows).all(axis=1))
@@ -48,6 +53,22 @@ def six(table: Table, form: str, bare_angle: str | None = "deg", *, finite: bool
             pose = Pose.from_angles(rows[these, :3], turns, order, pivot=about)
             rows[these] = np.concatenate([pose.position, pose.rpy], axis=1)
     return rows
+
+
+def _check_origin(table: Table) -> None:
+    """Raises the table's error where its poses are measured from something else than the command line says."""
+    column, context = table.column(FROM), click.get_current_context(silent=True)
+    if column is None or context is None:
+        return
+    expected = "home" if context.params.get("from_home") else "base"
+    for line, word in zip(table.lines, column.cells, strict=True):
+        if word not in ("home", "base"):
+            raise table.error(f"line {line}: {FROM} is {word!r}; it must be home or base.")
+        if word != expected:
+            remedy = "Leave --from-home out" if expected == "home" else "Measure them from the base"
+            if expected == "base" and "from_home" in context.params:
+                remedy = "Give --from-home"
+            raise table.error(f"line {line}: its pose is measured from {word}, and is taken from {expected}. {remedy}.")
 
 
 def _orders(table: Table, angles: tuple[str, ...]) -> np.ndarray:
@@ -90,7 +111,7 @@ def _pivots(table: Table) -> Array:
     return found
 
 
-def written(pose: Pose) -> dict[str, Array]:
+def written(pose: Pose, measured_from: str = "") -> dict[str, Array]:
     """Columns of poses (n,) by title, in the command line's order of rotation and about its pivot, with units."""
     order, pivot = common.turns()
     order, about = order or FIXED, np.asarray(pivot or (0.0, 0.0, 0.0))
@@ -106,4 +127,6 @@ def written(pose: Pose) -> dict[str, Array]:
         columns[ORDER] = np.full(len(place), order)
     if about.any():
         columns |= {f"{name}_m": np.full(len(place), about[k]) for k, name in enumerate(PIVOT)}
+    if measured_from:
+        columns[FROM] = np.full(len(place), measured_from)
     return columns

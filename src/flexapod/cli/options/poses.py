@@ -90,12 +90,12 @@ def _read_npy(path: Path) -> Array:
 
 
 def _read_csv(path: Path) -> Array:
-    """Columns by their names. In a table that `sweep` wrote, whose other columns are left out, angles name their unit.
+    """Columns by their names. In those of `sweep` and `kinematics`, others are left out, and angles name their unit.
 
     Tables of sweeps once had radians there under the names that stand for degrees in files of poses.
     """
     text = read_text(path)
-    swept = ["status", *(title for name in SWEPT for title in table_titles(name))]
+    swept = ["t", *pose_columns.BESIDE, *(title for name in SWEPT for title in table_titles(name))]
     with naming(path):
         table = parse_table(text, {name: name for name in swept} | pose_columns.TITLES, _FORM, titles=AXES)
         bare = None if any(column.name not in pose_columns.TITLES for column in table.columns) else "deg"

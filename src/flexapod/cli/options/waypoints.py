@@ -13,7 +13,7 @@ from flexapod.pose import Pose
 from flexapod.tables import naming, parse_table, read_text, written_table
 
 COLUMNS = ("t", *AXES)
-NAMES = {"t": "t", "time": "t", "weight": "weight", **pose_columns.TITLES}
+NAMES = {"t": "t", "time": "t", "weight": "weight"} | pose_columns.TITLES | {name: name for name in pose_columns.BESIDE}
 FORM = f"Its first line must be {','.join(COLUMNS)} and may end in ,weight (s, m, degrees, or units as in x_mm)."
 
 

@@ -26,8 +26,7 @@ _FORM = (
     "Give a column for each leg, leg1 to leg6, or columns x, y, z, roll, pitch, yaw (m, degrees, or units as in "
     "leg1_mm), and if wanted t."
 )
-_WRITTEN = ("line", "assembly", "side", "within_limits", "misfit", "status")  # read again, and left out
-_NAMES = {name: name for name in ("t", *LEGS, *_WRITTEN)} | {"time": "t"}
+_NAMES = {name: name for name in ("t", *LEGS, *pose_columns.BESIDE)} | {"time": "t"}
 _TOLD = 20  # rows without an answer that are named
 
 
@@ -100,7 +99,7 @@ def _poses(
     hexapod: Hexapod, head: dict[str, Any], lengths: Array, start: Pose | None, origin: Pose | None
 ) -> Conversion:
     found = forward_kinematics(hexapod, lengths, start=start)
-    columns = {**head, **pose_columns.written(_from(found, origin)), **_kept(hexapod, found)}
+    columns = {**head, **_from(found, origin), **_kept(hexapod, found)}
     columns |= {"misfit_m": found.misfit, "status": found.status}
     notes = _told(head["line"], found.status, ("found", "nearest"))
     far = int((found.status == "nearest").sum())
@@ -112,11 +111,12 @@ def _poses(
     return Conversion(hexapod, "poses", columns, [*notes, *_beyond(columns)])
 
 
-def _from(pose: Pose, origin: Pose | None) -> Pose:
-    """Poses in the base frame as they count from an origin: the inverse of `Pose.displaced`."""
+def _from(pose: Pose, origin: Pose | None) -> dict[str, Array]:
+    """Columns of poses in the base frame, or as they count from an origin: the inverse of `Pose.displaced`."""
     if origin is None:
-        return pose
-    return Pose.trusted(pose.position - origin.position, pose.matrix @ origin.matrix.T)
+        return pose_columns.written(pose)
+    counted = Pose.trusted(pose.position - origin.position, pose.matrix @ origin.matrix.T)
+    return pose_columns.written(counted, measured_from="home")
 
 
 def _all_poses(
@@ -128,7 +128,7 @@ def _all_poses(
     columns = {name: values[row] for name, values in head.items()}
     columns |= {
         "assembly": np.arange(len(row)) - first + 1,
-        **pose_columns.written(_from(found.pose, origin)),
+        **_from(found.pose, origin),
         "side": found.side,
     }
     columns |= {**_kept(hexapod, found.pose), "misfit_m": found.misfit, "status": found.status[row]}
