@@ -5,11 +5,12 @@ SI units and rad/s throughout. The everyday names are here; all names are in the
 """
 
 from flexapod._suggestions import attach
-from flexapod.showing import FACE
+from flexapod.showing import FACE, teach_datasets
 
 __version__ = "0.6.0"
 
 # How results show themselves: the one place that knows library and faces.
 FACE.update(html="flexapod.report.notebook", plot="flexapod.plots.results")
+teach_datasets()
 
 __getattr__, __dir__, __all__ = attach(__name__, __file__)

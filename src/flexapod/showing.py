@@ -6,6 +6,7 @@ are imported when something is first shown.
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from typing import Any, TypeVar
 
@@ -23,6 +24,19 @@ def in_notebooks(kind: type[T]) -> type[T]:
 
 def _html(self: Any) -> str:
     return str(import_module(FACE["html"]).html(self))
+
+
+def teach_datasets() -> None:
+    """Where IPython runs, let Datasets of results show what their numbers are, above what xarray shows of them."""
+    ipython = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    if shell is not None:
+        shell.display_formatter.formatters["text/html"].for_type_by_name("xarray.core.dataset", "Dataset", _dataset)
+
+
+def _dataset(found: Any) -> str:
+    plain = str(found._repr_html_())
+    return f"{_html(found)}{plain}" if "design" in found.attrs else plain
 
 
 def drawn(result: Any, **options: Any) -> Any:

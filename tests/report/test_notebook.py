@@ -1,13 +1,17 @@
 """How designs and results show themselves in notebooks: small, with units, and safe."""
 
+import html
 import re
 import xml.etree.ElementTree as ET
 
 import numpy as np
+import xarray as xr
+from IPython.core.interactiveshell import InteractiveShell
 from tests.helpers.public import CLASSES, PUBLIC
 
 import flexapod as fx
 from flexapod.report.numbers import shown
+from flexapod.showing import teach_datasets
 
 BASE = fx.load("motion-base")
 
@@ -107,3 +111,30 @@ def test_an_envelope_shows_how_far_and_how_fast():
     assert shown(1e3 * found.axes[0].most) in page
     assert "Largest box" in page
     assert shown(found.axes[0].least_index) in page
+
+
+def test_a_dataset_says_what_its_numbers_are_above_xarrays_view(monkeypatch):
+    shell = InteractiveShell()
+    monkeypatch.setattr("IPython.get_ipython", lambda: shell)
+    teach_datasets()
+    isolator = fx.load("cubic-isolator")
+    law = fx.control.ForceFeedback(26.0, leak=2.9)
+    found = fx.control.controlled_transmissibility(isolator, controller=law, omega=[10.0, 20.0])
+
+    def shown_by_kernel(dataset):
+        return shell.display_formatter.format(dataset)[0]["text/html"]
+
+    told, _, plain = shown_by_kernel(found).partition("<div><svg")
+    assert plain
+    ET.fromstring(f"<all>{told}</all>")
+    told = words(told)
+    assert told.startswith("cubic-isolator")
+    most = shown(float(abs(found.controlled).max()))
+    assert f"controlled omega (2), output (6), base (6) amplitude up to {most} (m or rad)/(m or rad)" in told
+    assert "transmissibility with control" in told
+    assert shown_by_kernel(xr.Dataset({"own": ("x", [1.0])})).startswith("<div><svg")
+    falling = fx.transmissibility(
+        isolator.replace({"legs.joint_stiffness": None, "legs.stiffness": 1000}), omega=[10.0]
+    )
+    assert falling.attrs["caution"]
+    assert falling.attrs["caution"] in html.unescape(words(shown_by_kernel(falling)))

@@ -15,9 +15,10 @@ from html import escape
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from flexapod import plots
-from flexapod.conventions import TWO_PI, JointModel
+from flexapod.conventions import TWO_PI, JointModel, printed_unit
 from flexapod.design.catalogue import assumed_of
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.at_rest import pose_state
@@ -28,7 +29,7 @@ from flexapod.mechanics.modes import NaturalModes
 from flexapod.pose import Pose
 from flexapod.report import figures
 from flexapod.report import html as pages
-from flexapod.report.numbers import shown
+from flexapod.report.numbers import DASH, shown
 from flexapod.report.studies import envelope, inputs
 from flexapod.report.study import Column, Table, shown_on
 from flexapod.workspace.envelope import Envelope
@@ -48,6 +49,8 @@ _STYLE = """<style>
 </style>"""
 _FEW = 6  # numbers of an array that are shown one by one
 _MANY = 12  # rows of a table
+_LOOKED_AT = 10**6  # numbers of a variable whose range is shown
+_CAUTIONS = ("caution", "spectrum_caution")  # attributes of Datasets
 _numbers = itertools.count(1)  # of drawings, whose names must differ on one page
 
 
@@ -131,12 +134,48 @@ def _envelope(found: Envelope) -> str:
     return f"{listed}<p>{escape(told[0])}</p>"
 
 
+def _dataset(found: xr.Dataset) -> str:
+    """Each variable with its dimensions, its range and its unit, and what to beware of."""
+    rows = []
+    for name, variable in found.data_vars.items():
+        over = ", ".join(f"{dim} ({size})" for dim, size in variable.sizes.items())
+        words = (f"<code>{escape(str(name))}</code>", *map(escape, (over, _range(variable), _unit(found, variable))))
+        rows.append((*words, f'<td class="meaning">{escape(str(variable.attrs.get("long_name", "")))}</td>'))
+    listed = pages.rows_table(("", "over", "range", "unit", ""), rows, caption=str(found.attrs["design"]))
+    cautions = "".join(f"<p>{escape(text)}</p>" for key in _CAUTIONS if (text := str(found.attrs.get(key, ""))))
+    return f"{listed}{cautions}"
+
+
+def _unit(found: xr.Dataset, variable: xr.DataArray) -> str:
+    """The unit of a variable, or those that stand side by side in it."""
+    unit = str(variable.attrs.get("units", variable.attrs.get("mixed_units", "")))
+    for name in re.findall(r"\w+_unit", unit):
+        unit = unit.replace(name, f"({' or '.join(dict.fromkeys(found[name].values.tolist()))})")
+    return "" if unit == "1" else printed_unit(unit)
+
+
+def _range(variable: xr.DataArray) -> str:
+    """The least and the greatest value, of complex ones the amplitude; nothing of too many to be looked at."""
+    if variable.size > _LOOKED_AT or variable.dtype.kind not in "fiubc":
+        return ""
+    values = variable.values
+    if variable.dtype.kind == "b":
+        return _array(values)
+    good = values[np.isfinite(values)]
+    if not good.size:
+        return DASH
+    if variable.dtype.kind == "c":
+        return f"amplitude up to {shown(float(np.abs(good).max()))}"
+    return f"{shown(float(good.min()))} to {shown(float(good.max()))}"
+
+
 #: Types with a view of their own.
 _VIEWS: Mapping[type, Callable[[Any], str]] = {
     Hexapod: _hexapod,
     NaturalModes: _modes,
     DampedModes: _modes,
     Envelope: _envelope,
+    xr.Dataset: _dataset,
 }
 
 
