@@ -4,6 +4,8 @@ import re
 from pathlib import Path
 from typing import Any
 
+from tests.web.serving import until
+
 
 def number(text: str) -> float:
     return float(text.replace("−", "-"))
@@ -21,6 +23,46 @@ def turn_to(page: Any, tab: str) -> None:
 
 def wait_for_index(page: Any, expected: float) -> None:
     page.locator("#index", has_text=re.compile(f"^{re.escape(f'{expected:#.5g}'.rstrip('.'))}$")).wait_for()
+
+
+def pause(page: Any, seconds: float) -> None:
+    """Wait by the page's own clock: what it does within that time is done, however slow the machine is."""
+    page.evaluate("seconds => new Promise(done => setTimeout(done, 1000 * seconds))", seconds)
+
+
+def box_of(place: Any) -> dict[str, float]:
+    """Where an element is, once it stays there: a page that is laid out anew has no place for it, or another one."""
+    read = [None, place.bounding_box()]
+
+    def stays() -> bool:
+        pause(place.page, 0.1)
+        read[:] = read[1], place.bounding_box()
+        return read[0] is not None and read[0] == read[1]
+
+    assert until(stays), f"{place} does not stay anywhere"
+    return read[1]
+
+
+def frames(scene: Any) -> int:
+    """How often the scene was drawn."""
+    return int(scene.get_attribute("data-frames"))
+
+
+def moves(scene: Any) -> bool:
+    """Whether the scene is drawn again and again."""
+    begun = frames(scene)
+    return until(lambda: frames(scene) > begun + 5)
+
+
+def rests(scene: Any) -> bool:
+    """Whether the scene is no longer drawn, once what was begun has ended."""
+
+    def still() -> bool:
+        begun = frames(scene)
+        pause(scene.page, 0.4)
+        return frames(scene) == begun
+
+    return until(still)
 
 
 def saved(page: Any, click: Any) -> bytes:

@@ -50,7 +50,7 @@ def running() -> Iterator[Served]:
         thread.join(timeout=20)
 
 
-def until(met: Any, seconds: float = 10.0) -> bool:
+def until(met: Any, seconds: float = 30.0) -> bool:
     """Whether a condition is met within some seconds."""
     end = time.monotonic() + seconds
     while not met():

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.web.acts import number, saved, type_in
+from tests.web.acts import box_of, number, pause, saved, type_in
 
 import flexapod as fx
 
@@ -44,7 +44,7 @@ def test_a_recording_that_cannot_be_used_says_why(
         file = tmp_path / name
         file.write_bytes(content)
         page.set_input_files("#time input[type=file]", file)
-        page.wait_for_timeout(300)
+        pause(page, 0.3)
     page.locator("#simulate").click()
     page.locator("#time .progress-words.wrong", has_text=words).wait_for()
 
@@ -58,7 +58,7 @@ def test_a_recording_with_semicolons_and_decimal_commas_is_read(opened: Any, tmp
     page.locator("#simulate").click()
     page.locator("#time .progress-words", has_text="steps").wait_for()
     page.set_input_files("#time input[type=file]", file)  # another file is another question, the same is not
-    page.wait_for_timeout(400)
+    pause(page, 0.4)
     assert page.locator("#time .of-before").is_hidden()
 
 
@@ -77,7 +77,7 @@ def test_plots_tell_their_values_at_the_cursor(opened: Any) -> None:
     page.locator("#response .lines canvas").first.wait_for()
     assert page.locator("#response .key").all_text_contents() == ["Fx", "Fy", "Fz", "Mx", "My", "Mz"]
     over = page.locator("#response .u-over").first
-    box = over.bounding_box()
+    box = box_of(over)
     page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.5 * box["height"])
     tip = page.locator("#response .tip:visible")
     tip.wait_for()

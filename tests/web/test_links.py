@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.web.acts import turn_to, type_in, wait_for_index
+from tests.web.acts import pause, turn_to, type_in, wait_for_index
+from tests.web.serving import until
 
 import flexapod as fx
 
@@ -50,14 +51,13 @@ def test_controls_of_a_link_are_as_they_were(opened: Any) -> None:
         e.dispatchEvent(new Event(e.type === 'range' ? 'input' : 'change', { bubbles: true }))
       }
     }""")
-    page.wait_for_timeout(1500)
+    pause(page, 1.5)
     changed = page.evaluate(read)
     same = {key for key in before if before[key] == changed[key]}
     assert same <= {"motion", "wide"}
     other = opened(page.url.split("#")[1])
     other.locator("#response .lines canvas").first.wait_for()
-    other.wait_for_timeout(500)
-    assert other.evaluate(read) == changed
+    assert until(lambda: other.evaluate(read) == changed)
 
 
 def test_a_link_pasted_into_an_open_page_resets_what_it_leaves_out(opened: Any) -> None:
@@ -67,9 +67,9 @@ def test_a_link_pasted_into_an_open_page_resets_what_it_leaves_out(opened: Any) 
     page.evaluate(f"location.hash = {link!r}")
     pose = fx.Pose([0.1, 0.2, 0.8])
     wait_for_index(page, float(fx.stability_index(fx.load("mukherjee-i"), pose)))
-    page.wait_for_timeout(500)
+    pause(page, 0.5)
     fresh = opened(link)
-    fresh.wait_for_timeout(500)
+    pause(fresh, 0.5)
     assert page.url == fresh.url
     assert page.get_by_label("Joint model").input_value() == "universal"
 

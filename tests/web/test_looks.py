@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.web.acts import turn_to, type_in
+from tests.web.acts import box_of, pause, rests, turn_to, type_in
 from tests.web.serving import until
 
 SOURCES = Path(__file__).parents[2] / "web" / "src"
@@ -124,7 +124,7 @@ def test_numbers_of_the_readout_do_not_overlap(values: tuple[float, ...], opened
             " t.selectNodeContents(c); const b = t.getBoundingClientRect();"
             " return [a.left, a.right, a.top, b.left, b.right] })"
         )
-        edge = page.locator(".readout").bounding_box()
+        edge = box_of(page.locator(".readout"))
         for left, right, _, text_left, text_right in boxes:
             assert left <= text_left < text_right <= right
             assert text_right <= edge["x"] + edge["width"]
@@ -142,7 +142,7 @@ def test_limits_are_not_read_aloud_at_each_pose(opened: Any) -> None:
     page.locator(".readout [aria-live]", has_text=f"Limits: {count}").wait_for()
     assert "leg" not in spoken.text_content()
     type_in(page, "yaw", "0.1")
-    page.wait_for_timeout(1300)
+    pause(page, 1.3)
     assert "Limits" not in spoken.text_content()  # as before
     assert spoken.text_content().startswith("Index")
     for region in page.locator("[aria-live], [role=alert], [role=status]").all():
@@ -154,10 +154,7 @@ def test_with_reduced_motion_modes_are_drawn_still_and_play_plays(opened: Any) -
     scene = page.locator(".scene")
     page.get_by_role("button", name="Animate mode 3").click()
     assert "Drawn still, at its greatest displacement" in page.locator(".detail").text_content()
-    page.wait_for_timeout(400)
-    frames = scene.get_attribute("data-frames")
-    page.wait_for_timeout(500)
-    assert scene.get_attribute("data-frames") == frames
+    assert rests(scene)
     turn_to(page, "Time")
     page.locator("#simulate").click()
     play = page.get_by_role("button", name="Play", exact=True)
@@ -165,11 +162,10 @@ def test_with_reduced_motion_modes_are_drawn_still_and_play_plays(opened: Any) -
     now = page.locator("#time .now")
     first = now.text_content()
     assert first.startswith("0 s")
-    page.wait_for_timeout(400)
+    pause(page, 0.4)
     assert now.text_content() == first  # nothing moves by itself
     play.click()
-    page.wait_for_timeout(1000)
-    assert now.text_content() != first
+    assert until(lambda: now.text_content() != first)
     page.get_by_role("button", name="Pause").click()
 
 
@@ -178,10 +174,9 @@ def test_fits_a_phone(tab: str, opened: Any) -> None:
     """Nothing is cut, and no tab is out of sight."""
     page = opened(f"design=motion-base&tab={tab.lower()}&mode=2")
     page.set_viewport_size({"width": 390, "height": 844})
-    page.wait_for_timeout(300)
-    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    assert until(lambda: page.evaluate("document.documentElement.scrollWidth") <= 390)
     for name in TABS:
-        box = page.get_by_role("tab", name=name, exact=True).bounding_box()
+        box = box_of(page.get_by_role("tab", name=name, exact=True))
         assert box["x"] >= 0
         assert box["x"] + box["width"] <= 390
     cut = page.evaluate(
@@ -195,10 +190,10 @@ def test_fits_a_phone(tab: str, opened: Any) -> None:
 def test_on_a_phone_the_machine_is_in_sight_of_its_sliders(slider: str, opened: Any) -> None:
     page = opened("design=mukherjee-ii&tab=modes")
     page.set_viewport_size({"width": 390, "height": 844})
-    page.wait_for_timeout(300)
-    page.get_by_label(slider, exact=True).evaluate("e => e.scrollIntoView({ block: 'end' })")
-    page.wait_for_timeout(200)
-    box, scene = page.get_by_label(slider, exact=True).bounding_box(), page.locator(".scene canvas").bounding_box()
+    hand = page.get_by_label(slider, exact=True)
+    box_of(hand)
+    hand.evaluate("e => e.scrollIntoView({ block: 'end' })")
+    box, scene = box_of(hand), box_of(page.locator(".scene canvas"))
     assert scene["y"] >= 0
     assert scene["height"] > 150
     assert scene["y"] + scene["height"] <= box["y"]
@@ -212,18 +207,15 @@ def test_on_paper_data_lie_on_their_axes(scheme: str, opened: Any) -> None:
     page.locator("#slice .progress-words", has_text="14").wait_for()
     page.emulate_media(media="print", color_scheme=scheme)
     page.set_viewport_size({"width": 700, "height": 1000})
-    sides = ("x", "y", "width", "height")
 
-    def where(part: str) -> list[float]:
-        box = page.locator(part).first.bounding_box()
-        return [box[side] for side in sides]
+    def where(part: str) -> dict[str, float] | None:
+        return page.locator(part).first.bounding_box()
 
-    for place in (
-        "#cloud",
-        "#slice",
-    ):  # the page is laid out anew within a moment, or later where others have the cores
-        frame = f"{place} .plot > svg g rect[fill=none]"
-        assert until(lambda: where(f"{place} canvas") == pytest.approx(where(frame), abs=1.5)), place  # noqa: B023
+    def together(place: str) -> bool:
+        data, axes = where(f"{place} canvas"), where(f"{place} .plot > svg g rect[fill=none]")
+        return data is not None and axes is not None and data == pytest.approx(axes, abs=1.5)
+
+    assert until(lambda: together("#cloud") and together("#slice"))  # the page is laid out anew
     assert page.evaluate("document.documentElement.dataset.theme") == "light"
     assert page.locator(".tabs").is_hidden()
     scene = page.locator(".scene canvas")

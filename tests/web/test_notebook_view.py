@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.web.acts import number, type_in
+from tests.web.acts import box_of, frames, moves, number, pause, rests, type_in
 from tests.web.cells import Notebook
+from tests.web.serving import until
 
 import flexapod as fx
 
@@ -109,21 +110,14 @@ def test_a_mode_moves_and_is_told_to_python(notebook: Opened) -> None:
     view = fx.view(MACHINE, HOME)
     cell = notebook().show(view)
     scene = cell.locator(".scene")
-    cell.page.wait_for_timeout(300)
-    still = scene.get_attribute("data-frames")
-    cell.page.wait_for_timeout(500)
-    assert scene.get_attribute("data-frames") == still  # nothing moves: nothing is drawn
+    assert rests(scene)  # nothing moves: nothing is drawn
     cell.get_by_role("button", name="Animate mode 3").click()
-    cell.page.wait_for_timeout(1500)
-    assert int(scene.get_attribute("data-frames")) > int(still) + 5
+    assert moves(scene)
     assert view.mode == 3
     slower = hz(HOME)[2] / 0.7
     assert f"{slower:.3g}" in cell.locator(".pace").text_content().replace("e+0", "e")
     view.mode = None
-    cell.page.wait_for_timeout(300)
-    ended = scene.get_attribute("data-frames")
-    cell.page.wait_for_timeout(500)
-    assert scene.get_attribute("data-frames") == ended
+    assert rests(scene)
     assert cell.locator(".pace").text_content() == "Choose a mode to see it move."
 
 
@@ -202,10 +196,10 @@ def test_without_a_kernel_the_last_state_is_shown_and_modes_move(notebook: Opene
     view = fx.view(MACHINE, HOME)
     cell = notebook(kernel=False).show(view)
     np.testing.assert_allclose(shown_hz(cell), hz(HOME), rtol=6e-5)
-    begun = int(cell.locator(".scene").get_attribute("data-frames"))
+    scene = cell.locator(".scene")
+    assert rests(scene)
     cell.get_by_role("button", name="Animate mode 1").click()
-    cell.page.wait_for_timeout(1500)
-    assert int(cell.locator(".scene").get_attribute("data-frames")) > begun + 5
+    assert moves(scene)
     type_in(cell, "z", "90")
     words = cell.locator(".words.refused")
     words.wait_for()
@@ -227,11 +221,12 @@ def test_it_has_the_theme_of_the_notebook_and_fits_its_cell(
     book = notebook(style)
     cell = book.show(fx.view(MACHINE, HOME), width)
     assert cell.locator(".flexapod-view").get_attribute("data-theme") == theme
-    wide = cell.locator(".machine").bounding_box()["width"]
+    wide = box_of(cell.locator(".machine"))["width"]
     assert wide == pytest.approx(float(width[:-2]), abs=1)
+    left = box_of(cell)["x"]
     for part in cell.locator(".machine :is(button, input, select, output, td, th)").all():
         box = part.bounding_box()
-        assert box is None or box["x"] + box["width"] <= cell.bounding_box()["x"] + wide + 0.5
+        assert box is None or box["x"] + box["width"] <= left + wide + 0.5
     book.page.evaluate("document.body.style.color = 'black'; document.body.style.background = 'white'")
     cell.locator(".flexapod-view[data-theme=light]").wait_for()
 
@@ -240,14 +235,16 @@ def test_keys_stay_in_the_view_and_the_wheel_scrolls_the_notebook(notebook: Open
     book = notebook("height: 3000px")
     cell = book.show(fx.view(MACHINE, HOME), "500px")
     assert cell.locator("[data-lm-suppress-shortcuts=true] .machine").count() == 1  # what JupyterLab looks for
-    box = cell.locator(".scene").bounding_box()
+    box = box_of(cell.locator(".scene"))
     book.page.mouse.move(box["x"] + 50, box["y"] + 150)
     book.page.mouse.wheel(0, 200)
     book.page.wait_for_function("scrollY > 100")
     book.page.evaluate("scrollTo(0, 0)")
-    frames = int(cell.locator(".scene").get_attribute("data-frames"))
+    scene = cell.locator(".scene")
+    assert rests(scene)
+    before = frames(scene)
     book.page.mouse.click(box["x"] + 50, box["y"] + 150)
     book.page.mouse.wheel(0, 200)
-    book.page.wait_for_timeout(500)
+    assert until(lambda: frames(scene) > before)
+    pause(book.page, 0.3)
     assert book.page.evaluate("scrollY") == 0
-    assert int(cell.locator(".scene").get_attribute("data-frames")) > frames

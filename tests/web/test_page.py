@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.web.acts import number, saved, type_in, wait_for_index
+from tests.web.acts import box_of, frames, moves, number, pause, rests, saved, type_in, wait_for_index
+from tests.web.serving import until
 
 import flexapod as fx
 
@@ -44,7 +45,7 @@ def test_a_pose_by_slider_is_the_pose_that_the_number_shows(opened: Any) -> None
     x = number(page.get_by_label("x", exact=True).input_value()) / 1000
     assert x > 0
     wait_for_index(page, omega_at(x, 0, 0.085)[0])
-    box = slider.bounding_box()
+    box = box_of(slider)
     page.mouse.click(box["x"] + 0.2 * box["width"], box["y"] + box["height"] / 2)
     moved = number(page.get_by_label("x", exact=True).input_value()) / 1000
     assert moved < 0
@@ -76,15 +77,9 @@ def test_a_wrong_number_is_refused_at_its_field(opened: Any) -> None:
 def test_a_mode_is_animated_and_described(opened: Any) -> None:
     page = opened("design=mukherjee-ii&tab=modes")
     scene = page.locator(".scene")
-    page.wait_for_timeout(300)
-    still = scene.get_attribute("data-frames")
-    page.wait_for_timeout(600)
-    assert scene.get_attribute("data-frames") == still  # nothing moves: nothing is drawn
+    assert rests(scene)  # nothing moves: nothing is drawn
     page.get_by_role("button", name="Animate mode 3").click()
-    page.wait_for_timeout(1500)
-    begun = int(scene.get_attribute("data-frames"))
-    page.wait_for_timeout(1500)
-    assert int(scene.get_attribute("data-frames")) > begun + 5
+    assert moves(scene)
     words = fx.describe_modes(MACHINE, fx.Pose([0, 0, 0.085]))[2].text
     assert words in page.locator(".detail").text_content()
     amplitude = page.locator("output[for=amplitude]").text_content()
@@ -93,17 +88,14 @@ def test_a_mode_is_animated_and_described(opened: Any) -> None:
     page.keyboard.press("Escape")
     page.locator("h1").click()
     page.keyboard.press("0")
-    page.wait_for_timeout(300)
-    ended = scene.get_attribute("data-frames")
-    page.wait_for_timeout(500)
-    assert scene.get_attribute("data-frames") == ended
+    assert rests(scene)
 
 
 def test_a_click_in_the_cloud_moves_the_machine_to_that_pose(opened: Any) -> None:
     page = opened("design=mukherjee-ii&tab=workspace")
     page.locator("#cloud[data-points='100000']").wait_for()
     plot = page.locator("#cloud .plot")
-    box = plot.bounding_box()
+    box = box_of(plot)
     tip = page.locator("#cloud .tip")
     for share in np.linspace(0.25, 0.85, 25):  # look for a point near the middle of the plot
         page.mouse.move(box["x"] + 64 + share * (box["width"] - 148), box["y"] + 0.8 * box["height"])
@@ -135,10 +127,10 @@ def test_worst_pose_and_slice_move_the_machine(opened: Any) -> None:
     six = [number(page.get_by_label(c, exact=True).input_value()) for c in ("x", "y", "z", "roll", "pitch", "yaw")]
     assert omega_at(*(np.array(six[:3]) / 1000), *six[3:], machine=machine)[0] == pytest.approx(found, rel=1e-4)
     page.locator("#slice .progress-words", has_text="14").wait_for()
-    box = page.locator("#slice .plot").bounding_box()
+    box = box_of(page.locator("#slice .plot"))
     page.locator("#slice .plot").click(position={"x": 64 + 0.5 * (box["width"] - 154), "y": 0.3 * box["height"]})
-    page.wait_for_timeout(300)
-    assert abs(number(page.get_by_label("x", exact=True).input_value())) < 1  # mm: the middle of the box
+    x = page.get_by_label("x", exact=True)
+    assert until(lambda: abs(number(x.input_value())) < 1)  # mm: the middle of the box
 
 
 def test_response_panels_and_the_shaken_base(opened: Any) -> None:
@@ -153,9 +145,7 @@ def test_response_panels_and_the_shaken_base(opened: Any) -> None:
     home = fx.home_pose(machine)
     data = fx.transmissibility(machine, home, omega=[2 * np.pi * 14.9])
     assert shown == pytest.approx(abs(data["absolute"].sel(output="z", base="z").values[0]), rel=6e-3)
-    frames = int(page.locator(".scene").get_attribute("data-frames"))
-    page.wait_for_timeout(1500)
-    assert int(page.locator(".scene").get_attribute("data-frames")) > frames + 5
+    assert moves(page.locator(".scene"))
 
 
 def test_a_simulation_plays(opened: Any) -> None:
@@ -165,8 +155,7 @@ def test_a_simulation_plays(opened: Any) -> None:
     assert page.locator("#time .lines canvas").count() == 3
     now = page.locator("#time .now")
     first = now.text_content()
-    page.wait_for_timeout(1200)
-    assert now.text_content() != first
+    assert until(lambda: now.text_content() != first)
     table = saved(page, lambda: page.get_by_role("button", name="Simulation as CSV").click()).decode()
     rows = np.genfromtxt(table.splitlines(), delimiter=",", names=True)
     assert rows["time_s"][-1] == pytest.approx(1.0)
@@ -199,7 +188,7 @@ def test_a_design_is_saved_as_it_is_shown(opened: Any) -> None:
     page.get_by_label("platform.mass kg").press("Enter")
     heavy = MACHINE.replace({"platform.mass": 12})
     wait_for_index(page, omega_at(0, 0, 0.085, machine=heavy)[0])
-    page.wait_for_timeout(400)
+    pause(page, 0.4)
     text = saved(page, lambda: page.get_by_role("button", name="Save TOML").click()).decode()
     assert fx.Hexapod.from_toml(text) == heavy
 
@@ -210,7 +199,7 @@ def test_a_state_is_shared_by_its_address(opened: Any) -> None:
     type_in(page, "Platform + payload kg", "40")
     expected = omega_at(0, 0, 0.0915, machine=MACHINE.replace({"platform.mass": 40}))[0]
     wait_for_index(page, expected)
-    page.wait_for_timeout(600)
+    pause(page, 0.6)
     other = opened(page.url.split("#")[1])
     wait_for_index(other, expected)
     assert other.get_by_label("z", exact=True).input_value() == "91.5"
@@ -282,13 +271,14 @@ def test_by_keyboard_alone(opened: Any) -> None:
     assert page.get_by_role("tab", name="Legs").get_attribute("aria-selected") == "true"
     assert page.locator("#legs-table").is_visible()
     page.keyboard.press("2")
-    assert "mode=2" in page.evaluate("new Promise(r => setTimeout(() => r(location.hash), 600))")
-    canvas = page.locator(".scene canvas")
-    canvas.focus()
-    frames = int(page.locator(".scene").get_attribute("data-frames"))
+    assert until(lambda: "mode=2" in page.evaluate("location.hash"))
+    page.keyboard.press("0")
+    scene = page.locator(".scene")
+    assert rests(scene)  # else the mode would draw what the key is to draw
+    page.locator(".scene canvas").focus()
+    before = frames(scene)
     page.keyboard.press("ArrowLeft")
-    page.wait_for_timeout(200)
-    assert int(page.locator(".scene").get_attribute("data-frames")) > frames
+    assert until(lambda: frames(scene) > before)
     unnamed = page.evaluate(
         "[...document.querySelectorAll('input, select, button, textarea')].filter(e => !("
         "e.getAttribute('aria-label') || e.labels?.[0]?.textContent || (e.matches('button') && e.textContent)"
@@ -318,7 +308,7 @@ def test_an_address_with_a_broken_design_shows_what_is_wrong(opened: Any) -> Non
     packed = base64.urlsafe_b64encode(packer.compress(text.encode()) + packer.flush()).decode().rstrip("=")
     page = opened(f"toml={packed}")
     page.locator(".errors li", has_text="platform.mass is -4 kg").wait_for()
-    page.wait_for_timeout(500)  # what else the page loads must not wipe it out
+    pause(page, 0.5)  # what else the page loads must not wipe it out
     assert page.locator(".errors li").count() == 1
     assert page.get_by_label("Design file (TOML)").input_value() == text
 
@@ -331,7 +321,7 @@ def test_a_design_of_one_s_own_is_shared_whole(opened: Any, tmp_path: Path) -> N
     page.set_input_files("#design-file", file)
     expected = omega_at(0, 0, 0.085, machine=own)[0]
     wait_for_index(page, expected)
-    page.wait_for_timeout(600)
+    pause(page, 0.6)
     wait_for_index(opened(page.url.split("#")[1]), expected)
 
 
@@ -347,7 +337,7 @@ def test_a_broken_draft_is_saved_as_it_is_written(opened: Any, tmp_path: Path) -
     page.locator("#design .hint", has_text="as it is written; it is not the machine shown").wait_for()
     type_in(page, "Platform + payload kg", "500")  # changes the machine shown, and leaves the draft
     page.locator(".readout[data-answer=current]").wait_for()
-    page.wait_for_timeout(400)
+    pause(page, 0.4)
     assert page.get_by_label("Design file (TOML)").input_value() == text
     page.get_by_label("View of the design").select_option("form")
     heavy = fx.load("motion-base").replace({"platform.mass": 500.0})

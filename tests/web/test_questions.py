@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.web.acts import saved, turn_to, type_in, wait_for_index
+from tests.web.acts import pause, saved, turn_to, type_in, wait_for_index
 
 import flexapod as fx
 
@@ -65,10 +65,10 @@ def test_a_result_out_of_sight_is_asked_again_when_it_is_seen(place: str, opened
         else:
             turn_to(page, "Modes")
             change(page)
-        page.wait_for_timeout(400)
+        pause(page, 0.4)
         asked.bodies.clear()
         turn_to(page, TABS[place])
-        page.wait_for_timeout(500)
+        pause(page, 0.5)
         shown.and_(page.locator("[data-answer=current]")).wait_for()
         page.locator(".runner progress").first.wait_for(state="hidden")
         if part != "pose box" or place == "#response .panels":
@@ -99,7 +99,7 @@ def test_a_click_in_the_slice_leaves_it_as_it_is(opened: Any) -> None:
     page.locator("#slice .progress-words", has_text="14").wait_for()
     asked = Asked(page)
     page.locator("#slice .plot").click(position={"x": 150, "y": 100})
-    page.wait_for_timeout(600)
+    pause(page, 0.6)
     assert "state" in asked.bodies
     assert "slice" not in asked.bodies
 
@@ -116,7 +116,7 @@ def test_a_simulation_of_another_machine_is_marked_and_cannot_be_used(opened: An
     note, csv = page.locator("#time .of-before"), page.get_by_role("button", name="Simulation as CSV")
     play = page.locator("#time .result button", has_text="P")
     assert note.is_hidden()
-    page.wait_for_timeout(400)
+    pause(page, 0.4)
     address = page.url.split("#")[1]
     for part, change in {**CHANGES, "settings": change_form}.items():
         if part == "pose box":
@@ -128,7 +128,7 @@ def test_a_simulation_of_another_machine_is_marked_and_cannot_be_used(opened: An
         assert csv.is_disabled()
         assert play.is_disabled()
         assert "simulate again" in note.text_content()
-        page.wait_for_timeout(400)  # the address is that of the change
+        pause(page, 0.4)  # the address is that of the change
         page.evaluate(f"location.hash = {address!r}")
         note.wait_for(state="hidden")
         assert csv.is_enabled()
@@ -139,7 +139,7 @@ def test_the_words_of_the_worst_pose_belong_to_their_box(opened: Any) -> None:
     page.get_by_role("button", name="Worst pose").click()
     page.locator("#worst .progress-words", has_text="rad/s, found by").wait_for()
     type_in(page, "z", "250")
-    page.wait_for_timeout(300)
+    pause(page, 0.3)
     assert page.locator("#worst .of-before").is_hidden()  # the worst pose of a box is none of the machine's pose
     page.evaluate("document.querySelector('[data-part=box]').open = true")
     type_in(page, "Greatest x, m", "0.001")
