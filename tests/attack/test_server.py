@@ -16,8 +16,9 @@ from collections import Counter
 import psutil
 import pytest
 from tests.attack.bounded import SECONDS, rounds, tried
+from tests.helpers.waiting import until
 from tests.web.asked import ASKED, BOX, TEXT
-from tests.web.serving import running, until
+from tests.web.serving import running
 
 from flexapod.web import limits
 from flexapod.web.security import HEADERS

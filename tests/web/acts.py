@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from tests.web.serving import until
+from tests.helpers.waiting import until
 
 
 def number(text: str) -> float:

@@ -50,16 +50,6 @@ def running() -> Iterator[Served]:
         thread.join(timeout=20)
 
 
-def until(met: Any, seconds: float = 30.0) -> bool:
-    """Whether a condition is met within some seconds."""
-    end = time.monotonic() + seconds
-    while not met():
-        if time.monotonic() > end:
-            return False
-        time.sleep(0.02)
-    return True
-
-
 def apart(task: Coroutine[Any, Any, Any]) -> Any:
     """What a coroutine returns, run in a thread of its own: the browser's tests leave a loop running in this one."""
     with ThreadPoolExecutor(1) as pool:

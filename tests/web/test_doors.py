@@ -18,7 +18,8 @@ from flexapod.cli import group
 
 pytest.importorskip("starlette")
 from starlette.testclient import TestClient
-from tests.web.serving import Served, running, until
+from tests.helpers.waiting import until
+from tests.web.serving import Served, running
 
 from flexapod.web import limits
 from flexapod.web.app import application

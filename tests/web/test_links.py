@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.helpers.waiting import until
 from tests.web.acts import pause, turn_to, type_in, wait_for_index
-from tests.web.serving import until
 
 import flexapod as fx
 

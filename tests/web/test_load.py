@@ -13,8 +13,9 @@ import pytest
 
 pytest.importorskip("starlette")
 
+from tests.helpers.waiting import until
 from tests.web.asked import ASKED, TEXT
-from tests.web.serving import Served, running, until
+from tests.web.serving import Served, running
 
 from flexapod.design import design_file
 from flexapod.web import limits

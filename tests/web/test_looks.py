@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.helpers.waiting import until
 from tests.web.acts import box_of, pause, rests, turn_to, type_in
-from tests.web.serving import until
 
 SOURCES = Path(__file__).parents[2] / "web" / "src"
 STYLE = (SOURCES / "widgets" / "common.css").read_text(encoding="utf-8")

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.helpers.waiting import until
 from tests.web.acts import box_of, frames, moves, number, pause, rests, type_in
 from tests.web.cells import Notebook
-from tests.web.serving import until
 
 import flexapod as fx
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.helpers.waiting import until
 from tests.web.acts import box_of, frames, moves, number, pause, rests, saved, type_in, wait_for_index
-from tests.web.serving import until
 
 import flexapod as fx
 

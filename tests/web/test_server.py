@@ -3,13 +3,13 @@
 import json
 import struct
 import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from tests.helpers.waiting import until
 from tests.web.asked import ASKED, BOX, MACHINE, POSE, TEXT
 
 import flexapod as fx
@@ -203,9 +203,7 @@ def test_a_job_can_be_stopped_by_its_name(client: TestClient) -> None:
     answers = []
     runner = threading.Thread(target=lambda: answers.append(client.post("/api/jobs/time", json=asked)))
     runner.start()
-    deadline = time.monotonic() + 20
-    while not jobs.running() and time.monotonic() < deadline:
-        time.sleep(0.05)
+    assert until(jobs.running)
     assert client.delete("/api/jobs/nonsense").status_code == 404
     assert client.delete(f"/api/jobs/{jobs.running()[0]}").status_code == 204
     runner.join(timeout=20)

@@ -10,7 +10,8 @@ import pytest
 pytest.importorskip("starlette")
 
 from starlette.requests import HTTPConnection
-from tests.web.serving import Served, apart, running, until
+from tests.helpers.waiting import until
+from tests.web.serving import Served, apart, running
 
 from flexapod.web import clients as web_clients
 from flexapod.web import limits

@@ -122,7 +122,7 @@ def test_no_scheduler_is_told_soon():
         fx.workspace.cluster(address, timeout=1),
     ):
         pass
-    assert time.monotonic() - start < 10
+    assert time.monotonic() - start < 25  # Dask itself waits for 30 s
 
 
 @pytest.mark.parametrize("address", ["nonsense", "tcp://", "tcp://127.0.0.1:99999", "http://127.0.0.1:1"])
