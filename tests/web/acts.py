@@ -26,8 +26,19 @@ def wait_for_index(page: Any, expected: float) -> None:
 
 
 def pause(page: Any, seconds: float) -> None:
-    """Wait by the page's own clock: what it does within that time is done, however slow the machine is."""
-    page.evaluate("seconds => new Promise(done => setTimeout(done, 1000 * seconds))", seconds)
+    """Wait by the page's own clock: what it does within that time is done, however slow the machine is.
+
+    The page looks at each change in its next frame, and sets its timers there: that frame comes first.
+    """
+    page.evaluate(
+        "seconds => new Promise(done => requestAnimationFrame(() => setTimeout(done, 1000 * seconds)))", seconds
+    )
+
+
+def address(page: Any, holds: str) -> str:
+    """What a link to the page has behind #, once that holds these words: it is written a while after each change."""
+    page.wait_for_url(lambda url: holds in url.partition("#")[2])
+    return str(page.url.partition("#")[2])
 
 
 def box_of(place: Any) -> dict[str, float]:

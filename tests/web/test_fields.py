@@ -10,6 +10,14 @@ from tests.web.acts import box_of, number, pause, saved, type_in
 import flexapod as fx
 
 
+def choose(page: Any, file: Path) -> None:
+    """Choose the recording of a motion. The page begins to read it at once: another reading ends later."""
+    chosen = page.locator("#time input[type=file]")
+    chosen.set_input_files(file)
+    chosen.evaluate("async input => { await input.files[0].text() }")
+    pause(page, 0.1)
+
+
 def test_a_wrong_coordinate_is_answered_in_words(opened: Any) -> None:
     page = opened("design=mukherjee-ii&tab=modes")
     type_in(page, "z", "8o")
@@ -43,8 +51,7 @@ def test_a_recording_that_cannot_be_used_says_why(
     if content is not None:
         file = tmp_path / name
         file.write_bytes(content)
-        page.set_input_files("#time input[type=file]", file)
-        pause(page, 0.3)
+        choose(page, file)
     page.locator("#simulate").click()
     page.locator("#time .progress-words.wrong", has_text=words).wait_for()
 
@@ -54,11 +61,10 @@ def test_a_recording_with_semicolons_and_decimal_commas_is_read(opened: Any, tmp
     rows = [f"{t:.5f};{1e3 * t**2:.7f}".replace(".", ",") for t in np.linspace(0, 0.01, 50)]
     file.write_text("\n".join(["time;z_mm", *rows]), encoding="utf-8")
     page = opened("design=mukherjee-ii&tab=time&motion=csv&duration=0.01")
-    page.set_input_files("#time input[type=file]", file)
+    choose(page, file)
     page.locator("#simulate").click()
     page.locator("#time .progress-words", has_text="steps").wait_for()
-    page.set_input_files("#time input[type=file]", file)  # another file is another question, the same is not
-    pause(page, 0.4)
+    choose(page, file)  # another file is another question, the same is not
     assert page.locator("#time .of-before").is_hidden()
 
 

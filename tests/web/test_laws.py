@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.web.acts import pause, saved, turn_to, type_in, wait_for_index
+from tests.web.acts import saved, turn_to, type_in, wait_for_index
 
 import flexapod as fx
 
@@ -159,7 +159,6 @@ def test_a_drive_is_edited_and_points_are_kept(opened: Any, tmp_path: Path) -> N
     curve.fill("9; 9; 7")
     curve.press("Enter")
     wrong.wait_for(state="hidden")
-    pause(page, 0.6)
     text = saved(page, lambda: page.get_by_role("button", name="Save TOML").click()).decode()
     assert fx.Hexapod.from_toml(text) == own.replace({"drive.lead": 0.01, "drive.motor.peak_torques": [9, 9, 7]})
 
@@ -173,7 +172,6 @@ def test_a_drive_is_made_in_the_form(opened: Any) -> None:
         if "lead" in label:
             page.locator(".wrong", has_text="missing: drive.efficiency").wait_for()
     page.locator(".wrong", has_text="missing: drive.efficiency").wait_for(state="hidden")
-    pause(page, 0.6)
     text = saved(page, lambda: page.get_by_role("button", name="Save TOML").click()).decode()
     made = fx.load("mukherjee-ii").replace({"drive": {"lead": 0.01, "efficiency": 0.9}})
     assert fx.Hexapod.from_toml(text) == made

@@ -51,7 +51,9 @@ def test_controls_of_a_link_are_as_they_were(opened: Any) -> None:
         e.dispatchEvent(new Event(e.type === 'range' ? 'input' : 'change', { bubbles: true }))
       }
     }""")
-    pause(page, 1.5)
+    pause(page, 0.5)
+    page.locator("#response .panels[data-answer=current]").wait_for()
+    pause(page, 0.5)
     changed = page.evaluate(read)
     same = {key for key in before if before[key] == changed[key]}
     assert same <= {"motion", "wide"}

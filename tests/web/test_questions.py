@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.web.acts import pause, saved, turn_to, type_in, wait_for_index
+from tests.web.acts import address, pause, saved, turn_to, type_in, wait_for_index
 
 import flexapod as fx
 
@@ -116,8 +116,7 @@ def test_a_simulation_of_another_machine_is_marked_and_cannot_be_used(opened: An
     note, csv = page.locator("#time .of-before"), page.get_by_role("button", name="Simulation as CSV")
     play = page.locator("#time .result button", has_text="P")
     assert note.is_hidden()
-    pause(page, 0.4)
-    address = page.url.split("#")[1]
+    before = address(page, "pose=")
     for part, change in {**CHANGES, "settings": change_form}.items():
         if part == "pose box":
             continue
@@ -128,8 +127,8 @@ def test_a_simulation_of_another_machine_is_marked_and_cannot_be_used(opened: An
         assert csv.is_disabled()
         assert play.is_disabled()
         assert "simulate again" in note.text_content()
-        pause(page, 0.4)  # the address is that of the change
-        page.evaluate(f"location.hash = {address!r}")
+        page.wait_for_url(lambda url: url.partition("#")[2] != before)  # the address is that of the change
+        page.evaluate(f"location.hash = {before!r}")
         note.wait_for(state="hidden")
         assert csv.is_enabled()
 

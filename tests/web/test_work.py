@@ -58,7 +58,7 @@ def job() -> Iterator[Work]:
     found = Work()
     yield found
     found.pipe.close()
-    found.thread.join(timeout=20)
+    found.thread.join(timeout=60)
     assert not found.thread.is_alive()  # it ends with its pipe
 
 
@@ -215,7 +215,7 @@ def test_a_job_whose_page_has_gone_ends_its_loop() -> None:
     thread = threading.Thread(target=work.serve, args=(theirs,))
     ours.close()
     thread.start()
-    thread.join(timeout=20)
+    thread.join(timeout=60)
     assert not thread.is_alive()
 
 
