@@ -7,8 +7,8 @@ from urllib.parse import quote
 
 import numpy as np
 import pytest
-from tests.web.acts import number, saved
 from tests.helpers.waiting import until
+from tests.web.acts import number, saved
 
 import flexapod as fx
 
