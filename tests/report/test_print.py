@@ -3,10 +3,13 @@
 import os
 import re
 import subprocess
+from collections import Counter
+from pathlib import Path
 
 import numpy as np
 import pytest
 from pypdf import PdfReader
+from tests.helpers.everything import machine_with_everything
 from tests.web.browser import CHROMIUM, FLAGS
 
 import flexapod as fx
@@ -133,3 +136,31 @@ def _plain(words):
     """Letters of a heading, without tags, ligatures and blanks."""
     words = re.sub("<.*?>", "", words).replace("\ufb01", "fi").replace("\ufb02", "fl")
     return re.sub(r"\W", "", words)
+
+
+FULL = {
+    "report": lambda run, folder, design: _report(design),
+    "path": lambda run, folder, design: _command(
+        run, folder, ["path", design, "way.csv", "--from-home", "--payload", "2", "0", "0", "0.1", "--point", "vertex"]
+    ),
+    "envelope": lambda run, folder, design: _command(run, folder, ["envelope", design]),
+}
+
+
+@pytest.mark.parametrize("kind", FULL)
+def test_no_table_makes_the_words_of_a_page_smaller_on_paper(kind, run, tmp_path, monkeypatch):
+    """A browser shrinks all of a page to the width of its widest table; the machine with everything has the widest."""
+    monkeypatch.chdir(tmp_path)
+    machine_with_everything().save("full.toml")
+    Path("way.csv").write_text("t,x,y,z,roll,pitch,yaw\n0,0,0,0,0,0,0\n1,0.0003,0,0,0,0.1,0\n")
+    html = FULL[kind](run, tmp_path / "made", "full.toml")
+    printed(html, tmp_path)
+    sizes: Counter[float] = Counter()
+
+    def take(text, cm, tm, font, size):
+        sizes[round(abs(size * tm[3] * cm[3]), 1)] += len(text.strip())
+
+    for page in PdfReader(tmp_path / "page.pdf").pages:
+        page.extract_text(visitor_text=take)
+    assert min(size for size, letters in sizes.items() if letters > 300) >= 8.0
+    assert sizes.most_common(1)[0][0] in (8.0, 9.0, 9.5)

@@ -52,11 +52,12 @@ def words(hexapod):
 def test_inputs_hold_every_number_of_the_springs():
     found = tables(SOFT)
     legs = found["Legs"]
-    assert legs["joint stiffness, universal 1"] == ["15"]
-    assert legs["joint stiffness, universal 2"] == ["12"]
-    assert legs["joint stiffness, spherical"] == ["14"]
-    assert legs["joint stiffness, torsion"] == ["10"]
-    assert legs["joint stiffness, loss factor"] == ["0.02"]
+    joints = found["Stiffness of the joints"]
+    assert joints["universal 1"] == ["15"]
+    assert joints["universal 2"] == ["12"]
+    assert joints["spherical"] == ["14"]
+    assert joints["torsion"] == ["10"]
+    assert joints["loss factor"] == ["0.02"]
     assert legs["series stiffness 2"] == ["50000000"]
     assert found["Stiffness of the suspension, SI units, axes of the base"]["yaw"] == ["0"] * 5 + ["80"]
     facts = _facts(SOFT, "Gravity, home and limits")

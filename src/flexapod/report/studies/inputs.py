@@ -22,12 +22,13 @@ WORDS = (
     "base frame, joints and body of the platform in the platform frame, parts of legs in the axes of their leg: mass "
     "centres from their joint. Inertias are about the body's own mass centre."
 )
+_JOINTS = "legs.joint_stiffness."
 _INERTIA = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
 
 
 def section(hexapod: Hexapod) -> Section:
     """The part of a page that lists a design."""
-    tables = [_joints(hexapod), _legs(hexapod), *_springs(hexapod), *_drive(hexapod), _bodies(hexapod)]
+    tables = [_joints(hexapod), *_legs(hexapod), *_springs(hexapod), *_drive(hexapod), _bodies(hexapod)]
     tables.append(_further(hexapod))
     return Section("Inputs", tables, [WORDS])
 
@@ -53,14 +54,16 @@ def _joints(hexapod: Hexapod) -> Table:
     return Table(columns, title="Joints, and axes of the universal joints", style="narrow", on="page")
 
 
-def _legs(hexapod: Hexapod) -> Table:
-    """Every number that each leg has for itself."""
+def _legs(hexapod: Hexapod) -> list[Table]:
+    """Every number that each leg has for itself, those of its joints' springs apart."""
     values = {
         key: value
         for key, value in hexapod.values().items()
         if key.startswith("legs.") and not key.endswith((".mass", ".mass_center"))  # those stand with the bodies
     }
-    return _of_each_leg(values, "legs.", "Legs")
+    joints = {key: values.pop(key) for key in list(values) if key.startswith(_JOINTS)}
+    found = [_of_each_leg(values, "legs.", "Legs")]
+    return [*found, _of_each_leg(joints, _JOINTS, "Stiffness of the joints")] if joints else found
 
 
 def _of_each_leg(values: Mapping[str, Any], start: str, title: str) -> Table:
