@@ -11,6 +11,7 @@ from tests.helpers.plain import plain_machine
 from tests.helpers.support import EPS, MACHINES, apart, away, center, displaced, relative, size
 
 import flexapod as fx
+from flexapod.mechanics.limited import together
 
 # --- poses ------------------------------------------------------------------------------------------------------------
 
@@ -336,3 +337,12 @@ def test_pose_of_a_moved_base_counts_from_the_base():
     assert fx.mechanics.leg_distance(hexapod, outer, base=base) == pytest.approx(
         fx.mechanics.leg_distance(hexapod, pose), rel=1e-13
     )
+
+
+def test_legs_of_which_the_same_is_to_be_said_are_told_together():
+    told = together(["leg 1: too long", "leg 2: too short", "legs too near", "leg 6: too long"])
+    assert told == {"legs 1, 6: too long": 2, "leg 2: too short": 1, "legs too near": 1}
+    high = fx.check_limits(plain_machine("motion-base"), fx.Pose([0, 0, 3.5])).exceeded
+    assert len(high) == 6
+    (words,) = together(high)
+    assert words.startswith("legs 1, 2, 3, 4, 5, 6: length")

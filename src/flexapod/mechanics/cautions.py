@@ -15,6 +15,7 @@ from flexapod.mechanics.inputs import states
 from flexapod.mechanics.joint_limits import check_limits
 from flexapod.mechanics.kinematics import condition_number
 from flexapod.mechanics.leg_bending import bending_caution, leg_bending
+from flexapod.mechanics.limited import together
 from flexapod.mechanics.linearisation import DampedModes, Linearisation
 from flexapod.mechanics.mode_pairs import ModePairs
 from flexapod.mechanics.mode_shapes import ModeDescription, twist_of_center
@@ -125,12 +126,13 @@ def pose_cautions(
     omega: rad/s. condition: of H without units. tangent: modes of the exact tangent; None where no leg forces hold the
     pose. rest: those forces, or None.
     """
+    exceeded = check_limits(hexapod, pose, joint=joint).exceeded
     return [
         *singularity(condition, singular_everywhere(hexapod, pose, condition)),
         *_unsupported(condition, tangent),
         *([] if tangent is None else _stability(hexapod, pose, tangent)),
         *axes_along_legs(hexapod, pose),
-        *(Caution("limit", f"Limit exceeded: {text}.") for text in check_limits(hexapod, pose, joint=joint).exceeded),
+        *(Caution("limit", f"Limit exceeded: {text}.", {"times": n}) for text, n in together(exceeded).items()),
         *_angles_without_home(hexapod),
         *legs_that_cross(hexapod, pose),
         *([] if rest is None else soft_legs(hexapod, rest)),

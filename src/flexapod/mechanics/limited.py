@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -41,3 +42,15 @@ class LimitedQuantity(NamedTuple):
                 told, limit = told_apart(float(v), float(bound))
                 words.append(f"{leg}{self.name} {told} {self.unit} is {where} {limit} {self.unit}")
         return words
+
+
+def together(exceeded: Iterable[str]) -> dict[str, int]:
+    """What is exceeded, a sentence for all legs of which the same is to be said, and how many those are."""
+    legs: dict[str, list[str]] = {}
+    for words in exceeded:
+        leg, colon, told = words.partition(": ")
+        legs.setdefault(told if colon else words, []).append(leg.removeprefix("leg ") if colon else "")
+    return {
+        (f"leg{'s' * (len(which) > 1)} {', '.join(which)}: " if which[0] else "") + told: len(which)
+        for told, which in legs.items()
+    }

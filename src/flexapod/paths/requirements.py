@@ -12,6 +12,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PathError, told_apart
 from flexapod.mechanics.joint_limits import check_limits, limit_excess
 from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
+from flexapod.mechanics.limited import together
 from flexapod.pose import Pose
 from flexapod.showing import in_notebooks
 from flexapod.workspace.quantities import evaluate, kernel_limits
@@ -156,7 +157,7 @@ class Margins:
         exceeded = check_limits(self.limited, pose, joint=required.joint).exceeded
         if exceeded:
             raise PathError(
-                f"the {name} pose is outside the limits: {'; '.join(exceeded)}. Move it, or widen the limits."
+                f"the {name} pose is outside the limits: {'; '.join(together(exceeded))}. Move it, or widen the limits."
             )
 
     def reach_from(self, ends: Pose) -> float:

@@ -14,6 +14,7 @@ from flexapod.design.hexapod import Hexapod
 from flexapod.errors import ArgumentError, PoseError, told_apart
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point, single_pose
 from flexapod.mechanics.joint_limits import check_limits
+from flexapod.mechanics.limited import together
 from flexapod.pose import Pose, PoseLike
 from flexapod.showing import drawn, in_notebooks
 from flexapod.workspace.axis_speeds import Fastest, fastest
@@ -259,7 +260,7 @@ def _check_start(limits: TravelLimits) -> None:
     broken = [name for name, margin in zip(limits.names, margins, strict=True) if not margin >= 0]
     if not broken:
         return
-    words = list(check_limits(hexapod, where, joint=limits.joint).exceeded) or broken
+    words = list(together(check_limits(hexapod, where, joint=limits.joint).exceeded)) or broken
     if bounds.least_index is not None and broken == ["bound of the index"]:
         found = bounds.least_index + margins[limits.names.index("bound of the index")]
         told, bound = told_apart(float(found), bounds.least_index, (5, 5))

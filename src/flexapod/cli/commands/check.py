@@ -72,6 +72,7 @@ def _at(hexapod: Hexapod, pose: Pose | None) -> dict[str, Any]:
 
 def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:
     from flexapod.cli.output import read_back
+    from flexapod.mechanics.limited import together
 
     out = common.console()
     out.print(repr(hexapod), markup=False, soft_wrap=True)
@@ -88,5 +89,5 @@ def _show(hexapod: Hexapod, pose: Pose | None, found: dict[str, Any]) -> None:
         out.print(f"  condition number of H {found['condition_number']:.4g} (in metres)")
     if found["assumed"]:
         out.print(found["assumed"], markup=False, soft_wrap=True)
-    common.print_warnings((*found["cautions"], *found["warnings"], *(found["limits_exceeded"] or ())))
+    common.print_warnings((*found["cautions"], *found["warnings"], *together(found["limits_exceeded"] or ())))
     out.print("[bold green]OK[/bold green]" if found["ok"] else "A valid design, with warnings.")

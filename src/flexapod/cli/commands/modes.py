@@ -89,7 +89,7 @@ def command(
 def _warnings(cautions: Sequence[Caution]) -> list[str]:
     """All cautions but those of limits, which are only counted."""
     told = [caution.text for caution in cautions if caution.code != "limit"]
-    exceeded = len(cautions) - len(told)
+    exceeded = sum(int(caution.numbers["times"]) for caution in cautions if caution.code == "limit")
     what = f"{exceeded} limits are" if exceeded > 1 else "A limit is"
     counted = f"{what} exceeded at this pose; `flexapod check` says more."
     return [*told, counted] if exceeded else told

@@ -104,8 +104,8 @@ def _with_weight(f: Findings) -> list[Row]:
 def _verdict(f: Findings) -> tuple[str, str]:
     if not limits(f.hexapod):
         return "none set", ""
-    exceeded = [caution for caution in f.cautions if caution.code == "limit"]
-    return (f"{len(exceeded)} exceeded", "") if exceeded else ("kept", "")
+    exceeded = sum(int(caution.numbers["times"]) for caution in f.cautions if caution.code == "limit")
+    return (f"{exceeded} exceeded", "") if exceeded else ("kept", "")
 
 
 def _machine(f: Findings) -> Section:
