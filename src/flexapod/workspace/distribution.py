@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from typing import NamedTuple
 
 import numpy as np
@@ -30,26 +31,28 @@ def exactly(usable: Iterator[list[Array]]) -> Distribution:
     quantiles = np.quantile(found[0], QUANTILES)
     if len(found) == 1:
         return Distribution(quantiles)
-    omega, cond = found
-    of_omega, of_cond = _order(omega), _order(cond)
-    correlation = _pearson(_ranks(omega[of_omega], of_omega), _ranks(cond[of_cond], of_cond))
-    return Distribution(quantiles, correlation, _spread(omega[of_cond]))
+    omega = found[0]
+    with ThreadPoolExecutor(2) as pool:  # sorting takes longest, and NumPy sorts without the interpreter's lock
+        (_, of_omega), (by_cond, of_cond) = pool.map(_ranked, found)
+    return Distribution(quantiles, _pearson(of_omega, of_cond), _spread(omega[by_cond]))
 
 
-def _order(values: Array) -> NDArray[np.intp]:
-    """The places of the values from least to largest, equal ones in the order given."""
+def _ranked(values: Array) -> tuple[NDArray[np.intp], Array]:
+    """The places of the values from least to largest, equal ones in the order given, and the values' ranks from 1.
+
+    Equal values share their mean rank.
+    """
     order = np.argsort(values)  # several times as fast as the stable sort, which only equal values need
-    ascending = values[order]
-    return np.argsort(values, kind="stable") if (ascending[1:] == ascending[:-1]).any() else order
-
-
-def _ranks(ascending: Array, order: NDArray[np.intp]) -> Array:
-    """Ranks from 1 of values that are in this order when sorted; equal values share their mean."""
-    ends = np.flatnonzero(np.append(ascending[1:] != ascending[:-1], True)) + 1
+    ascending, ranks = values[order], np.empty(len(order))
+    new = ascending[1:] != ascending[:-1]
+    if new.all():
+        ranks[order] = np.arange(1.0, len(order) + 1)
+        return order, ranks
+    order = np.argsort(values, kind="stable")
+    ends = np.flatnonzero(np.append(new, True)) + 1
     counts = np.diff(ends, prepend=0)
-    ranks = np.empty(len(order))
     ranks[order] = np.repeat(ends - 0.5 * (counts - 1), counts)
-    return ranks
+    return order, ranks
 
 
 def _pearson(a: Array, b: Array) -> float:
