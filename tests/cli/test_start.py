@@ -81,6 +81,15 @@ def test_a_command_loads_no_more_than_it_needs(tmp_path):
     assert more == {}
 
 
+def test_a_command_ends_without_a_search_for_garbage():
+    script = (
+        "import gc, sys; from flexapod import __main__ as shell; sys.argv = ['flexapod', 'designs']; code = shell.run()\n"
+        "sys.exit(code or not gc.get_freeze_count() > 10 * len(gc.get_objects()))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
 @pytest.mark.skipif(os.name != "posix", reason="forks")
 def test_a_store_without_a_cluster_does_without_dask(tmp_path):
     line = ["sweep", "motion-base", "--around", "0.1", "5", "--points", "64", "--out", "map.zarr"]
