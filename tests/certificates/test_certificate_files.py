@@ -5,12 +5,12 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from tests.helpers.plain import plain_machine
+from tests.helpers.waiting import until
 
 import flexapod as fx
 from flexapod import _core
@@ -181,9 +181,7 @@ def test_what_a_kill_leaves_is_whole(tmp_path):
     path = tmp_path / "proof.json"
     run = subprocess.Popen([sys.executable, "-c", KILLED, str(path)])
     try:
-        until = time.monotonic() + 120
-        while not path.exists() and run.poll() is None and time.monotonic() < until:
-            time.sleep(0.1)
+        until(lambda: path.exists() or run.poll() is not None, 120)
         assert path.exists()
     finally:
         run.send_signal(signal.SIGKILL)

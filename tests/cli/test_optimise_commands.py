@@ -7,11 +7,11 @@ import shlex
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.helpers.waiting import until
 
 import flexapod as fx
 from flexapod.cli import main
@@ -135,11 +135,9 @@ def test_a_signal_stops_between_trials_and_tells_how_to_go_on(tmp_path):
     command = [sys.executable, "-m", "flexapod", "optimise", "mukherjee-ii", *VARY, "--trials", "100000"]
     command += ["--points", "64", "--verify", "128", "--study", str(file), "--out", str(tmp_path)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as worker:
-        end = time.monotonic() + 60
-        while time.monotonic() < end and not (file.exists() and _trials(file) >= 3):
-            time.sleep(0.05)
+        until(lambda: file.exists() and _trials(file) >= 3, 120)
         worker.send_signal(signal.SIGINT)
-        out, err = worker.communicate(timeout=60)
+        out, err = worker.communicate(timeout=120)
     assert worker.returncode == 130, err
     assert "Go on with the same command" in err
     assert "verified at 128 poses" in out

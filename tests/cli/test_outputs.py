@@ -10,6 +10,7 @@ import weakref
 from importlib import import_module
 
 import pytest
+from tests.helpers.waiting import until
 from tests.helpers.writers import WRITERS, needs, small_files
 
 import flexapod as fx
@@ -96,7 +97,7 @@ def test_links_modes_and_pipes_are_respected(tmp_path):
     reader = threading.Thread(target=lambda: found.append(pipe.read_text()))
     reader.start()
     output_files.write_file(pipe, "through")
-    reader.join(10)
+    reader.join(60)
     assert found == ["through"]
     assert pipe.is_fifo()
     real.chmod(0o440)
@@ -160,8 +161,8 @@ def test_what_another_thread_puts_back_after_an_interrupt_is_removed(tmp_path):
 
     def write_late():
         for _ in range(5):  # each later than the one before has been removed
-            time.sleep(0.1)
-            making.mkdir(exist_ok=True)
+            until(lambda: not making.exists())
+            making.mkdir()
 
     late = threading.Thread(target=write_late)
     late.start()

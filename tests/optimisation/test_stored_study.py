@@ -7,12 +7,12 @@ import sqlite3
 import subprocess
 import sys
 import threading
-import time
 from contextlib import closing
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from tests.helpers.waiting import until
 
 import flexapod as fx
 from flexapod.optimisation import study_file
@@ -59,16 +59,14 @@ def finished(file):
 
 
 def wait_for(file, count, worker):
-    end = time.monotonic() + 60
-    while time.monotonic() < end:
+    def got_on():
         assert worker.poll() is None, worker.stderr.read().decode()
         try:
-            if len(finished(file)) >= count:
-                return
+            return len(finished(file)) >= count
         except sqlite3.Error:
-            pass  # the file is being made
-        time.sleep(0.02)
-    raise AssertionError("the worker did not get on")
+            return False  # the file is being made
+
+    assert until(got_on, 120), "the worker did not get on"
 
 
 @pytest.mark.skipif(os.name == "nt", reason="kills with a POSIX signal")

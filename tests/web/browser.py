@@ -2,6 +2,7 @@
 
 import shutil
 
+PATIENCE = 120_000  # ms: for what a page waits for, on a machine with other work: WebGL in software, and long jobs
 CHROMIUM = shutil.which("chromium") or "/usr/bin/chromium"
 FLAGS = [
     "--no-sandbox",

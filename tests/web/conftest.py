@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from tests.web.browser import CHROMIUM, FLAGS
+from tests.web.browser import CHROMIUM, FLAGS, PATIENCE
 
 # What a page may do to a design is bounded by no network: these are the messages that a browser itself writes.
 QUIET = ("GPU stall due to ReadPixels", "status of 422", "status of 421", "status of 403")
@@ -47,7 +47,7 @@ class Opener:
 
     def __call__(self, address: str = "", **options: Any) -> Any:
         context = self.browser.new_context(viewport={"width": 1280, "height": 640}, accept_downloads=True, **options)
-        context.set_default_timeout(30_000)  # software WebGL on a machine with other work
+        context.set_default_timeout(PATIENCE)
         self.contexts.append(context)
         page = context.new_page()
         page.on("request", lambda request: self.requests.append(request.url))

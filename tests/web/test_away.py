@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from tests.web.acts import number, type_in, wait_for_index
+from tests.web.browser import PATIENCE
 
 import flexapod as fx
 
@@ -27,6 +28,7 @@ def serving(port: int) -> Iterator[str]:
 def test_a_page_outlives_its_server(browser: Any) -> None:
     with serving(0) as url:
         page = browser.new_page()
+        page.set_default_timeout(PATIENCE)
         page.goto(f"{url}#design=motion-base&tab=response")
         page.locator("#response .lines canvas").nth(5).wait_for()
         before = page.locator("#index").text_content()
@@ -53,6 +55,7 @@ def test_a_page_outlives_its_server(browser: Any) -> None:
 def test_what_was_asked_meanwhile_is_answered_when_the_server_is_back(browser: Any) -> None:
     with serving(0) as url:
         page = browser.new_page()
+        page.set_default_timeout(PATIENCE)
         page.goto(f"{url}#design=motion-base&tab=modes")
         page.locator("#index:not(:empty)").wait_for()
     type_in(page, "z", "2400")

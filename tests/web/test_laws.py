@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.web.acts import saved, turn_to, type_in, wait_for_index
+from tests.web.browser import PATIENCE
 
 import flexapod as fx
 
@@ -148,7 +149,7 @@ def test_a_drive_is_edited_and_points_are_kept(opened: Any, tmp_path: Path) -> N
     page.locator("#design summary", has_text="Drive").click()
     lead = page.get_by_label("drive.lead m", exact=True)
     sync_api = pytest.importorskip("playwright.sync_api")
-    sync_api.expect(lead).to_have_value("0.005", timeout=90_000)  # when the file is read
+    sync_api.expect(lead).to_have_value("0.005", timeout=PATIENCE)  # when the file is read
     lead.fill("0.01")
     lead.press("Enter")
     curve = page.get_by_label("drive.motor.peak_torques N m, separated by semicolons")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from tests.helpers.waiting import until
 from tests.web.acts import box_of, frames, moves, number, pause, rests, type_in
+from tests.web.browser import PATIENCE
 from tests.web.cells import Notebook
 
 import flexapod as fx
@@ -30,7 +31,7 @@ class Opened:
 
     def __call__(self, style: str = "", kernel: bool = True, **options: Any) -> Notebook:
         context = self.browser.new_context(viewport={"width": 960, "height": 900}, **options)
-        context.set_default_timeout(30_000)
+        context.set_default_timeout(PATIENCE)
         self.contexts.append(context)
         page = context.new_page()
         page.on("request", lambda request: self.requests.append(request.url))

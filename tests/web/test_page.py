@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from tests.helpers.waiting import until
 from tests.web.acts import address, box_of, frames, moves, number, pause, rests, saved, type_in, wait_for_index
+from tests.web.browser import PATIENCE
 
 import flexapod as fx
 
@@ -287,6 +288,7 @@ def test_by_keyboard_alone(opened: Any) -> None:
 
 def test_without_webgl_tables_and_plots_still_work(browser: Any, server: str) -> None:
     context = browser.new_context()
+    context.set_default_timeout(PATIENCE)
     page = context.new_page()
     page.add_init_script(
         "const real = HTMLCanvasElement.prototype.getContext;"
@@ -294,9 +296,9 @@ def test_without_webgl_tables_and_plots_still_work(browser: Any, server: str) ->
         " return /webgl/.test(kind) ? null : real.call(this, kind, ...more) }"
     )
     page.goto(f"{server}#design=mukherjee-ii&tab=workspace")
-    page.locator("#index:not(:empty)").wait_for(timeout=30_000)
+    page.locator("#index:not(:empty)").wait_for()
     assert "WebGL is missing" in page.locator(".scene").text_content()
-    page.locator("#cloud[data-points='100000']").wait_for(timeout=30_000)
+    page.locator("#cloud[data-points='100000']").wait_for()
     context.close()
 
 

@@ -206,7 +206,7 @@ def test_a_job_can_be_stopped_by_its_name(client: TestClient) -> None:
     assert until(jobs.running)
     assert client.delete("/api/jobs/nonsense").status_code == 404
     assert client.delete(f"/api/jobs/{jobs.running()[0]}").status_code == 204
-    runner.join(timeout=20)
+    runner.join(timeout=60)
     assert frames(answers[0].content)[-1][0] == {"type": "cancelled"}
     assert jobs.running() == []
 
