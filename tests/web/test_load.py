@@ -14,10 +14,9 @@ import pytest
 pytest.importorskip("starlette")
 
 from tests.helpers.waiting import until
-from tests.web.asked import ASKED, TEXT
+from tests.web.asked import ASKED, LONG, TEXT
 from tests.web.serving import Served, running
 
-from flexapod.design import design_file
 from flexapod.web import limits
 from flexapod.web.clients import Client
 from flexapod.web.turns import Turns
@@ -119,8 +118,7 @@ def test_pages_have_their_turns_beside_jobs_and_a_hostile_client(monkeypatch: py
     with running() as served:
         pages, workers = ([Page(served.port) for _ in range(count)] for count in (PAGES, 4))
         together([lambda page=page: page.ask("state", ASKED) for page in pages])  # type: ignore[misc]
-        long = {"design": design_file.find("mukherjee-i").read_text(encoding="utf-8"), "pose": [0.1, 0.2, 0.8, 0, 0, 0]}
-        jobs = [page.begin("jobs/time", long | {"duration": 60.0}) for page in workers]
+        jobs = [page.begin("jobs/time", LONG) for page in workers]
         log.passed.clear()
 
         def use(page: Page, number: int) -> None:

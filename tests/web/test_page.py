@@ -215,7 +215,10 @@ def test_two_pages_do_not_see_each_other(opened: Any) -> None:
 
 
 def test_a_long_job_is_cancelled_and_blocks_nobody(opened: Any) -> None:
-    page, other = opened("design=mukherjee-i&tab=time"), opened("design=mukherjee-ii&tab=modes")
+    page, other = (
+        opened("design=mukherjee-i&tab=time&frequency=1e5&amplitude=1e-6"),
+        opened("design=mukherjee-ii&tab=modes"),
+    )
     page.get_by_label("duration").fill("60")  # minutes of computing
     page.locator("#simulate").click()
     page.get_by_role("button", name="Cancel").last.wait_for()

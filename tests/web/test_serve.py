@@ -16,9 +16,9 @@ from click.testing import CliRunner
 from tests.helpers.waiting import until
 
 from flexapod.cli import group
-from flexapod.design import design_file
 
 pytest.importorskip("uvicorn")
+from tests.web.asked import LONG
 from tests.web.serving import running
 
 
@@ -75,8 +75,7 @@ def app_and_port() -> Iterator[tuple[Any, int]]:
 
 def test_a_job_ends_when_its_page_goes(app_and_port: tuple[Any, int]) -> None:
     app, port = app_and_port
-    text = design_file.find("mukherjee-i").read_text(encoding="utf-8")
-    body = json.dumps({"design": text, "pose": [0.1, 0.2, 0.8, 0, 0, 0], "duration": 50.0}).encode()
+    body = json.dumps(LONG).encode()
     head = f"POST /api/jobs/time HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nContent-Length: {len(body)}\r\n\r\n"
     with socket.create_connection(("127.0.0.1", port)) as page:
         page.sendall(head.encode() + body)

@@ -10,14 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.helpers.waiting import until
-from tests.web.asked import ASKED, BOX, MACHINE, POSE, TEXT
+from tests.web.asked import ASKED, BOX, LONG, MACHINE, POSE, TEXT
 
 import flexapod as fx
 
 pytest.importorskip("starlette")
 from starlette.testclient import TestClient
 
-from flexapod.design import design_file
 from flexapod.web import designs
 from flexapod.web.app import STATIC, application
 from flexapod.web.limits import JOB_BYTES
@@ -198,10 +197,9 @@ def test_a_box_upside_down_fails_with_words(client: TestClient) -> None:
 
 
 def test_a_job_can_be_stopped_by_its_name(client: TestClient) -> None:
-    asked = {"design": design_file.find("mukherjee-i").read_text(), "pose": [0.1, 0.2, 0.8, 0, 0, 0], "duration": 50.0}
     jobs = client.app.state.jobs
     answers = []
-    runner = threading.Thread(target=lambda: answers.append(client.post("/api/jobs/time", json=asked)))
+    runner = threading.Thread(target=lambda: answers.append(client.post("/api/jobs/time", json=LONG)))
     runner.start()
     assert until(jobs.running)
     assert client.delete("/api/jobs/nonsense").status_code == 404

@@ -13,14 +13,13 @@ from typing import Any
 import numpy as np
 import pytest
 from tests.helpers.plain import file, plain_machine
-from tests.web.asked import ASKED, BOX, MACHINE, POSE
+from tests.web.asked import ASKED, BOX, LONG, MACHINE, POSE
 from tests.web.serving import apart
 
 import flexapod as fx
 
 pytest.importorskip("starlette")
 
-from flexapod.design import design_file
 from flexapod.web import pose_ranges, response
 from flexapod.web import worker as work
 from flexapod.web.clients import Client
@@ -229,8 +228,7 @@ def kill(pids: list[int | None]) -> None:
 @pytest.mark.parametrize("when", ["idle", "at work"])
 def test_a_process_that_dies_is_told_or_replaced(when: str) -> None:
     """As where the system kills one that takes all memory."""
-    long = {"design": design_file.find("mukherjee-i").read_text(), "pose": [0.1, 0.2, 0.8, 0, 0, 0], "duration": 50.0}
-    spec = ASKED | {"box": BOX, "points": 100} if when == "idle" else long
+    spec = ASKED | {"box": BOX, "points": 100} if when == "idle" else LONG
 
     async def messages() -> list[bytes]:
         jobs, found = Jobs(), []
