@@ -24,6 +24,8 @@ SHORT = {  # commands of the shell, and what is asked of them, s
     "flexapod response motion-base --points 10": 0.5,
     "flexapod simulate motion-base --harmonic z 1mm 5Hz --duration 0.1": 0.5,
     "flexapod control motion-base velocity --gain 10": 0.5,
+    "flexapod envelope cubic-isolator": 0.5,
+    "flexapod certify mukherjee-ii --around 0.0005 0.5 --at-least 1Hz": 0.5,
     "flexapod sweep motion-base --around 0.1 5 --points 1000": 0.5,
     "flexapod sweep motion-base --around 0.1 5 --points 1000000 --out swept.nc": 1.0,
 }
