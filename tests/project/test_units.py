@@ -125,9 +125,12 @@ def test_every_dataset_of_the_library_is_read_here():
 
 
 @pytest.mark.parametrize("name", sorted(CALLS))
-def test_pint_reads_it_and_every_number_has_its_unit(name, tmp_path):
+def test_it_says_where_it_comes_from_and_pint_reads_the_unit_of_every_number(name, tmp_path):
     dataset = CALLS[name](tmp_path)
     assert isinstance(dataset, xr.Dataset)
+    assert dataset.attrs["source"] == f"flexapod {fx.__version__}"
+    assert dataset.attrs["design"]
+    assert len(dataset.attrs["design_digest" if "sweep" in name else "digest"]) == len(H.digest)
     for variable, values in dataset.variables.items():
         told = values.attrs.get("units")
         if told is not None:

@@ -17,6 +17,7 @@ from flexapod.control.losses import assumptions
 from flexapod.control.plant import Plant, damping_ratios, poles
 from flexapod.conventions import Array, Complex, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.mechanics.cautions import response_attributes
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import Linearisation, linearise
@@ -186,8 +187,7 @@ def root_locus(
         },
         {"gain": ("gain", row, in_unit(GAIN_UNIT[feedback], "gain"))},
         {
-            "design": hexapod.name,
-            "digest": hexapod.digest,
+            **origin(hexapod),
             "feedback": feedback,
             "legs": list(legs),
             "leak_rad_s": leak,

@@ -12,6 +12,7 @@ from flexapod.control.loop_response import loop_response, lossy
 from flexapod.control.plant import Plant
 from flexapod.conventions import AXES, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.cautions import response_attributes
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attributes, single_pose
@@ -147,8 +148,7 @@ def controlled_transmissibility(
 def response_origin(hexapod: Hexapod, pose: Pose, point: PointLike, plant: Plant, law: Controller) -> dict[str, object]:
     """What a response under control was computed for, as attributes of its Dataset."""
     return {
-        "design": hexapod.name,
-        "digest": hexapod.digest,
+        **origin(hexapod),
         "controller": law.name,
         "position_m": pose.position.tolist(),
         "rpy_rad": pose.rpy.tolist(),

@@ -27,6 +27,7 @@ from flexapod.control.losses import warn_of_losses
 from flexapod.control.plant import Plant, damping_ratios, is_stable, poles
 from flexapod.conventions import Array, Complex, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.errors import ArgumentError, UnstableError
 from flexapod.mechanics.inputs import ZERO
 from flexapod.mechanics.linearisation import linearise
@@ -223,7 +224,7 @@ def gain_map(
     shape = (rows["kp"].size, rows["kd"].size)
     laws = [replace(controller, kp=p, kd=d).on(plant.linear) for p, d in product(*rows.values())]
     pole = np.stack([poles(plant, law) for law in laws]).reshape(*shape, -1)
-    dataset = _map(rows, pole, plant, controller, nearness).assign_attrs(design=hexapod.name, digest=hexapod.digest)
+    dataset = _map(rows, pole, plant, controller, nearness).assign_attrs(**origin(hexapod))
     near = dataset.near.values
     if near.any():
         warnings.warn(

@@ -20,6 +20,7 @@ from flexapod.control.point_recording import prediction_at, recording_at
 from flexapod.control.sampled_prediction import Clock, Recording, predict
 from flexapod.conventions import AXES, LEGS, Array, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.errors import ArgumentError, SimulationError, UnstableError, shown
 from flexapod.excitation.excitation import Excitation
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attributes, single_base, single_pose
@@ -147,8 +148,7 @@ def simulate_control(
         found[case] = recording_at(record, where, still, moved, place)
         predicted[case] = prediction_at(predict(plant, law, base_motion, clock, noise), where, place)
     return _dataset(where, clock, found, predicted, after).assign_attrs(
-        design=hexapod.name,
-        digest=hexapod.digest,
+        **origin(hexapod),
         controller=controller.name,
         **point_attributes(hexapod, point),
         dt_s=clock.dt,

@@ -19,6 +19,7 @@ from flexapod.control.losses import warn_of_losses
 from flexapod.control.plant import Plant, poles
 from flexapod.conventions import Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.errors import ArgumentError, PoseError, SingularPoseError
 from flexapod.mechanics.inputs import ZERO, as_hexapod, as_joint, single_base, wrench
 from flexapod.mechanics.linearisation import linearise
@@ -149,8 +150,7 @@ def gain_schedule(
     if not callable(feedback):
         dataset.gain.attrs |= in_unit(GAIN_UNIT[feedback])
     return dataset.assign_attrs(
-        design=hexapod.name,
-        digest=hexapod.digest,
+        **origin(hexapod),
         law="own" if callable(feedback) else feedback,
         leak_rad_s=leak,
         fixed_gain=fixed,

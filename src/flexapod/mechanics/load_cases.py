@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from flexapod.checks import number, numbers, one_of
 from flexapod.conventions import AXES, LEGS, Array, JointModel, Unit, in_mixed_units, in_unit
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.errors import ArgumentError, KinematicsError, PoseError, SingularPoseError, shown
 from flexapod.mechanics.inputs import ZERO, PointLike, as_hexapod, as_joint, as_point, point_attributes, pose_or_home
 from flexapod.mechanics.load_case import Answer, Case, answer, unanswered
@@ -275,7 +276,6 @@ def _dataset(hexapod: Hexapod, given: _Given, answers: list[Answer]) -> xr.Datas
         "wrench_unit": ("by", loads),
     }
     return xr.Dataset(found, coords).assign_attrs(
-        design=hexapod.name,
-        digest=hexapod.digest,
+        **origin(hexapod),
         leg_stiffness=[float(k) for k in axial_stiffness(hexapod, answers[0].unstretched_length)[0]],
     )

@@ -13,6 +13,7 @@ import numpy as np
 from flexapod.checks import one_of, whole
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.errors import ArgumentError, InfeasibleError
 from flexapod.optimisation.design_results import OptimalDesign
 from flexapod.optimisation.global_search import OnTrial, Stop, Study, Trial
@@ -322,4 +323,4 @@ def history(problem: Problem, found: Sequence[Trial]) -> xr.Dataset:
     if found and len(found[0].values) > 1:
         data["against"] = ("trial", [t.values[1] for t in found])
     data["feasible"] = ("trial", np.array([t.feasible for t in found], dtype=bool))
-    return xr.Dataset(data, {"trial": order}, {"design": problem.hexapod.name, "digest": problem.hexapod.digest})
+    return xr.Dataset(data, {"trial": order}, {**origin(problem.hexapod)})

@@ -13,6 +13,7 @@ from flexapod.checks import thread_count, whole
 from flexapod.conventions import Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.layout import HOME
+from flexapod.design.origin import origin
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_joint
 from flexapod.mechanics.joint_limits import check_limits
@@ -183,7 +184,7 @@ def robustness(
     analysis = None
     if sensitivity:
         rest = (lambda done: progress(share + (1 - share) * done)) if progress else None
-        analysis = _sensitivity(ensemble, index, sensitivity, seed, rest)
+        analysis = _sensitivity(ensemble, index, sensitivity, seed, rest).assign_attrs(origin(hexapod))
     return Robustness(
         samples=_samples(
             ensemble,
@@ -281,4 +282,4 @@ def _samples(ensemble: Ensemble, u: Array, values: Array, hexapod: Hexapod, abou
 
     data: dict[str, Any] = {name: ("sample", ensemble.told(k, u[:, k])) for k, name in enumerate(ensemble.names)}
     data["index"] = ("sample", values, in_unit("rad/s", "dynamic stability index"))
-    return xr.Dataset(data, attrs={"design": hexapod.name, "digest": hexapod.digest, **about})
+    return xr.Dataset(data, attrs={**origin(hexapod), **about})

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from flexapod.checks import one_of, positive, whole
 from flexapod.conventions import TRANSLATIONS, Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.errors import ArgumentError, PoseError, SingularPoseError
 from flexapod.mechanics.inputs import as_hexapod
 from flexapod.mechanics.joint_limits import check_limits
@@ -260,4 +261,4 @@ def _samples(hexapod: Hexapod, path: Trajectory, times: Array, values: Array, jo
         "rpy": (("time", "axis"), pose.rpy, in_unit("rad")),
     }
     coordinates = {"time": ("time", times, in_unit("s")), "axis": list(TRANSLATIONS)}
-    return xr.Dataset(variables, coordinates, {"design": hexapod.name, "digest": hexapod.digest, "joint": joint})
+    return xr.Dataset(variables, coordinates, {**origin(hexapod), "joint": joint})

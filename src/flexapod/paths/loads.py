@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from flexapod.conventions import LEGS, TRANSLATIONS, Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.errors import SingularPoseError
 from flexapod.mechanics.dynamics import inverse_dynamics
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point, point_attributes
@@ -136,7 +137,7 @@ def path_loads(
         {"time": ("time", times, in_unit("s")), "leg": list(LEGS), "axis": list(TRANSLATIONS)},
     )
     dataset = dataset.assign(_motion(motion, as_point(hexapod, point)) | _joint_moments(hexapod, motion, joint))
-    told = {"design": hexapod.name, "digest": hexapod.digest, **point_attributes(hexapod, point)}
+    told = {**origin(hexapod), **point_attributes(hexapod, point)}
     told["caution"] = rest_words(path)
     return dataset.assign(_extremes(dataset)).assign_attrs(told)
 

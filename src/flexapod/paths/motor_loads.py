@@ -11,6 +11,7 @@ from flexapod.checks import instance, not_negative
 from flexapod.conventions import LEGS, Array, Unit, in_unit
 from flexapod.design.drive import Drive, Motor
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.errors import ArgumentError
 from flexapod.mechanics.inputs import as_hexapod
 from flexapod.mechanics.springs import axial_stiffness
@@ -105,7 +106,7 @@ def motor_loads(hexapod: Hexapod, dataset: xr.Dataset, *, hold: float = 0.0) -> 
     found = found.assign(_of_cycle(found, hold))
     if drive.motor is not None:
         found = found.assign(_beside_curve(found, drive.motor))
-    return found.assign_attrs(design=hexapod.name, digest=hexapod.digest, hold_s=hold)
+    return found.assign_attrs(**origin(hexapod), hold_s=hold)
 
 
 class _Shaft(NamedTuple):

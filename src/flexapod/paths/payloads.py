@@ -13,6 +13,7 @@ from flexapod.checks import instance, not_negative, numbers
 from flexapod.conventions import Array, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.inertia import ROUNDING, inertia_flaw
+from flexapod.design.origin import origin
 from flexapod.design.payload import with_payload
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.inputs import ZERO, PointLike, point_attributes
@@ -169,7 +170,7 @@ def payload_loads(
     together["mass"] = ("case", [case.mass for case in cases], in_unit("kg", "mass of the payload"))
     together["warning"] = ("case", [" ".join(case.warnings) for case in cases])
     together["least_index"] = ("case", least, in_unit("rad/s", "lowest natural frequency on the path"))
-    return together.assign_attrs({"design": hexapod.name, "digest": hexapod.digest, **told})
+    return together.assign_attrs({**origin(hexapod), **told})
 
 
 def _checked(payloads: Sequence[PayloadCase]) -> list[PayloadCase]:

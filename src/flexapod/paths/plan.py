@@ -11,6 +11,7 @@ from flexapod.certificates.certificate import Certificate
 from flexapod.checks import whole
 from flexapod.conventions import in_unit
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.errors import ArgumentError, PathError, shown
 from flexapod.mechanics.inputs import as_hexapod
 from flexapod.paths.requirements import Margins, PathRequirements
@@ -146,5 +147,5 @@ def plan_slice(hexapod: Hexapod, plan: Plan, *, samples: int = 81) -> xr.Dataset
             "path_aside": ("step", place[:, 1], in_unit("m")),
         },
         {"along": ("along", axes[0], in_unit("m")), "aside": ("aside", axes[1], in_unit("m"))},
-        {"design": hexapod.name, "digest": hexapod.digest, "bound": plan.requirements.index, "straight": length},
+        {**origin(hexapod), "bound": plan.requirements.index, "straight": length},
     )

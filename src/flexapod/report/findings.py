@@ -9,6 +9,7 @@ import numpy as np
 
 from flexapod.conventions import TWO_PI, Array, JointModel
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.mechanics.at_rest import Stability, pose_state
 from flexapod.mechanics.cautions import Caution, Tangent, platform_radius
 from flexapod.mechanics.inputs import as_hexapod, single_pose
@@ -81,8 +82,7 @@ class Findings:
 
         return {
             "flexapod": __version__,
-            "design": self.hexapod.name,
-            "digest": self.hexapod.digest,
+            **origin(self.hexapod),
             "changes": self.changes,
             "pose_m_deg": [*self.pose.position, *np.degrees(self.pose.rpy)],
             "joint": self.joint,

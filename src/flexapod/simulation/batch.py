@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.checks import level_outside, numbers, positive, whole
 from flexapod.conventions import Array, JointModel
+from flexapod.design.origin import origin
 from flexapod.errors import ArgumentError, shown
 from flexapod.mechanics.inputs import ZERO, PointLike, as_point
 from flexapod.mechanics.modes import advised_sampling_time, natural_modes
@@ -128,7 +129,7 @@ def simulate_many(
         warnings.warn(note, UserWarning, stacklevel=level_outside())
     dataset = xr.concat([part.reindex(time=at) for part in each], dim="run", combine_attrs="drop_conflicts")
     dataset.attrs = {
-        "design": ", ".join(sorted({run.hexapod.name for run in runs})),
+        **origin(*(run.hexapod for run in runs)),
         "joint": joint,
         "method": _told_method(found),
         "rtol": rtol,

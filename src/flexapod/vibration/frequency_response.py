@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from flexapod.conventions import AXES, LEGS, Array, Complex, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.mechanics.cautions import response_attributes
 from flexapod.mechanics.inputs import ZERO, PointLike, as_hexapod, as_point, point_attributes, single_pose
 from flexapod.mechanics.linearisation import Linearisation, linearise
@@ -156,8 +157,7 @@ def leg_forces(linear: Linearisation, relative: Complex, eta: Array) -> Complex:
 def attributes(hexapod: Hexapod, pose: Pose, point: PointLike, eta: Array, linear: Linearisation) -> dict[str, object]:
     """What a response was computed for, as attributes of its Dataset."""
     return {
-        "design": hexapod.name,
-        "digest": hexapod.digest,
+        **origin(hexapod),
         "position_m": pose.position.tolist(),
         "rpy_rad": pose.rpy.tolist(),
         **point_attributes(hexapod, point),

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from flexapod.checks import one_of, positive
 from flexapod.conventions import AXES, TWO_PI, Array, Complex, JointModel, in_mixed_units, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.errors import ArgumentError
 from flexapod.excitation.sines import harmonic
 from flexapod.mechanics.cautions import response_attributes
@@ -304,8 +305,7 @@ def _dataset(shaker: _Shaker, omega: Array, linear: Complex, found: _Found) -> x
             "harmonic": np.arange(1, _HARMONICS + 1),
         },
         {
-            "design": shaker.hexapod.name,
-            "digest": shaker.hexapod.digest,
+            **origin(shaker.hexapod),
             "axis": shaker.axis,
             "amplitude": shaker.amplitude,
             "amplitude_unit": unit_of(shaker.axis),

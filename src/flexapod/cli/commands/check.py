@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from flexapod.cli.options import common
+from flexapod.design.origin import origin
 from flexapod.report.numbers import pose_numbers
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
 
     hexapod = common.load_design(design, changes)
     where = common.pose_or_none(hexapod, pose)
-    found = {"design": hexapod.name, "digest": hexapod.digest, "warnings": hexapod.warnings, **_at(hexapod, where)}
+    found = {**origin(hexapod), "warnings": hexapod.warnings, **_at(hexapod, where)}
     found["assumed"] = assumed_of(hexapod)
     found["ok"] = not (found["warnings"] or found["cautions"] or found["limits_exceeded"])
     if as_json:

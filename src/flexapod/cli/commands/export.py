@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from flexapod.cli.options import common
+from flexapod.design.origin import origin
 from flexapod.output_files import check_file
 from flexapod.report.numbers import file_name, pose_numbers
 
@@ -80,8 +81,7 @@ def command(
     omega, before = (natural_modes(machine, where, joint=joint).omega for machine in (hexapod, given))
     written, missing = [str(file) for file in files], list(left_out(hexapod, where, kind))
     found = {
-        "design": hexapod.name,
-        "digest": hexapod.digest,
+        **origin(hexapod),
         "pose_m_deg": pose_numbers(where),
         "format": kind,
         "files": written,

@@ -10,6 +10,7 @@ import click
 from flexapod.cli.options import common
 from flexapod.cli.options.points import PointGiven, point_option
 from flexapod.conventions import AXES, TWO_PI
+from flexapod.design.origin import origin
 from flexapod.report.numbers import pose_numbers
 
 if TYPE_CHECKING:
@@ -55,8 +56,7 @@ def command(
     if as_json:
         common.print_json(
             {
-                "design": hexapod.name,
-                "digest": hexapod.digest,
+                **origin(hexapod),
                 "pose_m_deg": pose_numbers(where),
                 "joint": joint,
                 "stability": state.stability,

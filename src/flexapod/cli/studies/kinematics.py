@@ -13,6 +13,7 @@ from flexapod.cli.options import pose_columns
 from flexapod.conventions import LEGS as NUMBERS
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.design.units import QUANTITIES
 from flexapod.mechanics.assembly import forward_kinematics, forward_kinematics_all
 from flexapod.mechanics.joint_limits import check_limits, limit_excess
@@ -50,7 +51,7 @@ class Conversion:
         for row in rows:
             if self.of == "lengths":
                 row["length_m"] = [row.pop(f"{leg}_m") for leg in LEGS]
-        head = {"design": self.hexapod.name, "digest": self.hexapod.digest, "converts_to": self.of}
+        head = {**origin(self.hexapod), "converts_to": self.of}
         return {**head, "rows": rows, "warnings": self.notes}
 
 

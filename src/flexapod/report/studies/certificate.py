@@ -9,6 +9,7 @@ import numpy as np
 from flexapod.certificates.certificate import Certificate
 from flexapod.certificates.largest import CertifiedBox
 from flexapod.conventions import AXES, TWO_PI
+from flexapod.design.origin import origin
 from flexapod.mechanics.cautions import Caution
 from flexapod.report.numbers import brief, file_name, percent, shown, six_words
 from flexapod.report.studies import least_index
@@ -230,8 +231,7 @@ def _going_on(found: Certificate) -> str:
 def _data(found: Certificate, checked: bool, largest: CertifiedBox | None) -> dict[str, Any]:
     boxes = isinstance(found.place, Boxes)
     data: dict[str, Any] = {
-        "design": found.hexapod.name,
-        "digest": found.hexapod.digest,
+        **origin(found.hexapod),
         "nominal_digest": found.nominal,
         "claim": found.claim,
         "status": found.status,

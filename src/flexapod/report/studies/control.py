@@ -14,6 +14,7 @@ from flexapod import plots
 from flexapod.control.closed_loop_poles import ClosedLoop, creep_words, near_words
 from flexapod.conventions import TWO_PI, printed_unit
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.errors import told_apart
 from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.point_motion import of_point
@@ -231,8 +232,7 @@ def _tables(f: ControlFindings, name: str) -> list[Table]:
 def _data(hexapod: Hexapod, f: ControlFindings) -> dict[str, Any]:
     loop = f.sampled
     data: dict[str, Any] = {
-        "design": hexapod.name,
-        "digest": hexapod.digest,
+        **origin(hexapod),
         "pose_m_deg": pose_numbers(f.pose),
         "point_m": f.response.attrs["point_m"],
         "point": f.response.attrs["point"],

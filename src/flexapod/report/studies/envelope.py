@@ -9,6 +9,7 @@ import numpy as np
 from flexapod import plots
 from flexapod.conventions import AXES, TRANSLATIONS, Array
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.point_motion import point_words
 from flexapod.report.numbers import DASH, pose_numbers, pose_words, six_words
@@ -202,8 +203,7 @@ def _data(hexapod: Hexapod, found: Envelope) -> dict[str, Any]:
     }
     box = found.box
     return {
-        "design": hexapod.name,
-        "digest": hexapod.digest,
+        **origin(hexapod),
         "home_m_deg": pose_numbers(found.home),
         "point_m": found.point,
         "point": found.point_name,

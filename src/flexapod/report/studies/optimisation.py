@@ -6,6 +6,7 @@ import numpy as np
 
 from flexapod import plots
 from flexapod.conventions import TWO_PI, JointModel
+from flexapod.design.origin import origin
 from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.load_limits import motion_limits_words
 from flexapod.optimisation.design_results import Check, OptimalDesign, VariableRange
@@ -144,8 +145,7 @@ def _constraints(found: OptimalDesign) -> Table:
 
 def _optimal_data(found: OptimalDesign, objective: str) -> dict[str, object]:
     return {
-        "design": found.hexapod.name,
-        "digest": found.hexapod.digest,
+        **origin(found.hexapod),
         "objective": objective,
         **_begun_data(found),
         "improved": found.improved,

@@ -12,6 +12,7 @@ import xarray as xr
 from flexapod import plots
 from flexapod.certificates.certificate import Certificate
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.errors import told_apart
 from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.load_limits import load_excess
@@ -246,8 +247,7 @@ def _rows(hexapod: Hexapod, f: PathFindings) -> list[Row]:
 def _data(hexapod: Hexapod, f: PathFindings) -> dict[str, Any]:
     index, loads, plan = f.along, f.loads, f.plan
     data: dict[str, Any] = {
-        "design": hexapod.name,
-        "digest": hexapod.digest,
+        **origin(hexapod),
         "duration_s": f.path.duration,
         "length_m": f.path.length(f.size),
         "radian_as_m": f.size,

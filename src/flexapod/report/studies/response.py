@@ -14,6 +14,7 @@ import xarray as xr
 from flexapod import plots
 from flexapod.conventions import AXES, TWO_PI, Array, Complex, unit_of
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.point_motion import in_columns, of_point
 from flexapod.pose import Pose
@@ -172,8 +173,7 @@ def _peaks_table(f: ResponseFindings, peaks: Array) -> Table:
 
 def _data(f: ResponseFindings, peaks: Array) -> dict[str, Any]:
     data: dict[str, Any] = {
-        "design": f.hexapod.name,
-        "digest": f.hexapod.digest,
+        **origin(f.hexapod),
         "pose_m_deg": pose_numbers(f.pose),
         "joint": f.options["joint"],
         "loss_factor": f.response.attrs["loss_factor"],

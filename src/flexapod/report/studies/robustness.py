@@ -6,6 +6,7 @@ from typing import Any
 
 from flexapod import plots
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.mechanics.cautions import Caution
 from flexapod.optimisation.uncertainty import Robustness, moves
 from flexapod.pose import PoseLike
@@ -104,8 +105,7 @@ def _shares(found: Robustness) -> Table:
 
 def _data(hexapod: Hexapod, found: Robustness, over: str) -> dict[str, Any]:
     data: dict[str, Any] = {
-        "design": hexapod.name,
-        "digest": hexapod.digest,
+        **origin(hexapod),
         "over": over,
         "nominal_rad_s": found.nominal,
         "mean_rad_s": found.mean,

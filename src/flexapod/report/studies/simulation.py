@@ -13,6 +13,7 @@ import xarray as xr
 from flexapod import plots
 from flexapod.conventions import AXES, Unit, printed_unit, unit_of
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.point_motion import in_columns, of_point, point_words
 from flexapod.plots.style import ROUNDING, entitle
@@ -143,8 +144,7 @@ def _of_what(dataset: xr.Dataset) -> str:
 def _data(hexapod: Hexapod, pose: Pose, dataset: xr.Dataset, took: float) -> dict[str, Any]:
     force = dataset.leg_force.values
     return {
-        "design": hexapod.name,
-        "digest": hexapod.digest,
+        **origin(hexapod),
         "pose_m_deg": pose_numbers(pose),
         "joint": dataset.attrs["joint"],
         "point_m": dataset.attrs["point_m"],

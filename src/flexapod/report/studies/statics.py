@@ -11,6 +11,7 @@ import xarray as xr
 from flexapod import plots
 from flexapod.conventions import AXES, LEGS, Array, Unit, in_unit, unit_of
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.origin import origin
 from flexapod.mechanics.cautions import Caution
 from flexapod.mechanics.point_motion import in_columns, point_words
 from flexapod.report.numbers import DASH, brief, without_rounding
@@ -292,8 +293,7 @@ def _data(hexapod: Hexapod, f: StaticsFindings) -> dict[str, Any]:
         "rotation_rad": "rotation",
     }
     return {
-        "design": hexapod.name,
-        "digest": hexapod.digest,
+        **origin(hexapod),
         "point_m": c.attrs["point_m"],
         "point": c.attrs["point"],
         "reference": None if f.reference is None else f.names[f.reference],
