@@ -26,7 +26,7 @@ from flexapod.web.geometry import farthest
 
 KINDS = ("harmonic", "sweep", "shock", "step", "csv")
 ROWS = 4000  #: instants of one simulation that are sent
-MOST_PERIODS = 2e5  #: of the highest mode: about a minute of computing
+MOST_PERIODS = 2e5  #: of the highest mode: bounds the computing
 PLAYED = 8.0  #: duration of a playback, s
 RAMP = 0.1  #: share of the duration over which a sine rises
 RISING = "The motion rises over the first {:.4g} s: peaks there are smaller than asked."
