@@ -76,6 +76,45 @@ def test_a_link_pasted_into_an_open_page_resets_what_it_leaves_out(opened: Any) 
     assert page.get_by_label("Joint model").input_value() == "universal"
 
 
+def test_a_link_is_not_lost_where_the_page_writes_its_own_address_meanwhile(opened: Any) -> None:
+    page = opened("design=mukherjee-ii&tab=modes")
+    pause(page, 0.5)
+    link = "#design=mukherjee-i&pose=0.1,0.2,0.8,0,0,0&tab=modes"
+    page.evaluate(
+        """link => {
+      const own = location.hash
+      location.hash = link
+      history.replaceState(null, '', own)
+    }""",
+        link,
+    )
+    wait_for_index(page, float(fx.stability_index(fx.load("mukherjee-i"), fx.Pose([0.1, 0.2, 0.8]))))
+
+
+def test_changes_of_a_link_do_not_reach_the_machine_of_the_next(opened: Any) -> None:
+    page = opened("design=mukherjee-ii&tab=modes")
+    late: list[Any] = []
+
+    def held(route: Any) -> None:
+        if "400" in route.request.post_data:
+            late.append(route)
+        else:
+            route.continue_()
+
+    page.route("**/api/design", held)
+    page.evaluate("""location.hash = 'design=motion-base&changes={"platform.mass":400}&tab=modes'""")
+    assert until(lambda: page.evaluate("1") and late)
+    page.evaluate("location.hash = 'design=mukherjee-i&tab=modes'")
+    index = float(fx.stability_index(fx.load("mukherjee-i")))
+    wait_for_index(page, index)
+    late[0].continue_()
+    pause(page, 1.0)
+    page.locator(".readout[data-answer=current]").wait_for()
+    wait_for_index(page, index)
+    assert "400" not in page.evaluate("location.hash")
+    page.unroute_all(behavior="wait")
+
+
 @pytest.mark.parametrize(
     ("link", "words"),
     [

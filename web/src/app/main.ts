@@ -136,7 +136,8 @@ async function begin(): Promise<void> {
   askTheServer()
   keepAddress()
   onTheme(() => page.snapshot && store.set({ snapshot: page.snapshot }))
-  addEventListener('hashchange', () => void restore(start, location.hash, tell))
+  // By the event's own address: the page may have written its own over it since.
+  addEventListener('hashchange', (event) => void restore(start, new URL(event.newURL).hash, tell))
   await restore(start, location.hash, tell)
 }
 
