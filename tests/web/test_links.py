@@ -91,27 +91,33 @@ def test_a_link_is_not_lost_where_the_page_writes_its_own_address_meanwhile(open
     wait_for_index(page, float(fx.stability_index(fx.load("mukherjee-i"), fx.Pose([0.1, 0.2, 0.8]))))
 
 
-def test_changes_of_a_link_do_not_reach_the_machine_of_the_next(opened: Any) -> None:
+@pytest.mark.parametrize("next_by", ["link", "file"])
+def test_changes_of_a_link_do_not_reach_the_machine_of_the_next(next_by: str, opened: Any, tmp_path: Path) -> None:
     page = opened("design=mukherjee-ii&tab=modes")
     late: list[Any] = []
 
     def held(route: Any) -> None:
-        if "400" in route.request.post_data:
+        if route.request.post_data_json["changes"]:
             late.append(route)
         else:
             route.continue_()
 
+    machine = fx.load("mukherjee-i")
     page.route("**/api/design", held)
     page.evaluate("""location.hash = 'design=motion-base&changes={"platform.mass":400}&tab=modes'""")
     assert until(lambda: page.evaluate("1") and late)
-    page.evaluate("location.hash = 'design=mukherjee-i&tab=modes'")
-    index = float(fx.stability_index(fx.load("mukherjee-i")))
+    if next_by == "link":
+        page.evaluate("location.hash = 'design=mukherjee-i&tab=modes'")
+    else:
+        machine.save(tmp_path / "next.toml")
+        page.set_input_files("#design-file", tmp_path / "next.toml")
+    index = float(fx.stability_index(machine))
     wait_for_index(page, index)
     late[0].continue_()
     pause(page, 1.0)
     page.locator(".readout[data-answer=current]").wait_for()
     wait_for_index(page, index)
-    assert "400" not in page.evaluate("location.hash")
+    assert "400" not in page.evaluate("new URLSearchParams(location.hash.slice(1)).get('changes') ?? ''")
     page.unroute_all(behavior="wait")
 
 

@@ -1,6 +1,6 @@
 // Shows what an address says, or what the server was started with, and says what is wrong in the address.
 
-import { describe, open } from '../panels/opening'
+import { describe, open, openings } from '../panels/opening'
 import { fromAddress } from '../state/address'
 import type { Start } from '../state/answers'
 import { Refused, Unreachable } from '../state/api'
@@ -24,9 +24,8 @@ export async function restore(start: Start, hash: string, tell: Tell): Promise<v
   const text = said ?? first.text
   const preset = said === undefined ? (presets[first.name] === text ? first.name : '') : (name ?? '')
   const outcome = await open(text, preset, rest)
-  if (superseded()) return
   if (outcome === 'waiting') whenBack(() => void restore(start, hash, tell))
-  if (outcome === 'shown') faults.push(...(await change(changes ?? {}, superseded)))
+  if (outcome === 'shown') faults.push(...(await change(changes ?? {})))
   else if (outcome === 'refused' && !page.design) {
     await open(presets[FIRST], FIRST)
     await open(text, preset) // again, to show its errors beside that machine
@@ -36,8 +35,9 @@ export async function restore(start: Start, hash: string, tell: Tell): Promise<v
 }
 
 /** Make the changes of an address to the design that is shown, unless another was opened meanwhile, or say why not. */
-async function change(changes: Record<string, unknown>, superseded: () => boolean): Promise<string[]> {
+async function change(changes: Record<string, unknown>): Promise<string[]> {
   if (!Object.keys(changes).length) return []
+  const mine = openings()
   try {
     await describe(page.text, changes)
   } catch (error) {
@@ -45,6 +45,6 @@ async function change(changes: Record<string, unknown>, superseded: () => boolea
     if (!(error instanceof Unreachable))
       return [`its changes to the design are refused (${error.message}) and left out`]
   }
-  if (!superseded()) store.set({ changes })
+  if (mine === openings()) store.set({ changes })
   return []
 }

@@ -30,6 +30,9 @@ export type Outcome = 'shown' | 'refused' | 'waiting' | 'superseded'
 
 let opened = 0
 
+/** How many designs were opened so far: what is meant for the last one asks whether it still is. */
+export const openings = (): number => opened
+
 /** Open a design, with the rest of a page's state. */
 export async function open(text: string, preset: string, rest: Partial<Page> = {}): Promise<Outcome> {
   const mine = ++opened
