@@ -21,7 +21,6 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from itertools import cycle
-from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -173,7 +172,7 @@ def percentile(values: list[float], share: float) -> float:
 
 def contests(plan: Plan) -> Iterator[Contest]:
     """The page by itself: no other tool does this."""
-    if plan.quick or not Path(CHROMIUM).exists() or not plan.has("playwright"):
+    if plan.quick or CHROMIUM is None or not plan.has("playwright"):
         return
     from playwright.sync_api import sync_playwright
 

@@ -5,11 +5,13 @@ checked too. Where Chromium is at hand, every page is also opened, without a net
 """
 
 import re
-import shutil
 import sys
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import unquote, urlsplit
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from tests.web.browser import CHROMIUM, FLAGS
 
 LOADS = {
     "script": ("src",),
@@ -77,13 +79,13 @@ def missing(page: Path, url: str, pages: dict[Path, Contents]) -> str | None:
     return None
 
 
-def asked_for(site: Path, chromium: str) -> list[str]:
+def asked_for(site: Path) -> list[str]:
     """What the pages ask for from elsewhere, or fail to show, when a browser opens them from the disk."""
     from playwright.sync_api import sync_playwright
 
     found: list[str] = []
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-quic"])
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         context = browser.new_context(offline=True)
         tab = context.new_page()
         tab.on("request", lambda request: found.append(f"asks for {request.url}") if elsewhere(request.url) else None)
@@ -96,12 +98,12 @@ def asked_for(site: Path, chromium: str) -> list[str]:
 
 
 def main(site: Path) -> int:
-    found, chromium = problems(site), shutil.which("chromium")
-    if chromium:
-        found += asked_for(site, chromium)
+    found = problems(site)
+    if CHROMIUM:
+        found += asked_for(site)
     for line in found:
         print(line, file=sys.stderr)
-    looked = "opened in Chromium, too" if chromium else "not opened: Chromium is not here"
+    looked = "opened in Chromium, too" if CHROMIUM else "not opened: Chromium is not here"
     print(f"{site}: {len(list(site.rglob('*.html')))} pages, {len(found)} problems ({looked})")
     return 1 if found else 0
 

@@ -15,6 +15,7 @@ from flexapod.cli import main
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parents[1]))
 from tests.helpers.documents import run_document  # noqa: E402
+from tests.web.browser import CHROMIUM, FLAGS  # noqa: E402
 
 
 def run(*arguments: str) -> tuple[int, str, str]:
@@ -26,7 +27,7 @@ def run(*arguments: str) -> tuple[int, str, str]:
 def photograph(page: Path, picture: Path) -> None:
     """The top of a report, as a browser shows it."""
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=FLAGS)
         tab = browser.new_page(viewport={"width": 1100, "height": 860}, color_scheme="light")
         tab.goto(page.as_uri())
         tab.screenshot(path=picture)

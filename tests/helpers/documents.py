@@ -12,7 +12,7 @@ A comment before a block changes that:
 
 - `<!-- test: append to FILE -->` adds the block to a file, `<!-- test: instead of TEXT in FILE -->` puts it in the
   place of that text there.
-- `<!-- test: 1000000 as 1000 -->` runs the block with another number than it shows.
+- `<!-- test: 1000000 as 1000, 20 as 5 -->` runs the block with other numbers than it shows.
 - `<!-- test: skip, REASON -->` leaves it out.
 """
 
@@ -96,11 +96,12 @@ def _write(block: Block, folder: Path) -> None:
 
 
 def _smaller(block: Block) -> str:
-    if " as " not in block.how:
-        return block.text
-    shown, used = block.how.split(" as ")
-    assert shown in block.text, f"line {block.line}: the block does not have {shown!r}"
-    return block.text.replace(shown, used)
+    text = block.text
+    for change in block.how.split(", ") if " as " in block.how else ():
+        shown, used = change.split(" as ")
+        assert shown in text, f"line {block.line}: the block does not have {shown!r}"
+        text = text.replace(shown, used)
+    return text
 
 
 def _python(text: str, namespace: dict[str, object], where: str) -> str:

@@ -1,6 +1,5 @@
 """Pages on paper: numbered, with a running title, no heading alone at the foot, and no page for a footer only."""
 
-import os
 import re
 import subprocess
 from collections import Counter
@@ -19,7 +18,7 @@ from flexapod.report import gather, paper_page
 from flexapod.report import page as whole
 from flexapod.report.studies import machine, robustness
 
-if not os.path.exists(CHROMIUM):
+if CHROMIUM is None:
     pytest.skip("chromium is not installed", allow_module_level=True)
 
 HOME_RUN = ["control", "cubic-isolator", "lqg", "--shake", "0.01", "--duration", "2"]
