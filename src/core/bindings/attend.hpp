@@ -1,8 +1,7 @@
 // Long calls: the core works on other threads while Python is heard.
 #pragma once
 
-#include <nanobind/nanobind.h>
-
+#include "bindings/unlocked.hpp"
 #include "threads/crew.hpp"
 
 namespace flexapod {
@@ -12,11 +11,11 @@ namespace flexapod {
 template <class Done> bool attend(Crew& crew, Done&& done, const nanobind::object& report) {
   for (bool finished = false; !finished;) {
     {
-      const nanobind::gil_scoped_release free;
+      const Unlocked unlocked;
       finished = crew.wait_for(std::chrono::milliseconds(50));
     }
     if (PyErr_CheckSignals() != 0) throw nanobind::python_error();
-    if (!report.is_none() && report(done()).ptr() == Py_False) return false;
+    if (!report.is_none() && with_python([&] { return report(done()); }).ptr() == Py_False) return false;
   }
   return true;
 }

@@ -1,6 +1,7 @@
 // Searches over designs as Python sees them.
 #include "bindings/arrays.hpp"
 #include "bindings/bind.hpp"
+#include "bindings/unlocked.hpp"
 #include "kernels/isa.hpp"
 #include "model/design_directions.hpp"
 #include "sweep/batch.hpp"
@@ -18,7 +19,7 @@ nb::object sweep_designs_(const Input& designs, Joint joint, const Input& poses,
   task.poses = rows(poses, paired ? n : k, pose_size, "poses"), task.poses_count = k;
   task.paired = paired, task.modes = modes;
   Array<double> omega = [&] {
-    const nb::gil_scoped_release release;
+    const Unlocked unlocked;
     return sweep_designs(kernels().sweep, task, n, threads);
   }();
   return numpy(std::move(omega));

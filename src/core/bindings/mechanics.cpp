@@ -2,6 +2,7 @@
 // and values are checked in Python; here only sizes are.
 #include "bindings/arrays.hpp"
 #include "bindings/bind.hpp"
+#include "bindings/unlocked.hpp"
 #include "kernels/isa.hpp"
 #include "model/assemblies.hpp"
 #include "threads/parallel_for.hpp"
@@ -52,7 +53,7 @@ nb::tuple all_assemblies(const assemblies::Search& search, const Input& lengths,
   if (threads < 1) throw std::invalid_argument("threads is " + std::to_string(threads) + "; it must be >= 1");
   std::vector<assemblies::Found> found(n);
   {
-    const nb::gil_scoped_release release;
+    const Unlocked unlocked;
     in_blocks(n, 1, threads, [&](size_t first, size_t last) {
       for (size_t i = first; i < last; ++i) found[i] = search.assemblies(wanted[i]);
     });

@@ -1,6 +1,7 @@
 // Rotations as Python sees them: checks and conversions of many, on several threads.
 #include "bindings/arrays.hpp"
 #include "bindings/bind.hpp"
+#include "bindings/unlocked.hpp"
 #include "model/angles.hpp"
 #include "model/motion.hpp"
 #include "threads/parallel_for.hpp"
@@ -10,7 +11,7 @@ namespace {
 
 /// Calls work(i) for all i < n without Python's lock.
 template <class Work> void for_each(size_t n, int threads, const Work& work) {
-  const nb::gil_scoped_release release;
+  const Unlocked unlocked;
   in_blocks(n, 8192, threads, [&](size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) work(i);
   });
@@ -18,7 +19,7 @@ template <class Work> void for_each(size_t n, int threads, const Work& work) {
 
 /// Whether it is true of all i < n.
 template <class Holds> bool all_of(size_t n, int threads, const Holds& holds) {
-  const nb::gil_scoped_release release;
+  const Unlocked unlocked;
   std::atomic<bool> all{true};
   in_blocks(n, 8192, threads, [&](size_t first, size_t last) {
     bool block = true;

@@ -5,6 +5,7 @@
 
 #include "bindings/arrays.hpp"
 #include "bindings/bind.hpp"
+#include "bindings/unlocked.hpp"
 #include "kernels/isa.hpp"
 
 namespace flexapod {
@@ -49,7 +50,7 @@ nb::dict sweep_of(const Input& design, Joint joint, const sweep_task::Poses& pos
   task.design = rows(design, 1, design_size, "design"), task.joint = joint;
   task.poses = poses, task.quantities = quantities, task.limits = &limits;
   SweepRows found = [&] {
-    const nb::gil_scoped_release release;
+    const Unlocked unlocked;
     return sweep(kernels().sweep, task, n, threads);
   }();
   nb::dict result;
