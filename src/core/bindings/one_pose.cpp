@@ -121,9 +121,10 @@ class OnePose {
     const Vec6<double> needed = leg_forces(g, s, wrench);
     for (int i = 0; i < 6; ++i) of_.rest_of_leg(i, needed[i], fit.length[i], legs);
     if (!finite(legs[0], 30)) return nb::none();
-    of_.kernel.tangent(of_.own, numbers(s), wrench, legs[2], matrices);
+    auto& [M, C, K, M_b, C_b, K_b, H, carry] = matrices;
+    of_.kernel.tangent(of_.own, numbers(s), wrench, legs[0], legs[3], {M, C, K, H, M_b, C_b, K_b});
     if (!finite(matrices[0], 7 * 36)) return nb::none();
-    set_carry(s.platform.pose.t - s.base.pose.t, matrices[7]);
+    set_carry(s.platform.pose.t - s.base.pose.t, carry);
     const auto copy = [](const void* from, size_t size) { return [=](double* to) { std::memcpy(to, from, size); }; };
     return nb::make_tuple(new_array({8, 6, 6}, copy(matrices, sizeof(matrices))),
                           new_array({5, 6}, copy(legs, sizeof(legs))), springs(g, s),
@@ -235,14 +236,12 @@ class Compiled {
   /// M, C, K and H, (6, 6) each.
   nb::object linearised(nb::handle pose, nb::handle wrench) const {
     State s = start();
-    double load[6] = {}, force[6], legs[5][6], matrices[7][36];
+    double load[6] = {}, *to[4];
     if (!read(pose, s) || !read_six(wrench, load)) return nb::none();
-    const Geometry<double> g = of_.geometry(s);
-    of_.kernel.leg_forces(of_.own, numbers(s), load, force);
-    for (int i = 0; i < 6; ++i) of_.rest_of_leg(i, force[i], norm(g.S[i]), legs);
-    of_.kernel.tangent(of_.own, numbers(s), load, legs[2], matrices);
-    const auto shown = [&](int k) { return new_array({6, 6}, [&](double* to) { std::copy_n(matrices[k], 36, to); }); };
-    return nb::make_tuple(shown(0), shown(1), shown(2), shown(6));
+    const auto matrix = [&](int i) { return new_array({6, 6}, [&](double* numbers) { to[i] = numbers; }); };
+    nb::object M = matrix(0), C = matrix(1), K = matrix(2), H = matrix(3);
+    of_.kernel.linearised(of_.own, numbers(s), load, {to[0], to[1], to[2], to[3], nullptr, nullptr, nullptr});
+    return nb::make_tuple(std::move(M), std::move(C), std::move(K), std::move(H));
   }
 
  private:

@@ -145,7 +145,21 @@ SphericalLoad<T> weight_load(const LegAxes<T>& leg, const LegInertia<D>& in, con
   return {in.m_u * a + leg.W_transposed(cross(in.c_d + in.c_u, a)), Vec3<T>()};
 }
 
-/// The part of it that friction has.
+/// How the force of `weight_load` changes with the place of the platform joint: one row for each of the leg's axes, along
+/// which the joint moves while the axes turn. cotangent: of the angle between leg and universal axis.
+template <class T, class D>
+Mat3<T> weight_stiffness(const LegAxes<T>& leg, const LegInertia<D>& in, const Vec3<T>& a, const T& cotangent,
+                         Joint joint) {
+  const T u = leg.u, zero(0.0), slant = u * leg.cosecant;  // tau changes by slant^2 / u along z
+  const auto c = in.c_d + in.c_u;
+  const Vec3<T> N = cross(c, a), force = leg.W_transposed(N);
+  const auto turned = [&](const Vec3<T>& by) { return cross(by, force) + leg.W_transposed(cross(c, cross(a, by))); };
+  Vec3<T> along_z = turned({zero, -u, zero});
+  if (joint == Joint::universal) along_z.y += slant * slant * N.x;
+  return {{-u * force, turned({cotangent * u, zero, u}), along_z}};
+}
+
+/// The part of `spherical_load` that friction has.
 template <class T, class U, class E>
 SphericalLoad<T> friction_load(const LegAxes<U>& leg, const Leg<E>& parts, const LegEnds<T>& end,
                                const LegMotion<T>& motion) {

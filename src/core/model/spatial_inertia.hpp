@@ -28,6 +28,10 @@ template <class T> struct SpatialInertia {
     bottom = bottom + Sym3<T>{N.xx + 2.0 * x.x, N.yy + 2.0 * y.y, N.zz + 2.0 * z.z,
                               N.xy + x.y + y.x, N.xz + x.z + z.x, N.yz + y.z + z.y};
   }
+  SpatialInertia operator+(const SpatialInertia& other) const {
+    const Mat3<T>&a = bottom_left, &b = other.bottom_left;
+    return {top + other.top, {{a.row[0] + b.row[0], a.row[1] + b.row[1], a.row[2] + b.row[2]}}, bottom + other.bottom};
+  }
   Mat6<T> matrix() const {
     const Mat3<T> right = transpose(bottom_left);
     const Mat3<T> A = full(top), D = full(bottom);

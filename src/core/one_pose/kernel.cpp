@@ -7,6 +7,7 @@
 namespace flexapod {
 namespace {
 
+using one_pose_task::Matrices;
 using one_pose_task::State;
 
 const MachineAtPose& machine_at(const void* machine) { return *static_cast<const MachineAtPose*>(machine); }
@@ -26,22 +27,19 @@ FLEXAPOD_FLAT SpringMatrix<double> scaled_springs(const MachineAtPose& m, const 
   Mat6<double> H;
   PerLeg length;
   for (int g = 0; g < leg_groups; ++g) {
-    const LegPlaces::Group& at = places.group[g];
+    const GroupPlaces& at = places.group[g];
     const LegAxes<Lanes> leg(at.S, at.k, m.legs.joint);
     add_leg_inertia(J, leg, m.legs.group[g].inertia, at.q_p);
     set_force_transformation(H, g, at, leg);
     length.group[g] = leg.L;
   }
-  SpatialInertia<double> all = platform_inertia(m.legs.design, platform.R);
-  all.top = all.top + sum(J.top), all.bottom = all.bottom + sum(J.bottom);
-  for (int i = 0; i < 3; ++i) all.bottom_left.row[i] += sum(J.bottom_left.row[i]);
   const Vec6<double> L = length.six();
   SpringMatrix<double> B;
   for (int j = 0; j < 6; ++j) {
     const double root = std::sqrt(m.machine.stiffness(j, L[j]));
     for (int r = 0; r < 6; ++r) B[r][j] = root * H[r][j];
   }
-  Cholesky<double>(all.matrix()).forward_all(B);
+  Cholesky<double>(inertia(m.legs.design, platform.R, J)).forward_all(B);
   return B;
 }
 
@@ -80,20 +78,28 @@ void leg_forces(const void* machine, const State& at, const double* wrench, doub
   std::copy_n(found.a, 6, force);
 }
 
-void tangent(const void* machine, const State& at, const double* wrench, const double* unstretched,
-             double (*matrices)[36]) {
-  RestLoad load{vec6(wrench), {}};
-  std::copy_n(unstretched, 6, load.L_0);
-  const TangentAtRest of(machine_at(machine), motion(at.platform).pose, motion(at.base).pose, load);
-  const Tangent& t = of.found;
-  for (const Mat6<double>* m : {&t.M, &t.C, &t.K, &t.M_b, &t.C_b, &t.K_b, &t.H})
-    std::copy_n(&m->a[0][0], 36, *matrices++);
+void tangent(const void* machine, const State& at, const double* wrench, const double* force, const double* stiffness,
+             const Matrices& to) {
+  TangentAtRest of(machine_at(machine), motion(at.platform).pose, motion(at.base).pose, vec6(wrench), to);
+  of.set_stiffness(vec6(force), vec6(stiffness));
+  of.set_base(to);
+}
+
+void linearised(const void* machine, const State& at, const double* wrench, const Matrices& to) {
+  const Machine<double>& m = machine_at(machine).machine;
+  TangentAtRest of(machine_at(machine), motion(at.platform).pose, motion(at.base).pose, vec6(wrench), to);
+  const Vec6<double> force = of.leg_forces();
+  if (m.features.law == Law::constant) return of.set_stiffness(force, vec6(m.axial.constant));
+  const Vec6<double> length = of.leg_lengths();
+  Vec6<double> stiffness;
+  for (int i = 0; i < 6; ++i) stiffness[i] = m.stiffness(i, unstretched_length(m, i, length[i], force[i]));
+  of.set_stiffness(force, stiffness);
 }
 
 }  // namespace
 
 extern const one_pose_task::Kernel one_pose_kernel;
 const one_pose_task::Kernel one_pose_kernel = {FLEXAPOD_ISA,   &new_machine, &delete_machine, &frequencies,
-                                               &accelerations, &leg_forces,  &tangent};
+                                               &accelerations, &leg_forces,  &tangent,        &linearised};
 
 }  // namespace flexapod

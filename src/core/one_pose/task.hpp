@@ -11,6 +11,11 @@ struct State {
   const double *platform, *base;
 };
 
+/// Where matrices of linear dynamics go, 36 numbers each; those of the base where they are asked.
+struct Matrices {
+  double *M, *C, *K, *H, *M_b, *C_b, *K_b;
+};
+
 /// A kernel compiled for one instruction set. `machine` is one of its own, made once for a design.
 struct Kernel {
   const char* name;
@@ -23,9 +28,12 @@ struct Kernel {
                         double* acceleration);
   /// Six leg forces that give the platform's accelerations, for a wrench in its axes; NaN where H is singular.
   void (*leg_forces)(const void* machine, const State& at, const double* wrench, double* force);
-  /// M, C, K, M_b, C_b, K_b, H about rest, for a wrench in the platform's axes and the legs' unstretched lengths.
-  void (*tangent)(const void* machine, const State& at, const double* wrench, const double* unstretched,
-                  double (*matrices)[36]);
+  /// All matrices about rest, for a wrench in the platform's axes, the leg forces that hold it and the stiffnesses along
+  /// the legs.
+  void (*tangent)(const void* machine, const State& at, const double* wrench, const double* force,
+                  const double* stiffness, const Matrices& to);
+  /// M, C, K and H about rest, for a wrench in the platform's axes.
+  void (*linearised)(const void* machine, const State& at, const double* wrench, const Matrices& to);
 };
 
 }  // namespace one_pose_task

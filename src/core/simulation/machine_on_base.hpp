@@ -251,7 +251,7 @@ class MachineOnBase {
     const Vec3<double> d = get(y, 0) - d_chart_, theta = get(y, 3);
     for (int g = 0; g < leg_groups; ++g) {
       const Chart& chart = chart_legs_[g];
-      LegPlaces::Group& at = now.at.group[g];
+      GroupPlaces& at = now.at.group[g];
       const Vec3<Lanes> turned = turned_change(theta, chart.q), change = d + turned;
       at.q_p = chart.q + turned;
       at.S = chart.S + change;

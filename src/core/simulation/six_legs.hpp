@@ -16,6 +16,15 @@ inline Vec3<double> sum(const Vec3<Lanes>& v) { return {sum(v.x), sum(v.y), sum(
 inline Sym3<double> sum(const Sym3<Lanes>& m) {
   return {sum(m.xx), sum(m.yy), sum(m.zz), sum(m.xy), sum(m.xz), sum(m.yz)};
 }
+inline SpatialInertia<double> sum(const SpatialInertia<Lanes>& J) {
+  return {
+      sum(J.top), {{sum(J.bottom_left.row[0]), sum(J.bottom_left.row[1]), sum(J.bottom_left.row[2])}}, sum(J.bottom)};
+}
+
+/// J_p of Eq. 34, from the legs' part of it and the platform's rotation.
+inline Mat6<double> inertia(const Design<double>& design, const Mat3<double>& R, const SpatialInertia<Lanes>& legs) {
+  return (platform_inertia(design, R) + sum(legs)).matrix();
+}
 
 /// A number for each leg.
 struct PerLeg {
@@ -53,12 +62,23 @@ template <class Many, class One> Many packed(int group, const One (&leg)[6], con
   return many;
 }
 
+/// Where a group of legs is, in the axes of the motions that go with it: joints from the reference points, leg vectors,
+/// universal axes.
+struct GroupPlaces {
+  Vec3<Lanes> q_p, q_b, S, k;
+};
+
 /// A design as its equations of motion take it.
 struct SixLegs {
   struct Group {
     Leg<Lanes> leg;
     LegInertia<Lanes> inertia;
     Vec3<Lanes> b, k, p;
+
+    GroupPlaces places(const Pose<double>& platform, const Pose<double>& base) const {
+      const Vec3<Lanes> q_p = platform.R * p, q_b = base.R * b;
+      return {q_p, q_b, (platform.t - base.t) + q_p - q_b, base.R * k};
+    }
   };
   struct Joints {  // set where they have springs
     LegSprings<Lanes> springs;
@@ -88,26 +108,23 @@ struct SixLegs {
   }
 };
 
-/// Where the legs are, in the axes of the motions that go with them: joints from the reference points, leg vectors,
-/// universal axes.
+/// Where all are.
 struct LegPlaces {
-  struct Group {
-    Vec3<Lanes> q_p, q_b, S, k;
-  };
-  Group group[leg_groups];
+  GroupPlaces group[leg_groups];
 
   LegPlaces() = default;
-  LegPlaces(const SixLegs& legs, const Pose<double>& platform, const Pose<double>& base) {
-    for (int g = 0; g < leg_groups; ++g) {
-      const SixLegs::Group& of = legs.group[g];
-      group[g] = {platform.R * of.p, base.R * of.b, {}, base.R * of.k};
-      group[g].S = (platform.t - base.t) + group[g].q_p - group[g].q_b;
-    }
-  }
+  LegPlaces(const SixLegs& legs, const Pose<double>& platform, const Pose<double>& base)
+      : LegPlaces(legs, platform, base, std::make_integer_sequence<int, leg_groups>()) {}
+
+ private:  // made in their place: vectors that are zeroed first and copied then take longer than what they hold
+  template <int... g>
+  LegPlaces(const SixLegs& legs, const Pose<double>& platform, const Pose<double>& base,
+            std::integer_sequence<int, g...>)
+      : group{legs.group[g].places(platform, base)...} {}
 };
 
 /// Sets the columns of H that belong to a group.
-inline void set_force_transformation(Mat6<double>& H, int g, const LegPlaces::Group& at, const LegAxes<Lanes>& leg) {
+inline void set_force_transformation(Mat6<double>& H, int g, const GroupPlaces& at, const LegAxes<Lanes>& leg) {
   const Vec6<Lanes> h = leg_wrench(at.q_p, leg.s());
   for (int r = 0; r < 6; ++r) {
     double lane[Lanes::lanes];
@@ -121,13 +138,13 @@ struct LegSums {
   SpatialInertia<Lanes> J;
   Vec3<Lanes> force, moment;
 
-  FLEXAPOD_FLAT void add(const SixLegs& legs, int g, const LegPlaces::Group& at, const Motion<double>& platform,
+  FLEXAPOD_FLAT void add(const SixLegs& legs, int g, const GroupPlaces& at, const Motion<double>& platform,
                          const Motion<double>& base, const Lanes& leg_force) {
     const LegAxes<Lanes> leg(at.S, at.k, legs.joint);
     add_load(legs, g, at, leg, platform, base, leg_force);
     add_leg_inertia(J, leg, legs.group[g].inertia, at.q_p);
   }
-  void add_load(const SixLegs& legs, int g, const LegPlaces::Group& at, const LegAxes<Lanes>& leg,
+  void add_load(const SixLegs& legs, int g, const GroupPlaces& at, const LegAxes<Lanes>& leg,
                 const Motion<double>& platform, const Motion<double>& base, const Lanes& leg_force) {
     const SixLegs::Group& group = legs.group[g];
     const LegEnds<Lanes> end = leg_ends(leg, at.q_p, at.q_b, platform, base, legs.design.gravity);
@@ -139,8 +156,8 @@ struct LegSums {
     moment += cross(at.q_p, F_s) - transposed(leg.axes, load.moment);
   }
   /// The part of the springs in the joints; apart, so that a machine without them goes through nothing new.
-  FLEXAPOD_APART void add_springs(const SixLegs& legs, int g, const LegPlaces::Group& at,
-                                  const Motion<double>& platform, const Motion<double>& base) {
+  FLEXAPOD_APART void add_springs(const SixLegs& legs, int g, const GroupPlaces& at, const Motion<double>& platform,
+                                  const Motion<double>& base) {
     const LegAxes<Lanes> leg(at.S, at.k, legs.joint);
     SphericalLoad<Lanes> load{};
     const Lanes zero(0.0);
@@ -171,11 +188,8 @@ FLEXAPOD_FLAT inline Vec6<double> forward_dynamics(const SixLegs& legs, const Le
     for (int g = 0; g < leg_groups; ++g) sums.add_springs(legs, g, at.group[g], platform, base);
   Vec6<double> load = platform_wrench(legs.design, platform);
   add(load, sum(sums.force), sum(sums.moment));
-  SpatialInertia<double> J = platform_inertia(legs.design, platform.pose.R);
-  J.top = J.top + sum(sums.J.top), J.bottom = J.bottom + sum(sums.J.bottom);
-  for (int i = 0; i < 3; ++i) J.bottom_left.row[i] += sum(sums.J.bottom_left.row[i]);
   for (int i = 0; i < 6; ++i) load[i] = wrench[i] - load[i];
-  return solve_positive(J.matrix(), load);
+  return solve_positive(inertia(legs.design, platform.pose.R, sums.J), load);
 }
 
 /// The same from poses.
@@ -225,7 +239,7 @@ struct BaseLoad {
     force += load.top(), moment += cross(platform.pose.t - base.pose.t, load.top()) + load.bottom();
     dissipation += suspension_loss(design, platform, base);
   }
-  FLEXAPOD_FLAT static void add(const SixLegs& legs, int g, const LegPlaces::Group& at, const Motion<double>& platform,
+  FLEXAPOD_FLAT static void add(const SixLegs& legs, int g, const GroupPlaces& at, const Motion<double>& platform,
                                 const Motion<double>& base, const Lanes& leg_force, Vec3<Lanes>& force,
                                 Vec3<Lanes>& moment, Lanes& dissipation) {
     const SixLegs::Group& group = legs.group[g];

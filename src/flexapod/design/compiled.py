@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
+from functools import partial
 from numbers import Real
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -50,6 +51,9 @@ class LinearMatrices(NamedTuple):
     C: Array
     K: Array
     H: Array
+
+
+_matrices = partial(tuple.__new__, LinearMatrices)  # of the four that the core gives; `_make` counts them first
 
 
 class CompiledHexapod:
@@ -149,7 +153,7 @@ class CompiledHexapod:
     def linearised(self, pose: ArrayLike, wrench: ArrayLike = _ZERO) -> LinearMatrices:
         """Compute M, C, K and H, (6, 6) each, about the pose held at rest under gravity and a wrench."""
         found = self._core.linearised(pose, wrench)
-        return LinearMatrices._make(self._again("linearised", pose=pose, wrench=wrench) if found is None else found)
+        return _matrices(self._again("linearised", pose=pose, wrench=wrench) if found is None else found)
 
     def _again(self, method: str, **given: ArrayLike) -> Any:
         """The answer to what the core does not read at once. Raises ArgumentError for the first that is wrong."""
