@@ -271,6 +271,7 @@ class Compiled {
 #define FLEXAPOD_STATES "platform: tuple[object, ...], base: tuple[object, ...]"
 
 void bind_one_pose(nb::module_& m) {
+  ArrayInterface::get();              // now, under Python's import lock: later, two threads could wait for each other
   const auto any = nb::arg().none();  // what is no array is answered with None
   nb::class_<OnePose>(m, "OnePose")
       .def(nb::init<const Input&, Joint>())
