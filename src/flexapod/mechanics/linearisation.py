@@ -194,7 +194,8 @@ def _double_poles_joined(poles: Complex, vectors: Complex) -> tuple[Complex, Com
 def _one_of_each_pair(poles: Complex, shapes: Complex, M: Array) -> list[int]:
     """Indices of six poles out of twelve: the upper one of each complex pair, of real ones the slower or the growing.
 
-    Two real poles are a pair by their shapes, which they share. Ordered by modulus.
+    Two real poles are a pair by their shapes, which they share, and do not both grow: shapes of equal poles are any that
+    rounding leaves, and may be more alike than those of a pair. Ordered by modulus.
     """
     chosen = [i for i, p in enumerate(poles) if p.imag > 0]
     real = sorted((i for i, p in enumerate(poles) if p.imag == 0), key=lambda i: -poles[i].real)
@@ -204,7 +205,8 @@ def _one_of_each_pair(poles: Complex, shapes: Complex, M: Array) -> list[int]:
         first = real.pop(0)
         chosen.append(first)
         if real:
-            real.remove(max(real, key=lambda i: overlap[first, i]))
+            decaying = [i for i in real if poles[i].real <= 0]
+            real.remove(max(decaying or real, key=lambda i: overlap[first, i]))
     return sorted(chosen, key=lambda i: abs(poles[i]))
 
 
@@ -254,8 +256,8 @@ def linearise(
 
     Notes
     -----
-    The tangent of Eq. 34 of the paper by exact derivatives (automatic differentiation). Its frequencies approach those
-    of `natural_modes` as the legs stiffen.
+    The tangent of Eq. 34 of the paper by exact derivatives. Its frequencies approach those of `natural_modes` as the
+    legs stiffen.
 
     Examples
     --------
