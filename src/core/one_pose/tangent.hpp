@@ -37,7 +37,7 @@ struct LegsAtRest {
 /// displacements (translation of the reference point, rotation vector) of platform and base in inertial axes,
 /// f changes of leg force, w changes of the external wrench. M, C and H come with it; then the forces that hold the legs,
 /// which K goes with, and what is asked of the base. Matrices are set in their place: as members they would be zeroed and
-/// copied, which takes as long as the mechanics.
+/// copied, which takes a good part of the time.
 class TangentAtRest {
   using Groups = std::make_integer_sequence<int, leg_groups>;
   using Moved = Dual<3, Lanes>;  // more than three variables GCC does not keep apart: it sums them in memory
