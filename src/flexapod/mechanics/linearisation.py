@@ -194,8 +194,8 @@ def _double_poles_joined(poles: Complex, vectors: Complex) -> tuple[Complex, Com
 def _one_of_each_pair(poles: Complex, shapes: Complex, M: Array) -> list[int]:
     """Indices of six poles out of twelve: the upper one of each complex pair, of real ones the slower or the growing.
 
-    Two real poles are a pair by their shapes, which they share, and do not both grow: shapes of equal poles are any that
-    rounding leaves, and may be more alike than those of a pair. Ordered by modulus.
+    Two real poles are a pair by their shapes, which they share, and do not both grow: shapes of equal poles are those
+    that rounding leaves, and may be more alike than those of a pair. Ordered by modulus.
     """
     chosen = [i for i, p in enumerate(poles) if p.imag > 0]
     real = sorted((i for i, p in enumerate(poles) if p.imag == 0), key=lambda i: -poles[i].real)
