@@ -57,7 +57,9 @@ def test_workflows_ask_for_what_the_makefile_has(path):
 
 @pytest.mark.skipif(not (ROOT / ".ci" / "run").exists(), reason="a source distribution has no .ci/")
 def test_what_make_test_leaves_out_is_run_before_a_change_lands():
-    left_out = re.search(r"^LONG_TESTS := \$\(addprefix tests/,(.+)\)$", (ROOT / "Makefile").read_text(), re.MULTILINE)[1]
+    left_out = re.search(r"^LONG_TESTS := \$\(addprefix tests/,(.+)\)$", (ROOT / "Makefile").read_text(), re.MULTILINE)[
+        1
+    ]
     assert all((ROOT / "tests" / name).exists() for name in left_out.split())
     steps = re.findall(r"^step ([a-z-]+)$", (ROOT / ".ci" / "run").read_text(), re.MULTILINE)
     assert {"test", "test-long"} <= set(steps)
