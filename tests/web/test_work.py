@@ -191,7 +191,7 @@ def test_a_fault_within_a_simulation_reaches_the_job(job: Work, monkeypatch: pyt
     def broken(*given: Any, **options: Any) -> Any:
         raise MemoryError
 
-    monkeypatch.setattr("flexapod.web.simulation.simulate", broken)
+    monkeypatch.setattr("flexapod.simulation.time_simulation.simulate", broken)
     assert "MemoryError" in job.failure("time", duration=0.01)
 
 

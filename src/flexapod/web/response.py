@@ -9,7 +9,6 @@ import numpy as np
 from flexapod.conventions import AXES, LEGS, Array
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.linearisation import linearise
-from flexapod.vibration.frequency_response import transmissibility
 from flexapod.vibration.grid import grid_around
 from flexapod.vibration.harmonic import complex_poles, losses
 from flexapod.web import requests
@@ -25,6 +24,8 @@ DRAWN = 0.15  #: greatest displacement drawn, as a share of the platform's size
 
 def response(asked: dict[str, Any]) -> FrequencyResponse:
     """Magnitude and phase of one quantity by output, input and frequency."""
+    from flexapod.vibration.frequency_response import transmissibility  # loads xarray, which the server does without
+
     question, quantity = requests.question(asked), requests.choice(asked, "quantity", QUANTITIES)
     loss = _loss_factor(asked)
     linear = linearise(question.hexapod, question.pose, joint=question.joint)
@@ -93,6 +94,8 @@ def _short(values: Array) -> Array:
 
 def shake(asked: dict[str, Any]) -> ShakenBase:
     """The platform's complex displacement for a unit motion of the base along one axis."""
+    from flexapod.vibration.frequency_response import transmissibility  # loads xarray, which the server does without
+
     question, axis = requests.question(asked), requests.choice(asked, "axis", AXES)
     omega, loss = requests.number(asked, "omega", 1.0, 1e-9, 1e9), _loss_factor(asked)
     data = transmissibility(question.hexapod, question.pose, omega=[omega], loss_factor=loss, joint=question.joint)

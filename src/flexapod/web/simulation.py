@@ -18,7 +18,6 @@ from flexapod.excitation.recordings import parse_time_series
 from flexapod.excitation.sines import harmonic, sine_sweep
 from flexapod.mechanics.modes import natural_modes
 from flexapod.rotations import vector_from_rotation
-from flexapod.simulation.time_simulation import simulate
 from flexapod.web import requests
 from flexapod.web.answers import Message, SimulationRun
 from flexapod.web.encode import float32
@@ -38,6 +37,8 @@ def simulation(spec: dict[str, Any]) -> Iterator[Message]:
 
     Rows: time, displacements of platform and base from rest (m, rotation vector), leg lengths, leg forces.
     """
+    from flexapod.simulation.time_simulation import simulate  # loads xarray, which the server does without
+
     question = requests.question(spec)
     duration = requests.number(spec, "duration", 1.0, 1e-6, 1e4)
     highest = float(natural_modes(question.hexapod, question.pose, joint=question.joint).omega[-1])

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from flexapod.control.sampling_rate import sampling_time
 from flexapod.conventions import LEGS, TWO_PI, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.mechanics.at_rest import PoseState, pose_state
@@ -14,7 +13,7 @@ from flexapod.mechanics.cautions import GRAVE, Tangent
 from flexapod.mechanics.joint_limits import joint_angles, leg_distance, limit_excess
 from flexapod.mechanics.kinematics import condition_number, inverse_kinematics
 from flexapod.mechanics.mode_shapes import energy_shares
-from flexapod.mechanics.modes import near_repeated
+from flexapod.mechanics.modes import advised_sampling_time, near_repeated
 from flexapod.mechanics.springs import axial_stiffness
 from flexapod.pose import Pose
 from flexapod.web.answers import DampedModes, Geometry, Limits, LoneMode, Snapshot, StaticLegs
@@ -43,7 +42,7 @@ def snapshot(hexapod: Hexapod, six: Sequence[float], joint: JointModel = "univer
         "modes": [{"text": mode.text, "dominant": mode.dominant, "share": mode.share} for mode in state.descriptions],
         "strain": np.where(modes.omega > 0, strain, np.nan).T,
         "damped": None if state.tangent is None else _damped(state.tangent),
-        "sampling_time": sampling_time(modes.omega[-1]),
+        "sampling_time": advised_sampling_time(modes.omega[-1]),
         "legs": {
             "universal": np.round(np.degrees(angles.universal), 9) + 0.0,
             "spherical": np.round(np.degrees(angles.spherical), 9) + 0.0,

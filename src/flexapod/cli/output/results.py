@@ -17,12 +17,15 @@ if TYPE_CHECKING:
 
 
 def emit(study: Study, out: Path | None, as_json: bool, *, listed: str = "files", more: Sequence[Path] = ()) -> None:
-    """Write the study's files to a directory, none where it is None; print the study, or its results as JSON.
+    """Print the study, and write its files to a directory, none where it is None; as JSON the results after them.
 
     listed: how JSON names the files: "files", "html" where a page is the only one, or "" for not at all. more: files
     that are written already.
     """
+    unread = None if as_json else _shown(study)  # before figures are drawn, which takes longer than most studies
     files = [*([] if out is None else write(study, make_directory(out))), *more]
+    if unread is not None:
+        raise unread
     if as_json:
         names = [str(file) for file in files]
         told: dict[str, object] = {"files": names, "html": next(iter(names), None)}
@@ -30,11 +33,19 @@ def emit(study: Study, out: Path | None, as_json: bool, *, listed: str = "files"
         cut_short = {"cut_short": True} if context is not None and exit_code(context) else {}
         common.print_json({**study.to_dict(), **cut_short, **({listed: told[listed]} if listed else {})})
         return
-    from flexapod.report.terminal import show
-
-    show(study, common.console())
     for file in files:
         click.echo(f"Wrote {file}")
+
+
+def _shown(study: Study) -> OSError | SystemExit | None:
+    """Print the study. Returns what Python or rich raises where nobody reads it: its files are wanted all the same."""
+    from flexapod.report.terminal import show
+
+    try:
+        show(study, common.console())
+    except (OSError, SystemExit) as error:
+        return error
+    return None
 
 
 def write(study: Study, directory: Path) -> list[Path]:
