@@ -41,6 +41,7 @@ _FPS = 16
 _PER_PERIOD = 16  # frames of a period that show a vibration
 
 
+@with_progress("frames")
 def animate_mode(
     hexapod: Hexapod,
     pose: PoseLike | None,
@@ -50,6 +51,7 @@ def animate_mode(
     joint: JointModel = "universal",
     amplitude: float = 1e-6,
     exaggeration: float | None = None,
+    progress: ProgressLike = None,
 ) -> float:
     """Write one period of a mode to a file that loops.
 
@@ -69,6 +71,9 @@ def animate_mode(
         Motion of the platform joint that moves most, m; a mode has no size of its own.
     exaggeration : float, optional
         How many times larger it is shown. Left out, so that it is an eighth of the machine.
+    progress : callable or False, optional
+        Is told the share done, 0 to 1.
+        By default a bar is shown in terminals and notebooks, once a second has passed; False: none.
 
     Returns
     -------
@@ -113,7 +118,7 @@ def animate_mode(
     title = f"{hexapod.name}, mode {number}: {omega:.5g} rad/s ({omega / TWO_PI:.5g} Hz)\n{words}"
     film = _Film(hexapod, pose, Pose(np.zeros(3)), np.cos(phase)[:, None] * twist, np.zeros((phase.size, 6)))
     note = f"largest joint motion {_length(amplitude)}"
-    return film.write(path, title, [note] * phase.size, exaggeration)
+    return film.write(path, title, [note] * phase.size, exaggeration, progress or None)
 
 
 @with_progress("frames")

@@ -88,7 +88,9 @@ def _held(
 def _narrowed(limits: TravelLimits, rays: Array, kept: Array, beyond: Array) -> Ends:
     """Ends between the last displacement that keeps the limits and the first beyond them.
 
-    By the Illinois method, with every third step a halving: where a margin has a multiple zero, it alone is slow.
+    By the Illinois method, with every third step a halving: where a margin has a multiple zero, it alone is slow. No
+    place is nearer to an end of its bracket than half of what is exact enough: beside a zero that is met to rounding,
+    the other end would else stay where it is.
     """
     met = np.flatnonzero(np.isfinite(beyond))
     stops: list[tuple[str, ...]] = [()] * len(rays)
@@ -108,7 +110,8 @@ def _narrowed(limits: TravelLimits, rays: Array, kept: Array, beyond: Array) -> 
         if not i.size:
             break
         share = np.where((above[i] > below[i]) & (step % 3 < 2), above[i] / (above[i] - below[i]), 0.5)
-        middle = np.clip(low[i] + share * (high[i] - low[i]), low[i], high[i])
+        least = 0.5 * _EXACT * limits.leg / speed[i]
+        middle = np.clip(low[i] + share * (high[i] - low[i]), low[i] + least, high[i] - least)
         value = (limits.margins(middle[:, None] * rays[i]) / unit[i]).min(axis=1)
         keeps, value = value >= 0, _known(value, above[i])
         below[i] = np.where(keeps, np.where(good[i] == 1, below[i] / 2, below[i]), value)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from flexapod.cli.options import common
+from flexapod.cli.output.stages import stages
 from flexapod.output_files import check_file
 from flexapod.report.numbers import file_name, pose_numbers
 
@@ -41,11 +43,13 @@ def command(
 ) -> None:
     """Animate a mode of DESIGN at a pose, its largest joint motion taken as 1 um. (In time: simulate --animate.)"""
     hexapod, where = common.machine(design, changes, pose)
-    from flexapod.plots.animation import animate_mode
-
     path = Path(f"{file_name(hexapod.name)}-mode-{mode}.gif") if out is None else out
     check_file(path)
-    factor = animate_mode(hexapod, where, mode, path, joint=joint, exaggeration=exaggeration)
+    with stages(as_json, "frames") as report:
+        from flexapod.plots.animation import animate_mode  # and with it Matplotlib
+
+        told = partial(report, "frames")
+        factor = animate_mode(hexapod, where, mode, path, joint=joint, exaggeration=exaggeration, progress=told)
     if as_json:
         found = {"design": hexapod.name, "mode": mode, "exaggeration": factor, "file": str(path)}
         common.print_json({**found, "pose_m_deg": pose_numbers(where)})

@@ -34,11 +34,11 @@ def command(**given: Any) -> None:
     flexapod certify motion-base --around 0.05 5 --gap 1%
     flexapod certify --check motion-base-certificate.json
     """
-    from flexapod.cli.studies.certify import compute
-
     options = Options(**given)
     place = common.place(options.out, options.as_json)
-    with stages(options.as_json) as report:
+    with stages(options.as_json, "decided, by volume") as report:
+        from flexapod.cli.studies.certify import compute
+
         found, kept = compute(options, None if options.check else place, report)
     emit(found, place, options.as_json, more=kept)
     answer(CODES[found.data["status"]])

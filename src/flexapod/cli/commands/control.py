@@ -28,9 +28,9 @@ def command(**given: Any) -> None:
     flexapod control precision-positioner velocity --gain 20000
     flexapod control motion-base pid --kp 2e6 --kd 2e5 --out control
     """
-    from flexapod.cli.studies.control import compute
-
     options = Options(**given)
-    with stages(options.as_json) as report:
+    with stages(options.as_json, "design") as report:
+        from flexapod.cli.studies.control import compute
+
         found = compute(options, report)
     emit(found, options.out, options.as_json)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -10,6 +10,10 @@ from flexapod.cli.options import common, figures
 from flexapod.cli.options.points import point_option
 from flexapod.cli.options.quantities import FREQUENCY, POSITIVE_LENGTH, SIX
 from flexapod.cli.output.results import emit_or_csv
+from flexapod.cli.output.stages import stages
+
+if TYPE_CHECKING:
+    from flexapod.report.study import Study
 
 
 @click.command()
@@ -49,7 +53,12 @@ def command(**given: Any) -> None:
     flexapod envelope motion-base --proportions 0.25 0.25 0.2 20 20 25 --index 20
     flexapod envelope motion-base --csv > specification.csv
     """
-    from flexapod.cli.studies.envelope import Options, compute
+    as_json, as_csv = given["as_json"], given["as_csv"]
 
-    options = Options(**given)
-    emit_or_csv(lambda: compute(options), options.out, options.as_json, "envelope.csv" if options.as_csv else None)
+    def found() -> Study:
+        with stages(as_json or as_csv, "motions from home"):
+            from flexapod.cli.studies.envelope import Options, compute
+
+            return compute(Options(**given))
+
+    emit_or_csv(found, given["out"], as_json, "envelope.csv" if as_csv else None)

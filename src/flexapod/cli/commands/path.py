@@ -32,12 +32,12 @@ def command(**given: Any) -> None:
     flexapod path motion-base motion.csv --from-home --payload 200 0 0 0.5 --payload 400 0 0 0.6 --csv > legs.csv
     flexapod path mukherjee-i --from 0 0 0.89 0 -33 -10 --to 0 0 0.89 0 45 53 --bound 110 --out path
     """
-    from flexapod.cli.studies.path import compute
-
     options = Options(**given)
 
     def found() -> Study:
-        with stages(options.as_json or options.as_csv) as report:
+        with stages(options.as_json or options.as_csv, "along the path" if options.file else "planning") as report:
+            from flexapod.cli.studies.path import compute
+
             return compute(options, report)
 
     emit_or_csv(found, options.out, options.as_json, "path.csv" if options.as_csv else None)

@@ -54,9 +54,9 @@ def command(design: str, changes: tuple[str, ...], out: Path | None, as_json: bo
     flexapod robust motion-base --uncertain legs.stiffness_law.bulk_modulus=15% --uncertain platform.mass=5%,normal
     flexapod robust motion-base --payload 0:500 --payload-at -0.5:0.5 -0.5:0.5 0.5:1.5
     """
-    from flexapod.cli.studies.robust import compute
-
     place = common.place(out, as_json)
-    with stages(as_json) as report:
+    with stages(as_json, "designs") as report:
+        from flexapod.cli.studies.robust import compute
+
         found = compute(common.load_design(design, changes), given, report)
     emit(found, place, as_json)

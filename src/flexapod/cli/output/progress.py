@@ -97,7 +97,7 @@ class TrialProgress:
     def __call__(self, done: int, wanted: int, best: float) -> None:
         if self._task is None:
             self._task = self._progress.add_task("trials", total=wanted, best="")
-        words = f"best {best:.5g} rad/s" if best == best else "none feasible yet"
+        words = f"best {best:.5g} rad/s" if best == best else "none feasible yet" if done else ""
         finishing = done >= wanted
         self._progress.update(
             self._task,

@@ -14,8 +14,8 @@ class Report(Protocol):
 
 
 @contextmanager
-def stages(quiet: bool) -> Iterator[Report]:
-    """A bar for every stage that reports; none when quiet."""
+def stages(quiet: bool, first: str = "") -> Iterator[Report]:
+    """A bar for every stage that reports; none when quiet. first: the stage that is shown before it reports."""
     if quiet:
         yield lambda stage, share: None
         return
@@ -31,4 +31,6 @@ def stages(quiet: bool) -> Iterator[Report]:
                 tasks[stage] = progress.add_task(stage, total=1.0)
             progress.update(tasks[stage], completed=min(share, 1.0))
 
+        if first:
+            report(first, 0.0)
         yield report
