@@ -14,7 +14,7 @@ from flexapod.control.closed_loop_poles import least_damping
 from flexapod.control.controllers import ALL_LEGS, GAIN_UNIT, Feedback, check_legs, damping_law
 from flexapod.control.gain_search import ascending_gains, best_gain, default_gains
 from flexapod.control.losses import assumptions
-from flexapod.control.plant import Plant, damping_ratios, poles
+from flexapod.control.plant import Plant, damping_ratios, poles_over
 from flexapod.conventions import Array, Complex, JointModel, in_unit
 from flexapod.design.hexapod import Hexapod
 from flexapod.design.origin import origin
@@ -166,10 +166,10 @@ def root_locus(
     row = default_gains(plant, feedback) if gains is None else ascending_gains(np.sort(numbers(gains, "gains")), 2)
     row = np.sort(row)
 
-    def of(gain: float) -> Complex:
-        return poles(plant, damping_law(feedback, gain, leak, legs).on(plant.linear))
+    def of(gains: Array) -> Complex:
+        return poles_over(plant, lambda gain: damping_law(feedback, gain, leak, legs).on(plant.linear), gains)
 
-    pole = np.stack([of(g) for g in row])
+    pole = of(row)
     gain, damping = best_gain(plant, lambda g: damping_law(feedback, g, leak, legs), row, pole)
     pole = _followed(pole)
     if gains is None:
@@ -205,7 +205,7 @@ def _upper(pole: Complex) -> Complex:
     return np.asarray(pole[order][:6][::-1], dtype=np.complex128)
 
 
-def _finer(plant: Plant, of: Callable[[float], Complex], row: Array, pole: Complex) -> tuple[Array, Complex]:
+def _finer(plant: Plant, of: Callable[[Array], Complex], row: Array, pole: Complex) -> tuple[Array, Complex]:
     """More gains between those where a pole that the modes' band holds moves far, as where two of them meet."""
     reach = float(plant.omega[-1])
     for _ in range(_HALVINGS):
@@ -215,7 +215,7 @@ def _finer(plant: Plant, of: Callable[[float], Complex], row: Array, pole: Compl
             break
         between = np.sqrt(row[far] * row[far + 1])
         row = np.insert(row, far + 1, between)
-        pole = _followed(np.insert(pole, far + 1, np.stack([of(g) for g in between]), axis=0))
+        pole = _followed(np.insert(pole, far + 1, of(between), axis=0))
     return row, pole
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -105,16 +107,31 @@ def poles(plant: Plant, controller: Controller) -> Complex:
     """Poles of the closed loop, rad/s, by size. Those of a sampled loop are log(z)/dt; z = 0 (a delay) is left out."""
     with np.errstate(over="ignore", invalid="ignore"):
         loop = joined(plant, controller)
-    if not np.isfinite(loop).all():
-        raise ArgumentError(
-            f"the loop of {controller.name} holds numbers beyond all bounds: its gains or its sampling time are too "
-            f"large for a machine with poles of up to {np.abs(np.linalg.eigvals(plant.A)).max():.3g} rad/s. Lower "
-            "them, or move away from a singular pose."
-        )
-    found = np.linalg.eigvals(loop).astype(complex)
+    found = _eigenvalues(loop, plant, controller.name)
     if controller.dt is not None:
         found = np.log(found[np.abs(found) > 1e-9]) / controller.dt
     return found[np.lexsort((found.imag, np.abs(found)))]
+
+
+def poles_over(plant: Plant, law: Callable[[float], Controller], gains: Array) -> Complex:
+    """Poles (n, m) of continuous loops, rad/s, by size, at gains (n,) that the loop's matrix is linear in."""
+    most = float(gains.max())
+    with np.errstate(over="ignore", invalid="ignore"):
+        none, whole = joined(plant, law(0.0)), joined(plant, law(most))
+        loops = none + (gains / most)[:, None, None] * (whole - none)
+    found = _eigenvalues(loops, plant, law(most).name)
+    return np.take_along_axis(found, np.lexsort((found.imag, np.abs(found)), axis=-1), axis=-1)
+
+
+def _eigenvalues(loop: Array, plant: Plant, name: str) -> Complex:
+    """Eigenvalues (..., m) of the matrices of loops. Raises ArgumentError where they hold more than numbers can be."""
+    if not np.isfinite(loop).all():
+        raise ArgumentError(
+            f"the loop of {name} holds numbers beyond all bounds: its gains or its sampling time are too large for a "
+            f"machine with poles of up to {np.abs(np.linalg.eigvals(plant.A)).max():.3g} rad/s. Lower them, or move "
+            "away from a singular pose."
+        )
+    return np.linalg.eigvals(loop).astype(complex)
 
 
 def is_stable(pole: Complex, plant: Plant) -> np.ndarray:
