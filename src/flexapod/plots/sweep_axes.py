@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from flexapod.conventions import AXES, ROTATIONS, TRANSLATIONS, Array
 from flexapod.errors import ArgumentError
@@ -13,6 +12,7 @@ from flexapod.plots import style
 from flexapod.workspace.quantities import QUANTITIES
 
 if TYPE_CHECKING:
+    import xarray as xr
     from matplotlib.axes import Axes
 
 LABELS = {

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from flexapod.conventions import Array
 from flexapod.errors import ArgumentError
@@ -14,6 +13,7 @@ from flexapod.plots.style import BLUE, NARROW, across, new_axes, wide
 from flexapod.plots.sweep_axes import LABELS, axis_of, beyond_limits, entitle, grid_values, held, spelled
 
 if TYPE_CHECKING:
+    import xarray as xr
     from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 

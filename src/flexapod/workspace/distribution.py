@@ -27,14 +27,23 @@ class Distribution(NamedTuple):
 
 def exactly(usable: Iterator[list[Array]]) -> Distribution:
     """From all values at once: columns omega_1 and, if there is one, cond(H), part by part."""
-    found = [np.concatenate(column) for column in zip(*usable, strict=True)]
-    quantiles = np.quantile(found[0], QUANTILES)
-    if len(found) == 1:
-        return Distribution(quantiles)
-    omega = found[0]
+    omega, *others = (np.concatenate(column) for column in zip(*usable, strict=True))
+    if not others:
+        return Distribution(np.quantile(omega, QUANTILES))
+    (cond,) = others
+
+    def of_omega() -> tuple[Array, Array]:
+        order, ranks = _ranked(omega)
+        return np.quantile(omega[order], QUANTILES), ranks  # of sorted values, which takes a fifth of the time
+
+    def of_cond() -> tuple[float, Array]:
+        order, ranks = _ranked(cond)
+        return _spread(omega[order]), ranks
+
     with ThreadPoolExecutor(2) as pool:  # sorting takes longest, and NumPy sorts without the interpreter's lock
-        (_, of_omega), (by_cond, of_cond) = pool.map(_ranked, found)
-    return Distribution(quantiles, _pearson(of_omega, of_cond), _spread(omega[by_cond]))
+        first, second = pool.submit(of_omega), pool.submit(of_cond)
+        (quantiles, ranks), (spread, by_cond) = first.result(), second.result()
+    return Distribution(quantiles, _pearson(ranks, by_cond), spread)
 
 
 def _ranked(values: Array) -> tuple[NDArray[np.intp], Array]:

@@ -8,10 +8,9 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
-import xarray as xr
 
 from flexapod.cli.options import common, figures
 from flexapod.cli.options.given import needed
@@ -36,6 +35,9 @@ from flexapod.workspace.store.store import SweepStore
 from flexapod.workspace.summary import summarise
 from flexapod.workspace.sweeping import sweep
 from flexapod.workspace.worst import worst_pose
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 T = TypeVar("T")
 

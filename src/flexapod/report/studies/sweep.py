@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from flexapod import plots
 from flexapod.conventions import AXES, Array
@@ -19,6 +18,9 @@ from flexapod.report.studies import least_index
 from flexapod.report.study import Column, Drawing, Row, Section, Study, Table
 from flexapod.workspace.summary import At, SweepSummary
 from flexapod.workspace.worst import WorstPose
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 POSE_HEAD = ("x m", "y m", "z m", "roll°", "pitch°", "yaw°")
 
