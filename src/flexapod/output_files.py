@@ -111,7 +111,27 @@ def write_figure(
     check_figure(Path(path))
     with completed(path) as making, matplotlib.rc_context(_AS_TEXT):  # type: ignore[arg-type]
         told: dict[str, Any] = {} if metadata is None else {"metadata": metadata}
-        figure.savefig(making, dpi=dpi, **told)
+        with drawn_once(figure):
+            figure.savefig(making, dpi=dpi, **told)
+
+
+@contextmanager
+def drawn_once(figure: Figure) -> Iterator[None]:
+    """While a figure is saved: of the drawing that Matplotlib makes to lay it out, only the layout is made."""
+    engine = figure.get_layout_engine()
+    if engine is None:
+        yield
+        return
+
+    def lay_out(renderer: object) -> None:
+        vars(figure).pop("draw")
+        engine.execute(figure)
+
+    figure.draw = lay_out  # type: ignore[method-assign]
+    try:
+        yield
+    finally:
+        vars(figure).pop("draw", None)
 
 
 def write_netcdf(dataset: xr.Dataset, path: str | PathLike[str], engine: str | None = None) -> None:

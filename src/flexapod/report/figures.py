@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 from mpl_toolkits.mplot3d import proj3d
 
+from flexapod.output_files import drawn_once
 from flexapod.plots import style
 from flexapod.report.study import Drawing
 
@@ -58,7 +59,10 @@ def _inline(figure: Figure, prefix: str, words: str, box: Bbox | None = None) ->
     """The figure as an <svg> element with its own names, cut to what is drawn."""
     stream = io.StringIO()
     cut = "tight" if box is None else box
-    figure.savefig(stream, format="svg", transparent=True, bbox_inches=cut, pad_inches=0.05, metadata={"Date": None})
+    with drawn_once(figure):
+        figure.savefig(
+            stream, format="svg", transparent=True, bbox_inches=cut, pad_inches=0.05, metadata={"Date": None}
+        )
     text = stream.getvalue()
     text = text[text.index("<svg") :]
     text = re.sub(r"<metadata>.*?</metadata>\s*", "", text, flags=re.DOTALL)
