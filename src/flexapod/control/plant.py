@@ -109,7 +109,7 @@ def poles(plant: Plant, controller: Controller) -> Complex:
         loop = joined(plant, controller)
     found = _eigenvalues(loop, plant, controller.name)
     if controller.dt is not None:
-        found = np.log(found[np.abs(found) > 1e-9]) / controller.dt
+        found = (np.log(found[np.abs(found) > 1e-9]) / controller.dt).astype(complex)
     return found[np.lexsort((found.imag, np.abs(found)))]
 
 

@@ -145,7 +145,11 @@ def _fit_words(figure: Any) -> None:
     """In narrow figures: labels that are longer than their axes in two lines or three, and fewer numbers than touch."""
     if figure.get_figwidth() > _NARROW:
         return
-    figure.draw_without_rendering()
+    engine = figure.get_layout_engine()
+    if engine is None:
+        figure.draw_without_rendering()
+    else:
+        engine.execute(figure)  # a drawing would do no more for what is measured here
     for ax in figure.axes:
         if not hasattr(ax, "get_zlabel"):
             _thin_numbers(ax.xaxis)

@@ -48,7 +48,9 @@ def drawn(draw: Callable[[], Drawn], prefix: str, words: str, tight: bool = Fals
 
 def _extent(figure: Figure, ax: Any) -> Bbox:
     """What the lines and words cover, in inches: 3-D axes would count their empty box."""
-    figure.draw_without_rendering()
+    ax.apply_aspect()
+    for line in ax.lines:  # on the page, as a drawing of the whole would leave it
+        line.set_data(*proj3d.proj_transform(*line.get_data_3d(), ax.get_proj())[:2])
     words = [proj3d.proj_transform(*text.get_position_3d(), ax.get_proj())[:2] for text in ax.texts]
     places = [Bbox([place, place]) for place in map(ax.transData.transform, words)]
     box = Bbox.union([*(line.get_window_extent() for line in ax.lines), *(place.padded(8) for place in places)])

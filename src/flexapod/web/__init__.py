@@ -2,5 +2,5 @@
 
 It computes nothing itself and keeps no state of a page: each request carries its design and pose.
 
-May import: design, mechanics, workspace, excitation, simulation, vibration, control.
+May import: design, mechanics, workspace, excitation, simulation, vibration.
 """
