@@ -4,6 +4,8 @@ import json
 import os
 import runpy
 import signal
+import subprocess
+import sys
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,7 +14,7 @@ import xarray as xr
 from click.testing import CliRunner
 
 import flexapod as fx
-from flexapod.cli import group
+from flexapod.cli import group, main
 from flexapod.cli.options import common
 from flexapod.cli.output import interrupt
 from flexapod.cli.output.progress import PoseProgress
@@ -363,3 +365,18 @@ def test_serve_writes_addresses_of_the_sixth_version_in_brackets(served):
     address, *warned = served("--host", "0.0.0.0", "--json")[0].splitlines()
     assert json.loads(address)["url"].startswith("http://127.0.0.1:")
     assert "token" in " ".join(warned)  # other computers can reach it
+
+
+def test_a_study_is_seen_before_its_figures_are_drawn(tmp_path, monkeypatch, capsys):
+    seen = []
+    monkeypatch.setattr("flexapod.report.html.page", lambda study: seen.append(capsys.readouterr().out) or "a page")
+    assert main(["report", "motion-base", "--out", str(tmp_path)]) == 0
+    assert seen[0].startswith("motion-base: ")
+    assert capsys.readouterr().out == f"Wrote {tmp_path / 'motion-base.html'}\n"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="/bin/true")
+def test_files_are_written_though_nobody_reads(tmp_path):
+    line = f'"{sys.executable}" -m flexapod report motion-base --out "{tmp_path}" | true'
+    subprocess.run(line, shell=True, check=True, timeout=120)
+    assert [file.name for file in tmp_path.iterdir()] == ["motion-base.html"]

@@ -98,3 +98,9 @@ def test_a_store_without_a_cluster_does_without_dask(tmp_path):
         [sys.executable, "-c", LOADED], input=given, capture_output=True, text=True, check=True, cwd=tmp_path
     )
     assert [json.loads(line) for line in done.stdout.splitlines()] == [["sweep", 0, ["zarr"]]] * 2
+
+
+def test_the_server_leaves_tables_to_its_processes():
+    script = "import sys, flexapod.web.app; print(sorted({'xarray', 'pandas'} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60)
+    assert done.stdout == "[]\n"

@@ -11,7 +11,7 @@ import control
 import flexapod as fx
 from flexapod.control.controllers import damping_law
 from flexapod.control.gain_search import best_gain, default_gains
-from flexapod.control.plant import Plant, poles
+from flexapod.control.plant import Plant, poles, poles_over
 from flexapod.mechanics.linearisation import linearise
 
 # The isolator in orbit, without friction: every mode a pure spring, so that Preumont's closed forms hold.
@@ -420,3 +420,18 @@ def test_best_sampled_gain_leaves_the_machine_its_stiffness(isolator):
         loop = fx.control.closed_loop(isolator, pose, sampled(gain))
         assert loop.stable
         assert loop.pole.real.max() < -1e-3 * loop.omega[0]
+
+
+@pytest.mark.parametrize("feedback", ["force", "velocity"])
+def test_poles_over_gains_are_those_of_each(isolator, feedback):
+    plant = Plant(fx.linearise(isolator))
+
+    def law(gain):
+        return damping_law(feedback, gain, 3.0 if feedback == "force" else 0.0).on(plant.linear)
+
+    gains = np.geomspace(1.0, 1e3, 7)
+    for gain, found in zip(gains, poles_over(plant, law, gains), strict=True):
+        alone = poles(plant, law(gain))
+        nearest = np.abs(found[:, None] - alone).min(axis=1)
+        assert nearest.max() < 1e-6 * np.abs(alone).max()  # several are the same: their digits are fewer
+        assert found.sum() == pytest.approx(alone.sum(), rel=1e-9)

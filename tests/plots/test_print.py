@@ -203,3 +203,20 @@ def test_numbers_below_a_narrow_axis_do_not_touch(name, tmp_path):
         ends = [label.get_window_extent() for label in labels if label.get_visible() and label.get_text()]
         for left, right in itertools.pairwise(sorted(ends, key=lambda box: box.x0)):
             assert right.x0 > left.x1 + 2
+
+
+def test_a_figure_that_is_saved_is_laid_out_and_drawn_once(tmp_path, monkeypatch):
+    drawn, laid_out = [], []
+    figure = fx.plots.frequencies(fx.natural_modes(fx.load("motion-base")).omega).figure
+    engine = figure.get_layout_engine()
+    figure.set_figwidth(9.0)  # in narrow ones words are fitted before
+    draw, execute = Figure.draw, type(engine).execute
+    monkeypatch.setattr(Figure, "draw", lambda self, renderer: drawn.append(self) or draw(self, renderer))
+    monkeypatch.setattr(type(engine), "execute", lambda self, fig: laid_out.append(fig) or execute(self, fig))
+    plots.save(figure, tmp_path / "once.png")
+    assert (drawn, laid_out) == ([figure], [figure])
+    monkeypatch.undo()
+    figure.savefig(tmp_path / "twice.png", dpi=160)
+    once, twice = (np.asarray(Image.open(tmp_path / f"{name}.png")) for name in ("once", "twice"))
+    np.testing.assert_array_equal(once, twice)
+    assert figure.get_layout_engine() is engine

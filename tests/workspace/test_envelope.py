@@ -390,3 +390,14 @@ def test_drawn_poses_of_the_box_keep_everything(name):
         if machine.limits.leg_compression is not None:
             force = fx.inverse_dynamics(machine, poses)
             assert force.max() <= machine.limits.leg_compression * (1 + 1e-9)
+
+
+def test_ends_are_found_in_a_few_steps(machine, monkeypatch):
+    limits = TravelLimits(machine, Displacements(machine.home, np.zeros(3)), Bounds(None, None, None), "universal")
+    looked, margins = [], TravelLimits.margins
+    monkeypatch.setattr(
+        TravelLimits, "margins", lambda self, rows: looked.append(len(rows)) or margins(self, rows)
+    )  # those of `trace` that narrow its ends
+    ends = trace(limits, np.concatenate([-np.eye(6), np.eye(6)]))
+    assert all(ends.stops)
+    assert len(looked) < 20
