@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
@@ -15,8 +16,11 @@ class Report(Protocol):
 
 @contextmanager
 def stages(quiet: bool, first: str = "") -> Iterator[Report]:
-    """A bar for every stage that reports; none when quiet. first: the stage that is shown before it reports."""
-    if quiet:
+    """A bar for every stage that reports; none when quiet, or where standard error is no terminal.
+
+    first: the stage that is shown before it reports.
+    """
+    if quiet or not sys.stderr.isatty():
         yield lambda stage, share: None
         return
     from rich.console import Console

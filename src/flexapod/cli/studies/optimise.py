@@ -29,7 +29,8 @@ def compute(options: Options) -> Study:
     varied, kept = problem.variables(options.vary), problem.constraints(options.keep)
     found: OptimalDesign | ParetoFront
     with Stopping() as stop, TrialProgress() as bar:
-        bar(0, options.trials, math.nan)  # at once: to judge the design as it is takes a while
+        if sys.stderr.isatty() and not options.as_json:
+            bar(0, options.trials, math.nan)  # at once: to judge the design as it is takes a while
         settings = {**options.settings(), "on_trial": bar, "stop": stop}
         try:
             if options.against is None:
