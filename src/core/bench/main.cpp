@@ -30,8 +30,7 @@ using namespace flexapod;
 void count(const sweep_task::Task& task, size_t first, size_t last) {
   const Features features(*reinterpret_cast<const Design<double>*>(task.design));
   if (features.others()) Sweep<Counted, Swept::others>(task).run(first, last);
-  else if (features.law != Law::constant) Sweep<Counted, Swept::law>(task).run(first, last);
-  else Sweep<Counted, Swept::constant>(task).run(first, last);
+  else Sweep<Counted, Swept::along_legs>(task).run(first, last);
 }
 
 int flops(unsigned quantities) {

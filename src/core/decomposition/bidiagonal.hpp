@@ -204,10 +204,10 @@ FLEXAPOD_INLINE void ascend(const SquaredBidiagonal<n, T>& b, const T& below, T*
   }
 }
 
-/// All squared singular values, ascending. `failed`: lanes to be done another way (repeated values).
-template <class T, class M> FLEXAPOD_INLINE void all_six(const SquaredBidiagonal<6, T>& b, T (&value)[6], M& failed) {
-  failed = T(1.0) < T(0.0);
-  ascend(b, T(0.0), value, failed);
+/// The squared singular values above the lowest, ascending. `failed`: lanes to be done another way (repeated values).
+template <class T, class M>
+FLEXAPOD_INLINE void other_five(const SquaredBidiagonal<6, T>& b, T (&value)[6], M& failed) {
+  ascend(deflated(b, value[0], 2e-14 * value[0], failed), value[0], value + 1, failed);
 }
 
 }  // namespace flexapod

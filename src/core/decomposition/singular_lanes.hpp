@@ -16,20 +16,18 @@ template <class T> struct SingularSquares {
 };
 
 /// The second half of the work. In lanes where it fails, the lowest share is NaN.
-template <Wanted wanted, class T> FLEXAPOD_INLINE SingularSquares<T> finished(HalfBidiagonal<T>& half) {
+template <class T> FLEXAPOD_INLINE SingularSquares<T> finished(Wanted wanted, HalfBidiagonal<T>& half) {
   SquaredBidiagonal<6, T> b = half.finish();
   SingularSquares<T> found;
   found.sum = normalise(b);
   mask_t<T> failed;
-  if constexpr (wanted == Wanted::all) {
-    all_six(b, found.share, failed);
-  } else {
-    found.share[0] = lowest(b, T(0.0), failed);
-    if constexpr (wanted == Wanted::extremes) {
-      mask_t<T> open;
-      found.share[5] = highest(b, open);
-      failed = failed | open;
-    }
+  found.share[0] = lowest(b, T(0.0), failed);
+  if (wanted == Wanted::all) {
+    other_five(b, found.share, failed);
+  } else if (wanted == Wanted::extremes) {
+    mask_t<T> open;
+    found.share[5] = highest(b, open);
+    failed = failed | open;
   }
   found.share[0] = select(failed, T(std::numeric_limits<double>::quiet_NaN()), found.share[0]);
   return found;
@@ -49,30 +47,31 @@ template <class T, class Make> FLEXAPOD_INLINE void repair(const Make& matrix, S
     repeat_by_rotations(matrix, failed, found);
 }
 
-/// The first half of the work, of a 6 x m matrix.
-template <class T, class Matrix> FLEXAPOD_INLINE HalfBidiagonal<T> begun(Matrix&& B) {
-  auto&& square = square_factor(B);
-  return HalfBidiagonal<T>(square);
-}
-
 /// Of the matrix that `matrix` makes, which is asked again where the first way fails in a lane.
 template <Wanted wanted, class T, class Make> FLEXAPOD_INLINE SingularSquares<T> singular_squares(const Make& matrix) {
-  HalfBidiagonal<T> half = begun<T>(matrix());
-  SingularSquares<T> found = finished<wanted, T>(half);
+  auto B = matrix();
+  auto&& square = square_factor(B);
+  HalfBidiagonal<T> half(square);
+  SingularSquares<T> found = finished(wanted, half);
   repair(matrix, found);
   return found;
 }
 
+/// The first half of the work for many matrices, which is compiled once for all that make them.
+template <class T> FLEXAPOD_APART void begin(Mat6<T>& square, HalfBidiagonal<T>& half) {
+  half = HalfBidiagonal<T>(square);
+}
+
 /// The second half of the work of `count` matrices, as many of them side by side as go into a wide pack.
-template <Wanted wanted, class T>
-FLEXAPOD_FLAT void finish_all(const HalfBidiagonal<T>* half, SingularSquares<T>* found, int count) {
+template <class T>
+FLEXAPOD_FLAT void finish_all(Wanted wanted, const HalfBidiagonal<T>* half, SingularSquares<T>* found, int count) {
   using Wide = typename T::Wide;
   constexpr int share = Wide::parts / T::parts;
   for (int i = 0; i < count; i += share) {
     HalfBidiagonal<Wide> wide;
     for (int s = 0; s < share; ++s)
       half[i + s < count ? i + s : i].for_each(wide, [&](const T& from, Wide& to) { to.set_share(s, from); });
-    const SingularSquares<Wide> all = finished<wanted, Wide>(wide);
+    const SingularSquares<Wide> all = finished(wanted, wide);
     for (int s = 0; s < share && i + s < count; ++s) {
       found[i + s].sum = all.sum.template share<T>(s);
       for (int k = 0; k < 6; ++k) found[i + s].share[k] = all.share[k].template share<T>(s);

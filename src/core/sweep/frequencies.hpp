@@ -32,43 +32,56 @@ template <class T> void load_poses(const Task& task, size_t first, size_t count,
         wind_down(rows[c]);
 }
 
-/// Frequencies and the condition of H, for the joined packs of several parts.
+template <class T> T singular_where(const mask_t<T>& bad, const T& fault) {
+  return select(bad & (fault <= 0.0), T(sweep_task::singular), fault);
+}
+
+/// The condition of H.
+template <class T> struct SweepCondition {
+  const Task& task;
+  const Rows rows;
+  const ForceMap<T>& map;
+
+  void begin(HalfBidiagonal<T>& half) const {
+    Mat6<T> H = map.directions;
+    flexapod::begin(H, half);
+  }
+  FLEXAPOD_FLAT T finish(SingularSquares<T>& squares) const {
+    const auto bad = no_pose(map.fault);
+    repair([this] { return map.directions; }, squares);
+    const auto& share = squares.share;
+    rows.put(task.cond_H_, unless(bad, sqrt(share[5] / share[0])));
+    return singular_where(share[0] < 1e-26 * share[5], map.fault);
+  }
+};
+
+/// Frequencies, for the joined packs of several parts.
 template <class T, Swept kind> struct SweepModes {
   const SweptMachine& machine;
   const Task& task;
   const Rows rows;
   const MassAndForceMap<T, kind>& dynamics;
 
-  FLEXAPOD_FLAT HalfBidiagonal<T> begin_frequencies(T& others) const {
+  FLEXAPOD_FLAT void begin(HalfBidiagonal<T>& half, T& others) const {
     auto matrix = B();
     if constexpr (kind == Swept::others) others = matrix.square_of_C();
-    return begun<T>(matrix);
-  }
-  FLEXAPOD_FLAT HalfBidiagonal<T> begin_condition() const {
-    auto matrix = dynamics.H();
-    return begun<T>(matrix);
+    auto&& square = square_factor(matrix);
+    flexapod::begin(square, half);
   }
 
   /// others: sum of the squares of the other springs alone.
-  template <bool all> FLEXAPOD_FLAT T frequencies(SingularSquares<T>& squares, const T& others) const {
+  FLEXAPOD_FLAT T finish(SingularSquares<T>& squares, const T& others) const {
     repair([this] { return B(); }, squares);
     if constexpr (kind == Swept::others) replace_rounded(others, squares);
     const T fault = worse(!(squares.sum < 1e300), sweep_task::no_inertia, dynamics.fault);
     const auto bad = fault > T(sweep_task::singular);
+    const bool all = task.quantities & Quantity::omega;
     for (int i = 0; i < (all ? 6 : 1); ++i) {
       const T omega = unless(bad, sqrt(squares.sum * squares.share[i]));
       if (all) rows.put(task.omega_, omega, i, 6);
       if (i == 0 && task.omega_1_ != nullptr) rows.put(task.omega_1_, omega);
     }
-    return singular(squares.share[0] < 1e-26, fault);
-  }
-
-  FLEXAPOD_FLAT T condition(SingularSquares<T>& squares) const {
-    const auto bad = no_pose(dynamics.fault);
-    repair([this] { return dynamics.H(); }, squares);
-    const auto& share = squares.share;
-    rows.put(task.cond_H_, unless(bad, sqrt(share[5] / share[0])));
-    return singular(share[0] < 1e-26 * share[5], dynamics.fault);
+    return singular_where(squares.share[0] < 1e-26, fault);
   }
 
   T status() const {
@@ -79,7 +92,7 @@ template <class T, Swept kind> struct SweepModes {
   }
 
  private:
-  auto B() const { return dynamics.B(machine, Cholesky<T>(dynamics.J.matrix())); }
+  auto B() const { return dynamics.B(Cholesky<T>(dynamics.J.matrix())); }
 
   /// The square root of the other springs' sum is right to a rounding of its own size, which may be more than a rounding
   /// of omega_1 omega_6: there all columns are taken instead.
@@ -94,11 +107,8 @@ template <class T, Swept kind> struct SweepModes {
     load_poses<T>(task, rows.first, static_cast<size_t>(rows.count), numbers);
     const PosePack<T> at(machine, numbers, task.poses.turned);
     T exact[6];
-    squares_by_rotations(all_columns(machine, at, dynamics.J, dynamics.springs.along), exact);
+    squares_by_rotations(all_columns(machine, at, dynamics.J, dynamics.along), exact);
     for (int i = 0; i < 6; ++i) found.share[i] = select(where, exact[i] / found.sum, found.share[i]);
-  }
-  static T singular(const mask_t<T>& bad, const T& fault) {
-    return select(bad & (fault <= 0.0), T(sweep_task::singular), fault);
   }
 };
 
@@ -118,7 +128,10 @@ template <class T, Swept kind> class Sweep {
   double rows[12][Part::lanes];
 
  public:
-  explicit Sweep(const Task& t) : task(t), machine(t) {}
+  explicit Sweep(const Task& t) : task(t), machine(t) {
+    part.set_constant(machine);
+    for (auto& pack : joined) pack.set_constant(machine);
+  }
 
   void run(size_t first, size_t last) {
     constexpr size_t size = size_t{batch} * T::lanes;
@@ -149,36 +162,29 @@ template <class T, Swept kind> class Sweep {
     const int packs = static_cast<int>((count + T::lanes - 1) / T::lanes);
     using Modes = SweepModes<T, kind>;
     if (asked & Quantity::cond_H) {
-      each([&](const Modes& modes, T&, int i) { half[i] = modes.begin_condition(); });
-      finish_all<Wanted::extremes>(half, squares, packs);
-      each([&](const Modes& modes, T& fault, int i) { fault = modes.condition(squares[i]); });
+      const auto of = [](const Modes& modes) { return SweepCondition<T>{modes.task, modes.rows, modes.dynamics}; };
+      each([&](const Modes& modes, T&, int i) { of(modes).begin(half[i]); });
+      finish_all(Wanted::extremes, half, squares, packs);
+      each([&](const Modes& modes, T& fault, int i) { fault = of(modes).finish(squares[i]); });
     }
-    if (asked & modal) each([&](const Modes& modes, T&, int i) { half[i] = modes.begin_frequencies(others[i]); });
-    if (asked & Quantity::omega) {
-      finish_all<Wanted::all>(half, squares, packs);
-      each([&](const Modes& modes, T& fault, int i) {
-        fault = modes.template frequencies<true>(squares[i], others[i]);
-      });
-    } else if (asked & Quantity::omega_1) {
-      finish_all<Wanted::lowest>(half, squares, packs);
-      each([&](const Modes& modes, T& fault, int i) {
-        fault = modes.template frequencies<false>(squares[i], others[i]);
-      });
+    if (asked & modal) {
+      each([&](const Modes& modes, T&, int i) { modes.begin(half[i], others[i]); });
+      finish_all(asked & Quantity::omega ? Wanted::all : Wanted::lowest, half, squares, packs);
+      each([&](const Modes& modes, T& fault, int i) { fault = modes.finish(squares[i], others[i]); });
     }
     each([](const Modes& modes, T&, int) { modes.status(); });
   }
 
   void one_part(size_t first, size_t count) {
     load_poses<Part>(task, first, count, rows);
-    const PosePack<Part> at = pose_pack();
+    const PosePack<Part> at = pose_pack<Part>(machine, rows, task.poses.turned);
     const unsigned asked = task.quantities;
     if (asked & modal) assemble(at);
     else if (asked & Quantity::cond_H) part.set_legs(at);
     else part.fault = at.fault;
-    const SweepQuantities<Part, kind> quantities{machine, task, {first, static_cast<int>(count)}, at};
+    const SweepQuantities<Part, kind> quantities{{machine, task, {first, static_cast<int>(count)}, at}};
     quantities.evaluate(part.fault);
   }
-  FLEXAPOD_FLAT PosePack<Part> pose_pack() const { return PosePack<Part>(machine, rows, task.poses.turned); }
   FLEXAPOD_FLAT void assemble(const PosePack<Part>& at) { part.set(machine, at); }
 
   void join(MassAndForceMap<T, kind>& joined, int i) const {
@@ -188,9 +194,9 @@ template <class T, Swept kind> class Sweep {
       for (int c = 0; c < spring_count; ++c) joined.directions[r][c].set_part(i, part.directions[r][c]);
     if (!(task.quantities & modal)) return;
     join(joined.J, part.J, i);
-    if constexpr (kind != Swept::constant)
-      for (int j = 0; j < spring_count; ++j) joined.springs.along.root[j].set_part(i, part.springs.along.root[j]);
-    if constexpr (kind == Swept::others) join(joined.springs.others, part.springs.others, i);
+    if (!machine.constant())
+      for (int j = 0; j < spring_count; ++j) joined.along.root[j].set_part(i, part.along.root[j]);
+    if constexpr (kind == Swept::others) join(joined.others.sum, part.others.sum, i);
   }
   static void join(SpatialInertia<T>& to, const SpatialInertia<Part>& from, int i) {
     join(to.top, from.top, i), join(to.bottom, from.bottom, i);

@@ -23,14 +23,12 @@ bool runs_here() {
 void run(const sweep_task::Task& task, size_t first, size_t last) {
   const Features features(*reinterpret_cast<const Design<double>*>(task.design));
   if (features.others()) Sweep<Lanes, Swept::others>(task).run(first, last);
-  else if (features.law != Law::constant) Sweep<Lanes, Swept::law>(task).run(first, last);
-  else Sweep<Lanes, Swept::constant>(task).run(first, last);
+  else Sweep<Lanes, Swept::along_legs>(task).run(first, last);
 }
 
 void sweep_designs(const DesignTask& task, size_t first, size_t last) {
-  if (task.joints || task.suspension) DesignSweep<Lanes, Swept::others>(task, first, last);
-  else if (task.law != Law::constant || task.series) DesignSweep<Lanes, Swept::law>(task, first, last);
-  else DesignSweep<Lanes, Swept::constant>(task, first, last);
+  if (task.joints || task.suspension) DesignSweep<Lanes, Swept::others>(task).run(first, last);
+  else DesignSweep<Lanes, Swept::along_legs>(task).run(first, last);
 }
 
 }  // namespace

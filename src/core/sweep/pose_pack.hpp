@@ -27,6 +27,9 @@ struct SweptMachine {
         size(mean_radius(machine.design)) {
     weightless.design.gravity = Vec3<double>();
   }
+
+  /// Whether springs along the legs are the same at all poses.
+  bool constant() const { return machine.features.law == Law::constant; }
 };
 
 /// A fault is a status as a number in a lane. What is wrong with the pose itself is not replaced.
@@ -76,38 +79,47 @@ template <class T> struct PosePack {
     return {t, R};
   }
 };
+template <class T>
+FLEXAPOD_FLAT PosePack<T> pose_pack(const SweptMachine& m, const double (*rows)[T::lanes], int turned) {
+  return PosePack<T>(m, rows, turned);
+}
 
-/// Which springs a sweep's machine has: constant ones along the legs, some that go with the legs' lengths, or others
-/// too. Each is a kernel of its own.
-enum class Swept { constant, law, others };
+/// Which springs a sweep's machine has: along the legs only, or others too. Each is a kernel of its own.
+enum class Swept { along_legs, others };
 
-/// What of the springs goes with the pose.
-template <class T, Swept springs> struct PoseSprings {};
-template <class T> struct PoseSprings<T, Swept::law> {
-  RootStiffness<T> along;
+/// sum k d d^T of joints and suspension, platform axes.
+template <class T, Swept kind> struct OtherSprings {};
+template <class T> struct OtherSprings<T, Swept::others> {
+  SpatialInertia<T> sum;
 };
-template <class T> struct PoseSprings<T, Swept::others> {
-  RootStiffness<T> along;
-  SpatialInertia<T> others;  // sum k d d^T of joints and suspension, platform axes
-};
 
-/// What vibrates: J_p and the directions of the springs, in the platform's axes.
-template <class T, Swept kind> struct MassAndForceMap {
-  SpatialInertia<T> J;
+/// The directions of the springs along the legs, in the platform's axes: H.
+template <class T> struct ForceMap {
   SpringMatrix<T> directions;
   T fault;
-  PoseSprings<T, kind> springs;
 
-  const Mat6<T>& H() const { return directions; }
-  /// With lengths and directions only: J is left.
+  /// With lengths and directions only.
   void set_legs(const PosePack<T>& at) {
     fault = at.fault;
     for (int i = 0; i < 6; ++i) set_spring_directions(directions, i, at.g);
   }
-  /// With springs of all kinds as well.
+};
+
+/// What vibrates: J_p and the springs, in the platform's axes.
+template <class T, Swept kind> struct MassAndForceMap : ForceMap<T> {
+  SpatialInertia<T> J;
+  RootStiffness<T> along;
+  OtherSprings<T, kind> others;
+  using ForceMap<T>::directions, ForceMap<T>::fault;
+
+  /// Springs along the legs that are the same at all poses.
+  void set_constant(const SweptMachine& m) {
+    for (int j = 0; j < spring_count; ++j) along.root[j] = T(m.root_stiffness.root[j]);
+  }
+  /// With springs of all kinds as well; J is left.
   void set_stiffness(const SweptMachine& m, const PosePack<T>& at) {
-    if constexpr (kind == Swept::constant) {
-      set_legs(at);
+    if (kind == Swept::along_legs && m.constant()) {
+      this->set_legs(at);
     } else {
       const auto axes = [&](int i) { return LegAxes<T>(at.g.S[i], at.g.k[i], m.machine.joint); };
       const LegAxes<T> legs[6] = {axes(0), axes(1), axes(2), axes(3), axes(4), axes(5)};
@@ -131,35 +143,29 @@ template <class T, Swept kind> struct MassAndForceMap {
   }
   /// What of the springs goes with the pose.
   void set_springs(const SweptMachine& m, const PosePack<T>& at, const LegAxes<T> (&legs)[6]) {
-    if constexpr (kind != Swept::constant) {
+    if (!m.constant()) {
       for (int i = 0; i < 6; ++i) {
-        if (m.machine.features.law == Law::constant) {
-          springs.along.root[i] = T(m.root_stiffness.root[i]);
-          continue;
-        }
         const T k = m.machine.axial.at(m.machine.design, m.machine.features, i, legs[i].L);
-        springs.along.root[i] = sqrt(k);
+        along.root[i] = sqrt(k);
         fault = worse(!(k > 0.0), sweep_task::outside_stiffness_law, fault);
       }
     }
     if constexpr (kind == Swept::others) {
-      springs.others = SpatialInertia<T>{zero(), {{none(), none(), none()}}, zero()};
+      others.sum = SpatialInertia<T>{zero(), {{none(), none(), none()}}, zero()};
       if (m.machine.features.joints)
         for (int i = 0; i < 6; ++i)
-          add_joint_stiffness(springs.others, legs[i], m.machine.design.springs[i], at.g.q_p[i], m.machine.joint);
-      if (m.machine.features.suspension)
-        add_suspension(springs.others, m.machine.design, Mat3<T>::identity(), at.base().R);
+          add_joint_stiffness(others.sum, legs[i], m.machine.design.springs[i], at.g.q_p[i], m.machine.joint);
+      if (m.machine.features.suspension) add_suspension(others.sum, m.machine.design, Mat3<T>::identity(), at.base().R);
     }
   }
   /// F: six columns, or those along the legs and a square root of all others.
-  auto F(const SweptMachine& m) const {
-    if constexpr (kind == Swept::constant) return m.root_stiffness.scaled(directions);
-    else if constexpr (kind == Swept::law) return springs.along.scaled(directions);
-    else return Blocks<T>{springs.along.scaled(directions), semidefinite_root(springs.others.matrix())};
+  auto F() const {
+    if constexpr (kind == Swept::along_legs) return along.scaled(directions);
+    else return Blocks<T>{along.scaled(directions), semidefinite_root(others.sum.matrix())};
   }
   /// B = L^-1 F.
-  auto B(const SweptMachine& m, const Cholesky<T>& L) const {
-    auto B = F(m);
+  auto B(const Cholesky<T>& L) const {
+    auto B = F();
     if constexpr (kind == Swept::others) L.forward_all(B.A), L.forward_lower(B.C);
     else L.forward_all(B);
     return B;

@@ -10,25 +10,12 @@ namespace flexapod {
 using sweep_task::Quantity;
 using sweep_task::Task;
 
-/// Quantities that need no modes.
-template <class T, Swept kind> struct SweepQuantities {
+/// Quantities that need no springs.
+template <class T> struct RigidQuantities {
   const SweptMachine& machine;
   const Task& task;
   const Rows rows;
   const PosePack<T>& at;
-
-  /// Everything that is asked for. A fault that is found is noted where there was none.
-  void evaluate(T& fault) const {
-    constexpr unsigned geometric = Quantity::leg_length | Quantity::joint_angle | Quantity::joint_moment |
-                                   Quantity::leg_distance | Quantity::within_limits;
-    const unsigned asked = task.quantities;
-    const auto note = [&](const T& found) { fault = select(fault > 0.0, fault, found); };
-    if (asked & geometric) geometry();
-    if (asked & Quantity::rpy) coordinates();
-    if (asked & Quantity::leg_force) note(static_force());
-    if (asked & Quantity::lowest_stiffness) note(stiffness());
-    if (asked & Quantity::omega_1_gradient) note(gradient());
-  }
 
   /// Roll, pitch and yaw of poses that are given by other numbers.
   FLEXAPOD_FLAT void coordinates() const {
@@ -83,8 +70,7 @@ template <class T, Swept kind> struct SweepQuantities {
     if (!asked && !check) return;
     for (int i = 0; i < 6; ++i) {
       T universal(0.0), spherical(0.0);
-      if constexpr (kind == Swept::others)
-        if (machine.machine.features.joints) joint_moments(i, universal, spherical);
+      if (machine.machine.features.joints) joint_moments(i, universal, spherical);
       if (asked) rows.put(task.universal_moment_, unless(bad, universal), i, 6);
       if (asked) rows.put(task.spherical_moment_, unless(bad, spherical), i, 6);
       if (check) bound(universal, -1.0, limits.universal_moment), bound(spherical, -1.0, limits.spherical_moment);
@@ -107,73 +93,14 @@ template <class T, Swept kind> struct SweepQuantities {
     const Geometry<T> g(machine.weightless.design, platform.pose, base.pose);
     Vec6<T> load[1] = {inverse_wrench(machine.weightless, g, platform, base)};
     for (int i = 3; i < 6; ++i) load[0][i] *= 1.0 / machine.size;
-    Mat6<T> H = legs().H();
-    const T weak = solve(H, load);
+    ForceMap<T> legs;
+    legs.set_legs(at);
+    const T weak = solve(legs.directions, load);
     T most = abs(load[0][0]);
     for (int i = 1; i < 6; ++i) most = max(most, abs(load[0][i]));
     return finish(task.leg_force_, most, weak, at.fault);
   }
 
-  /// The least translational stiffness: 1 / largest eigenvalue of the block of translations of K^-1, which is Y^T Y with
-  /// Y = F^-1 [E; 0] for a square F.
-  FLEXAPOD_FLAT T stiffness() const {
-    Vec6<T> side[3];
-    for (int i = 0; i < 3; ++i) side[i][i] = T(1.0);
-    MassAndForceMap<T, kind> dynamics;
-    dynamics.set_stiffness(machine, at);
-    auto F = dynamics.F(machine);
-    auto&& square = square_factor(F);
-    const T weak = solve(square, side);
-    T Y[3][6];
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 6; ++j) Y[i][j] = side[i][j];
-    orthogonalise_rows<3, 6, T>(Y, nullptr);
-    const T most = max(max(row_square(Y[0]), row_square(Y[1])), row_square(Y[2]));
-    return finish(task.lowest_stiffness_, 1.0 / most, weak, dynamics.fault);
-  }
-
-  /// Derivatives of the lowest frequency by the pose: those of omega^2 are v^T (dK - omega^2 dJ) v for its mode v.
-  T gradient() const {
-    using D = Dual<6, T>;
-    MassAndForceMap<T, kind> dynamics;
-    dynamics.set(machine, at);
-    const Cholesky<T> L(dynamics.J.matrix());
-    Vec6<T> v;
-    const T lambda = lowest_direction(dynamics.B(machine, L), v);
-    v = L.backward(v);
-    v = Vec6<T>::of(at.pose.R * v.top(), at.pose.R * v.bottom());
-    const Pose<D> moved = displaced(at.pose, variables<D>(0), variables<D>(3));
-    const Geometry<D> g(machine.machine.design, moved, Pose<D>());
-    const Mat6<D> J = inertia(machine.machine, g, moved.R);
-    const auto along = [&](const auto& k) { return rayleigh_residual(k, J, spring_directions(g), v, lambda); };
-    D residual;
-    if constexpr (kind == Swept::constant) residual = along(machine.machine.axial.constant);
-    else residual = with_stiffness(machine.machine, g, along);
-    if constexpr (kind == Swept::others)
-      residual += other_product(other_stiffness(machine.machine, g, moved.R, Mat3<D>::identity()), v);
-    const T half = 0.5 * rsqrt(lambda);
-    T by[6];
-    for (int i = 0; i < 6; ++i) by[i] = half * residual.d[i];
-    if (task.poses.turned == 3) {
-      const Vec3<T> turn(by[3], by[4], by[5]);
-      by[3] = dot(turn, at.roll_axis), by[4] = dot(turn, at.pitch_axis);
-    }
-    const T fault = worse(!(lambda < 1e300), sweep_task::no_inertia, dynamics.fault);
-    for (int i = 0; i < 6; ++i) rows.put(task.omega_1_gradient_, unless(fault > 0.0, by[i]), i, 6);
-    return fault;
-  }
-
- private:
-  static Vec3<double> direction(const double (&n)[3]) { return {n[0], n[1], n[2]}; }
-  template <class U> T angle_to(const Vec3<U>& n, int i) const {
-    const Vec3<T>& S = at.g.S[i];
-    return upper_angle(norm(cross(n, S)), dot(n, S));
-  }
-  MassAndForceMap<T, kind> legs() const {
-    MassAndForceMap<T, kind> legs;
-    legs.set_legs(at);
-    return legs;
-  }
   /// Solves A x = b with rows of moments divided by the platform's size; how near A is to singular.
   template <int m> T solve(Mat6<T>& A, Vec6<T> (&b)[m]) const {
     for (int i = 3; i < 6; ++i)
@@ -186,6 +113,80 @@ template <class T, Swept kind> struct SweepQuantities {
     const auto hopeless = weak < 1e-13;
     rows.put(to, unless(hopeless | (fault > 0.0), value));
     return worse(hopeless, sweep_task::singular, fault);
+  }
+
+ private:
+  static Vec3<double> direction(const double (&n)[3]) { return {n[0], n[1], n[2]}; }
+  template <class U> T angle_to(const Vec3<U>& n, int i) const {
+    const Vec3<T>& S = at.g.S[i];
+    return upper_angle(norm(cross(n, S)), dot(n, S));
+  }
+};
+
+/// Quantities that need no modes, or but one.
+template <class T, Swept kind> struct SweepQuantities : RigidQuantities<T> {
+  using RigidQuantities<T>::machine, RigidQuantities<T>::task, RigidQuantities<T>::rows, RigidQuantities<T>::at;
+
+  /// Everything that is asked for. A fault that is found is noted where there was none.
+  void evaluate(T& fault) const {
+    constexpr unsigned geometric = Quantity::leg_length | Quantity::joint_angle | Quantity::joint_moment |
+                                   Quantity::leg_distance | Quantity::within_limits;
+    const unsigned asked = task.quantities;
+    const auto note = [&](const T& found) { fault = select(fault > 0.0, fault, found); };
+    if (asked & geometric) this->geometry();
+    if (asked & Quantity::rpy) this->coordinates();
+    if (asked & Quantity::leg_force) note(this->static_force());
+    if (asked & Quantity::lowest_stiffness) note(stiffness());
+    if (asked & Quantity::omega_1_gradient) note(gradient());
+  }
+
+  /// The least translational stiffness: 1 / largest eigenvalue of the block of translations of K^-1, which is Y^T Y with
+  /// Y = F^-1 [E; 0] for a square F.
+  FLEXAPOD_FLAT T stiffness() const {
+    Vec6<T> side[3];
+    for (int i = 0; i < 3; ++i) side[i][i] = T(1.0);
+    MassAndForceMap<T, kind> dynamics;
+    dynamics.set_constant(machine);
+    dynamics.set_stiffness(machine, at);
+    auto F = dynamics.F();
+    auto&& square = square_factor(F);
+    const T weak = this->solve(square, side);
+    T Y[3][6];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 6; ++j) Y[i][j] = side[i][j];
+    orthogonalise_rows<3, 6, T>(Y, nullptr);
+    const T most = max(max(row_square(Y[0]), row_square(Y[1])), row_square(Y[2]));
+    return this->finish(task.lowest_stiffness_, 1.0 / most, weak, dynamics.fault);
+  }
+
+  /// Derivatives of the lowest frequency by the pose: those of omega^2 are v^T (dK - omega^2 dJ) v for its mode v.
+  T gradient() const {
+    using D = Dual<6, T>;
+    MassAndForceMap<T, kind> dynamics;
+    dynamics.set_constant(machine);
+    dynamics.set(machine, at);
+    const Cholesky<T> L(dynamics.J.matrix());
+    Vec6<T> v;
+    const T lambda = lowest_direction(dynamics.B(L), v);
+    v = L.backward(v);
+    v = Vec6<T>::of(at.pose.R * v.top(), at.pose.R * v.bottom());
+    const Pose<D> moved = displaced(at.pose, variables<D>(0), variables<D>(3));
+    const Geometry<D> g(machine.machine.design, moved, Pose<D>());
+    const Mat6<D> J = inertia(machine.machine, g, moved.R);
+    const auto along = [&](const auto& k) { return rayleigh_residual(k, J, spring_directions(g), v, lambda); };
+    D residual = with_stiffness(machine.machine, g, along);
+    if constexpr (kind == Swept::others)
+      residual += other_product(other_stiffness(machine.machine, g, moved.R, Mat3<D>::identity()), v);
+    const T half = 0.5 * rsqrt(lambda);
+    T by[6];
+    for (int i = 0; i < 6; ++i) by[i] = half * residual.d[i];
+    if (task.poses.turned == 3) {
+      const Vec3<T> turn(by[3], by[4], by[5]);
+      by[3] = dot(turn, at.roll_axis), by[4] = dot(turn, at.pitch_axis);
+    }
+    const T fault = worse(!(lambda < 1e300), sweep_task::no_inertia, dynamics.fault);
+    for (int i = 0; i < 6; ++i) rows.put(task.omega_1_gradient_, unless(fault > 0.0, by[i]), i, 6);
+    return fault;
   }
 };
 
