@@ -16,8 +16,10 @@
   namespace flexapod_##isa {                          \
     extern double (*const peak_flops)(size_t rounds); \
   }
-#if defined(FLEXAPOD_X86)
+#if defined(FLEXAPOD_AVX512)
 FLEXAPOD_PEAK_OF(avx512)
+#endif
+#if defined(FLEXAPOD_AVX2)
 FLEXAPOD_PEAK_OF(avx2)
 #endif
 FLEXAPOD_PEAK_OF(baseline)
@@ -50,8 +52,10 @@ int flops(unsigned quantities) {
 
 int peak(const std::string& isa, size_t rounds) {
   double (*run)(size_t) = nullptr;
-#if defined(FLEXAPOD_X86)
+#if defined(FLEXAPOD_AVX512)
   if (isa == "avx512") run = flexapod_avx512::peak_flops;
+#endif
+#if defined(FLEXAPOD_AVX2)
   if (isa == "avx2") run = flexapod_avx2::peak_flops;
 #endif
   if (isa == "baseline") run = flexapod_baseline::peak_flops;

@@ -18,8 +18,10 @@
     extern const one_pose_task::Kernel one_pose_kernel;     \
     extern const simulation_task::Kernel simulation_kernel; \
   }
-#if defined(FLEXAPOD_X86)
+#if defined(FLEXAPOD_AVX512)
 FLEXAPOD_KERNELS_OF(avx512)
+#endif
+#if defined(FLEXAPOD_AVX2)
 FLEXAPOD_KERNELS_OF(avx2)
 #endif
 FLEXAPOD_KERNELS_OF(baseline)
@@ -39,9 +41,11 @@ struct Kernels {
 
 /// All that this build has, the best first.
 inline constexpr Kernels all_kernels[] = {
-#if defined(FLEXAPOD_X86)
+#if defined(FLEXAPOD_AVX512)
     {flexapod_avx512::sweep_kernel, flexapod_avx512::certify_kernel, flexapod_avx512::one_pose_kernel,
      flexapod_avx512::simulation_kernel},
+#endif
+#if defined(FLEXAPOD_AVX2)
     {flexapod_avx2::sweep_kernel, flexapod_avx2::certify_kernel, flexapod_avx2::one_pose_kernel,
      flexapod_avx2::simulation_kernel},
 #endif
