@@ -38,6 +38,27 @@ inline constexpr double up = 1.0 + 0x1p-40;  // for bounds that are themselves r
 inline constexpr double least = 1e-290;      // more than all underflows
 }  // namespace rounding
 
+/// Products of polynomials, whatever strays beside them.
+template <class Lane, int n, int order> struct Polynomials {
+  template <std::size_t... k>
+  static FLEXAPOD_FLAT void multiply(Lane* to, const Lane* a, const Lane* b, std::index_sequence<k...>) {
+    ((to[k] = coefficient<k>(a, b)), ...);
+  }
+  template <std::size_t... k>
+  static FLEXAPOD_FLAT void multiply_add(Lane* to, const Lane& factor, const Lane* a, const Lane* b,
+                                         std::index_sequence<k...>) {
+    ((to[k] += factor * coefficient<k>(a, b)), ...);
+  }
+
+ private:
+  template <int k> static FLEXAPOD_INLINE Lane coefficient(const Lane* a, const Lane* b) {
+    constexpr const auto& products = monomial_products<n, order>;
+    return [&]<std::size_t... p>(std::index_sequence<p...>) {
+      return (... + (a[products.left[products.first[k] + p]] * b[products.right[products.first[k] + p]]));
+    }(std::make_index_sequence<products.first[k + 1] - products.first[k]>{});
+  }
+};
+
 template <class Lane, int n, int order, class Rules = Sound, int strays = 0> struct Taylor {
   static constexpr int terms = Monomials<n, order>::count;
   static constexpr int count = terms + strays;
@@ -100,7 +121,7 @@ template <class Lane, int n, int order, class Rules = Sound, int strays = 0> str
   friend Taylor operator*(const Taylor& a, const Taylor& b) {
     Taylor product;
     const Norms na(a), nb(b);
-    multiply(product, a, b, std::make_index_sequence<terms>{});
+    Polynomials<Lane, n, order>::multiply(product.c, a.c, b.c, std::make_index_sequence<terms>{});
     for (int k = terms; k < count; ++k) product.c[k] = a.c[0] * b.c[k] + a.c[k] * b.c[0];
     product.r = product_radius(a, na, b, nb);
     return product;
@@ -134,7 +155,7 @@ template <class Lane, int n, int order, class Rules = Sound, int strays = 0> str
 
   /// Adds factor a b, for constants.
   void add_product(const Lane& factor, const Taylor& a, const Norms& na, const Taylor& b, const Norms& nb) {
-    multiply_add(*this, factor, a, b, std::make_index_sequence<terms>{});
+    Polynomials<Lane, n, order>::multiply_add(c, factor, a.c, b.c, std::make_index_sequence<terms>{});
     for (int k = terms; k < count; ++k) c[k] += factor * (a.c[0] * b.c[k] + a.c[k] * b.c[0]);
     Lane all(0.0);
     for (int k = 0; k < count; ++k) all += abs(c[k]);
@@ -179,22 +200,6 @@ template <class Lane, int n, int order, class Rules = Sound, int strays = 0> str
     }
     const Lane errors = a.r * (nb.all + b.r) + na.all * b.r;
     return (errors + cut + rounding::unit * (na.all * nb.all)) * rounding::up + rounding::least;
-  }
-
-  template <int k> static FLEXAPOD_INLINE Lane coefficient(const Taylor& a, const Taylor& b) {
-    constexpr const auto& products = monomial_products<n, order>;
-    return [&]<std::size_t... p>(std::index_sequence<p...>) {
-      return (... + (a.c[products.left[products.first[k] + p]] * b.c[products.right[products.first[k] + p]]));
-    }(std::make_index_sequence<products.first[k + 1] - products.first[k]>{});
-  }
-  template <std::size_t... k>
-  static FLEXAPOD_FLAT void multiply(Taylor& to, const Taylor& a, const Taylor& b, std::index_sequence<k...>) {
-    ((to.c[k] = coefficient<k>(a, b)), ...);
-  }
-  template <std::size_t... k>
-  static FLEXAPOD_FLAT void multiply_add(Taylor& to, const Lane& factor, const Taylor& a, const Taylor& b,
-                                         std::index_sequence<k...>) {
-    ((to.c[k] += factor * coefficient<k>(a, b)), ...);
   }
 };
 

@@ -29,12 +29,12 @@ inline double size2(const Study& x) {
   for (const Complex& z : x.a) sum += std::norm(z);
   return sum;
 }
-inline Study scaled(const Study& x, Complex factor) {
+FLEXAPOD_APART inline Study scaled(const Study& x, Complex factor) {
   Study y;
   for (int i = 0; i < 8; ++i) y[i] = factor * x[i];
   return y;
 }
-inline Study sum(const Study& x, Complex factor, const Study& y) {
+FLEXAPOD_APART inline Study sum(const Study& x, Complex factor, const Study& y) {
   Study z;
   for (int i = 0; i < 8; ++i) z[i] = x[i] + factor * y[i];
   return z;
@@ -49,7 +49,7 @@ struct Numbers {
 };
 
 /// Numbers on the way from one machine to another.
-inline Numbers between(const Numbers& from, const Numbers& to, double t) {
+FLEXAPOD_APART inline Numbers between(const Numbers& from, const Numbers& to, double t) {
   Numbers n;
   const double u = 1.0 - t, v = t;
   for (int i = 0; i < 6; ++i) {
@@ -61,7 +61,7 @@ inline Numbers between(const Numbers& from, const Numbers& to, double t) {
 }
 
 /// Gradient of leg i's equation, |t + R p - b|^2 = L^2 times e.e; the equation is half of x times it.
-inline Study gradient(const Numbers& n, int i, const Study& x) {
+FLEXAPOD_APART inline Study gradient(const Numbers& n, int i, const Study& x) {
   const Vec3c &b = n.b[i], &p = n.p[i], m = p - b, s = p + b, e{x[1], x[2], x[3]}, g{x[5], x[6], x[7]}, w = cross(p, b);
   const Complex e0 = x[0], g0 = x[4], c = n.c[i], bp = dot(b, p), pe = dot(p, e), be = dot(b, e);
   const Vec3c by_e = 2.0 * (c + 2.0 * bp) * e - 4.0 * (pe * b + be * p + e0 * w + g0 * m + cross(g, s));
@@ -70,7 +70,7 @@ inline Study gradient(const Numbers& n, int i, const Study& x) {
            8.0 * g0 - 4.0 * dot(m, e), by_g.x, by_g.y, by_g.z}};
 }
 
-inline Complex half_product(const Study& x, const Study& y) {
+FLEXAPOD_APART inline Complex half_product(const Study& x, const Study& y) {
   Complex total = 0;
   for (int i = 0; i < 8; ++i) total += x[i] * y[i];
   return 0.5 * total;
@@ -87,7 +87,7 @@ struct System {
     right[7] = 0;
   }
   /// Solves by elimination with row pivoting; false where a pivot vanishes.
-  bool solve(Study& step) {
+  FLEXAPOD_APART bool solve(Study& step) {
     for (int k = 0; k < 8; ++k) {
       int pivot = k;
       for (int i = k + 1; i < 8; ++i)
@@ -135,7 +135,7 @@ class Path {
  public:
   Path(const Numbers& from, const Numbers& to, const Care& care) : from_(from), to_(to), care_(care) {}
 
-  Endpoint follow(Study x) const {
+  FLEXAPOD_APART Endpoint follow(Study x) const {
     double t = 0, h = care_.longest;
     for (int step = 0; step < 20000; ++step) {
       const bool last = h >= 1.0 - t;
