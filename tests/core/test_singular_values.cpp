@@ -123,9 +123,10 @@ TEST_CASE("matrices side by side have the singular values of each by itself") {
   std::vector<Many<6>> many;
   for (int i = 0; i < packs; ++i) {
     many.emplace_back(draw, 1e4);
-    half[i] = begun<Lanes>(Mat6<Lanes>(many[i].packed));
+    Mat6<Lanes> matrix = many[i].packed;
+    begin(matrix, half[i]);
   }
-  finish_all<Wanted::extremes>(half, found, packs);
+  finish_all(Wanted::extremes, half, found, packs);
   for (int i = 0; i < packs; ++i) {
     const auto both = sigma(found[i], {0, 5});
     for (int l = 0; l < Lanes::lanes; ++l) {

@@ -57,9 +57,12 @@ template <Wanted wanted, class T, class Make> FLEXAPOD_INLINE SingularSquares<T>
   return found;
 }
 
-/// The first half of the work for many matrices, which is compiled once for all that make them.
+/// The two halves of the work for lanes, which are compiled once for all that make matrices.
 template <class T> FLEXAPOD_APART void begin(Mat6<T>& square, HalfBidiagonal<T>& half) {
   half = HalfBidiagonal<T>(square);
+}
+template <class T> FLEXAPOD_FLAT void finish(Wanted wanted, HalfBidiagonal<T>& half, SingularSquares<T>& found) {
+  found = finished(wanted, half);
 }
 
 /// The second half of the work of `count` matrices, as many of them side by side as go into a wide pack.

@@ -43,39 +43,20 @@ template <Swept kind, class T> auto scaled_springs(const Machine<T>& machine, co
   }
 }
 
-/// Designs of a task, in packs, at all its poses or each at its own. A batch of packs and poses goes through one piece of
-/// the work after the other, as in a sweep over poses.
+/// Designs first to last of a task, at all its poses or each at its own.
 template <class T, Swept kind> class DesignSweep {
-  static constexpr int batch = 8;
-  struct Item {
-    size_t first, pose;  // the pack's first design
-    int count;           // designs in it
-    mask_t<T> legs;
-  };
   const DesignTask& task;
-  Features features_;
-  Item items_[batch];
-  HalfBidiagonal<T> half_[batch];
-  SingularSquares<T> squares_[batch];
-  int waiting_ = 0;
 
  public:
-  explicit DesignSweep(const DesignTask& t) : task(t) {
+  DesignSweep(const DesignTask& t, size_t first, size_t last) : task(t) {
     features_.law = task.law, features_.series = task.series;
     features_.joints = task.joints, features_.suspension = task.suspension;
-  }
-
-  void run(size_t first, size_t last) {
-    for (size_t i = first; i < last; i += T::lanes) {
-      const int count = last - i < size_t{T::lanes} ? static_cast<int>(last - i) : T::lanes;
-      const Machine<T> machine = machines(i, count);
-      for (size_t k = 0; k < poses(); ++k) begin_one(machine, {i, k, count, {}});
-    }
-    finish();
+    for (size_t i = first; i < last; i += T::lanes)
+      pack(i, last - i < size_t{T::lanes} ? static_cast<int>(last - i) : T::lanes);
   }
 
  private:
-  size_t poses() const { return task.paired ? 1 : task.poses_count; }
+  Features features_;
 
   /// `numbers` columns of rows first to first + count - 1 of a table that is `width` wide, the last row repeated to fill
   /// the lanes.
@@ -86,43 +67,40 @@ template <class T, Swept kind> class DesignSweep {
       to[c] = T::load(lanes);
     }
   }
-  Machine<T> machines(size_t first, int count) const {
+
+  void pack(size_t first, int count) const {
     Machine<T> machine(task.joint, features_);
     const bool plain = kind == Swept::along_legs && task.law == Law::constant && !task.series;
     read(task.designs, design_size, plain ? plain_size : design_size, first, count, &machine.design.gravity.x);
     machine.refresh();
-    return machine;
-  }
-  Pose<T> pose_of(const Item& item) const {
-    Pose<T> pose;
-    static_assert(sizeof(pose) == 12 * sizeof(T));
-    T* number = &pose.t.x;
-    if (task.paired) read(task.poses, 12, 12, item.first, item.count, number);
-    else
-      for (int c = 0; c < 12; ++c) number[c] = T(task.poses[12 * item.pose + c]);
-    return pose;
+    const size_t poses = task.paired ? 1 : task.poses_count;
+    for (size_t k = 0; k < poses; ++k) {
+      Pose<T> pose;
+      static_assert(sizeof(pose) == 12 * sizeof(T));
+      if (task.paired) {
+        read(task.poses, 12, 12, first, count, &pose.t.x);
+      } else {
+        T* number = &pose.t.x;
+        for (int c = 0; c < 12; ++c) number[c] = T(task.poses[12 * k + c]);
+      }
+      solve(machine, pose, [&](int l) { return (first + l) * poses + k; }, count);
+    }
   }
 
-  void begin_one(const Machine<T>& machine, Item item) {
-    auto B = scaled_springs<kind>(machine, pose_of(item), item.legs);
+  template <class Place> void solve(const Machine<T>& machine, const Pose<T>& pose, Place place, int count) const {
+    mask_t<T> legs;
+    HalfBidiagonal<T> half;
+    SingularSquares<T> found;
+    auto B = scaled_springs<kind>(machine, pose, legs);
     auto&& square = square_factor(B);
-    begin(square, half_[waiting_]);
-    items_[waiting_++] = item;
-    if (waiting_ == batch) finish();
-  }
-
-  void finish() {
-    finish_all(task.modes == 6 ? Wanted::all : Wanted::lowest, half_, squares_, waiting_);
-    for (int i = 0; i < waiting_; ++i) write(items_[i], squares_[i]);
-    waiting_ = 0;
-  }
-  void write(Item& item, SingularSquares<T>& found) const {
-    repair([&] { return scaled_springs<kind>(machines(item.first, item.count), pose_of(item), item.legs); }, found);
-    const auto bad = !(item.legs & (found.sum < 1e300));
+    begin(square, half);
+    finish(task.modes == 6 ? Wanted::all : Wanted::lowest, half, found);
+    repair([&] { return scaled_springs<kind>(machine, pose, legs); }, found);
+    const auto bad = !(legs & (found.sum < 1e300));
     for (int i = 0; i < task.modes; ++i) {
       double x[T::lanes];
       select(bad, T(std::numeric_limits<double>::quiet_NaN()), sqrt(found.sum * found.share[i])).store(x);
-      for (int l = 0; l < item.count; ++l) task.omega[((item.first + l) * poses() + item.pose) * task.modes + i] = x[l];
+      for (int l = 0; l < count; ++l) task.omega[place(l) * task.modes + i] = x[l];
     }
   }
 };

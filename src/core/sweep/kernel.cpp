@@ -27,8 +27,8 @@ void run(const sweep_task::Task& task, size_t first, size_t last) {
 }
 
 void sweep_designs(const DesignTask& task, size_t first, size_t last) {
-  if (task.joints || task.suspension) DesignSweep<Lanes, Swept::others>(task).run(first, last);
-  else DesignSweep<Lanes, Swept::along_legs>(task).run(first, last);
+  if (task.joints || task.suspension) DesignSweep<Lanes, Swept::others>(task, first, last);
+  else DesignSweep<Lanes, Swept::along_legs>(task, first, last);
 }
 
 }  // namespace
