@@ -9,7 +9,7 @@ SECONDS ?= 300
 CORE := CMakeLists.txt $(wildcard src/core/*/*)
 CPP  := $(wildcard src/core/*/*.?pp tests/core/*.?pp)
 
-.PHONY: report paper test test-long coverage build lint types bench bench-readme docs validation core-test sanitized sanitize portable contradictions fuzz attack dist \
+.PHONY: report paper test coverage build lint types bench bench-readme docs validation core-test sanitized sanitize portable contradictions fuzz attack dist \
         clean web web-types web-check
 
 report: build ## the main job on a packaged design (DESIGN=..., OUT=...)
@@ -25,22 +25,19 @@ export PYTHONDONTWRITEBYTECODE =
 AT_ONCE := -n logical --dist loadfile --no-loadscope-reorder
 
 # Each test has one core: threads of OpenBLAS, which wait for one another in a loop, would take it from the test beside.
-test test-long coverage validation docs sanitize: export OPENBLAS_NUM_THREADS = 1
+test validation docs sanitize: export OPENBLAS_NUM_THREADS = 1
 
-# What most of the time goes into, and what a change of a function seldom breaks: pages in a browser, all that the documents
-# show, attacks, and the core compiled with a new number.
-LONG_TESTS := $(addprefix tests/,web report/test_print.py docs attack core/test_new_number.py)
-
-test: build ## the tests of the library and of its command line
-	$(BIN)/python -m pytest $(AT_ONCE) $(LONG_TESTS:%=--ignore=%)
-
-test-long: build ## the other tests: the page in a browser, what the documents show, attacks
-	$(BIN)/python -m pytest $(AT_ONCE) $(LONG_TESTS)
-
-coverage: build ## all tests, and how much of the Python code they run: fails below 95 % of the branches
+test: build ## the whole test suite; with COVERAGE=1 also how much of the Python code it runs
+ifdef COVERAGE
 	$(BIN)/coverage erase
 	$(BIN)/coverage run -m pytest $(AT_ONCE)
 	$(BIN)/python tests/helpers/covered.py
+else
+	$(BIN)/python -m pytest $(AT_ONCE)
+endif
+
+coverage: ## the same, counted: fails below 95 % of the branches
+	$(MAKE) test COVERAGE=1
 
 validation: build ## docs/validation.json from the tests' own numbers
 	$(BIN)/python -m pytest --record-validation=docs/validation.json

@@ -52,7 +52,7 @@ RIGHT = {
     "omega_start": 1.0, "omega_end": 10.0, "height": 2.0, "period": 8.0, "waypoints": fx.Pose(np.stack([HOME.position, UP.position])),
     "values": 1e-6 * np.arange(7.0), "refine": 0, "pose_samples": 4, "sensitivity": 0, "legs": (1, 2), "starts": 2, "bound": 10.0,
     "point": (0.0, 0.0, 0.01), "loss_factor": 0.01, "quantities": ("omega_1",), "at_least": 5.0, "gap": 1e-3, "section": 0.5,
-    "x": 0.0, "y": 0.0, "z": [0.24, 0.25], "roll": 0.0, "pitch": 0.0, "yaw": 0.0, "timeout": 1.0, "window": (0.0, 0.004), "time_limit": 0.5,
+    "x": 0.0, "y": 0.0, "z": [0.24, 0.25], "roll": 0.0, "pitch": 0.0, "yaw": 0.0, "timeout": 1.0, "window": (0.0, 0.004), "time_limit": 5.0,
 }  # fmt: skip
 OWN = {
     ("animate_mode", "path"): "a.gif", ("animate_simulation", "path"): "a.gif", ("animate_simulation", "frames"): 2,

@@ -53,13 +53,3 @@ def test_workflows_ask_for_what_the_makefile_has(path):
     asked = {match for step in steps for match in re.findall(r"make ([a-z-]+)", step.get("run", ""))}
     assert asked <= targets
     assert all(re.search(r"@(v\d+|release/v\d+)$", step["uses"]) for step in steps if "uses" in step)
-
-
-@pytest.mark.skipif(not (ROOT / ".ci" / "run").exists(), reason="a source distribution has no .ci/")
-def test_what_make_test_leaves_out_is_run_before_a_change_lands():
-    left_out = re.search(r"^LONG_TESTS := \$\(addprefix tests/,(.+)\)$", (ROOT / "Makefile").read_text(), re.MULTILINE)[
-        1
-    ]
-    assert all((ROOT / "tests" / name).exists() for name in left_out.split())
-    steps = re.findall(r"^step ([a-z-]+)$", (ROOT / ".ci" / "run").read_text(), re.MULTILINE)
-    assert {"test", "test-long"} <= set(steps)
