@@ -121,9 +121,10 @@ $(VENV)/.fuzz: $(VENV)/.built
 	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[fuzz]'
 	touch $@
 
+# By the same CMake as `build`: another one puts options in another order, and ccache finds nothing.
 dist: $(VENV)/.dist ## source distribution and wheel in dist/, checked, installed in a new environment and tried there
 	rm -rf dist build/dist
-	PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/python -m build
+	PATH=$(CURDIR)/$(BIN):$$PATH PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/python -m build
 	$(BIN)/twine check --strict dist/*
 	$(BIN)/check-wheel-contents dist/*.whl
 	$(BIN)/python tests/helpers/distribution.py dist
