@@ -97,13 +97,18 @@ def _bar(what: str) -> Iterator[Callable[[float], object] | None]:
             picture.close()
 
 
+def in_terminal() -> bool:
+    """Whether somebody may look on: standard error is a terminal."""
+    return sys.stderr is not None and sys.stderr.isatty()
+
+
 def _kind() -> Callable[[str, float], _Picture] | None:
     """How progress is shown here, if at all."""
     if threading.current_thread() is not threading.main_thread() or _is_worker():
         return None
     if _in_notebook():
         return _InNotebook
-    return _InTerminal if sys.stderr is not None and sys.stderr.isatty() else None
+    return _InTerminal if in_terminal() else None
 
 
 def _is_worker() -> bool:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Protocol
+
+from flexapod.progress import in_terminal
 
 
 class Report(Protocol):
@@ -20,7 +21,7 @@ def stages(quiet: bool, first: str = "") -> Iterator[Report]:
 
     first: the stage that is shown before it reports.
     """
-    if quiet or not sys.stderr.isatty():
+    if quiet or not in_terminal():
         yield lambda stage, share: None
         return
     from rich.console import Console

@@ -16,6 +16,7 @@ from flexapod.errors import InfeasibleError
 from flexapod.optimisation.design_results import OptimalDesign
 from flexapod.optimisation.design_search import optimise
 from flexapod.optimisation.pareto import ParetoFront, pareto_front
+from flexapod.progress import in_terminal
 from flexapod.report.studies import optimisation as studies
 from flexapod.report.study import Study
 
@@ -29,7 +30,7 @@ def compute(options: Options) -> Study:
     varied, kept = problem.variables(options.vary), problem.constraints(options.keep)
     found: OptimalDesign | ParetoFront
     with Stopping() as stop, TrialProgress() as bar:
-        if sys.stderr.isatty() and not options.as_json:
+        if in_terminal() and not options.as_json:
             bar(0, options.trials, math.nan)  # at once: to judge the design as it is takes a while
         settings = {**options.settings(), "on_trial": bar, "stop": stop}
         try:
