@@ -9,6 +9,7 @@ import click
 from flexapod.cli.options import common, figures
 from flexapod.cli.options.response import response_options
 from flexapod.cli.output.results import emit
+from flexapod.cli.output.stages import stages
 
 
 @click.command()
@@ -23,7 +24,8 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
     (compliance) or per leg command. With --amplitude also by the complete non-linear equations; with --psd also the RMS
     on a base that moves at random.
     """
-    from flexapod.cli.studies.response import compute
+    with stages(as_json, "frequencies") as report:
+        from flexapod.cli.studies.response import compute
 
-    found = compute(*common.machine(design, changes, pose), given, quiet=as_json)
+        found = compute(*common.machine(design, changes, pose), given, report)
     emit(found, given["out"], as_json)

@@ -9,6 +9,7 @@ import click
 from flexapod.cli.options import common, figures
 from flexapod.cli.options.simulate import simulate_options
 from flexapod.cli.output.results import emit
+from flexapod.cli.output.stages import stages
 
 
 @click.command()
@@ -25,7 +26,8 @@ def command(design: str, pose: tuple[float, ...] | None, changes: tuple[str, ...
 
     Example: flexapod simulate mukherjee-ii --harmonic z 1um 750 --duration 0.5 --out run
     """
-    from flexapod.cli.studies.simulate import compute
+    with stages(as_json, "simulation") as report:
+        from flexapod.cli.studies.simulate import compute
 
-    found = compute(*common.machine(design, changes, pose), given, quiet=as_json)
+        found = compute(*common.machine(design, changes, pose), given, report)
     emit(found, given["out"], as_json, more=[given["animate"]] if given["animate"] else [])

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from flexapod.cli.options import common, figures
 from flexapod.cli.options.points import point_option
 from flexapod.cli.output.results import emit_or_csv
+from flexapod.cli.output.stages import stages
+
+if TYPE_CHECKING:
+    from flexapod.report.study import Study
 
 
 @click.command()
@@ -40,7 +45,7 @@ from flexapod.cli.output.results import emit_or_csv
 @common.out_option("Where to write the report, the figure and the tables. Default: nothing is written.")
 @figures.options("--out")
 @common.json_option
-def command(**given: Any) -> None:
+def command(out: Path | None, as_json: bool, as_csv: bool, **given: Any) -> None:
     """Leg forces, deflections and stiffness of DESIGN at rest in many load cases, from --elevation or FILE.
 
     FILE is CSV with a row for each case. Columns, each if wanted: case; elevation, base_roll (degrees) or gravity_x,
@@ -52,7 +57,11 @@ def command(**given: Any) -> None:
     flexapod statics motion-base --elevation 90:15:6 --reference 90 --point 0 0 0.5 --out statics
     flexapod statics motion-base cases.csv --csv
     """
-    from flexapod.cli.studies.statics import Options, compute
 
-    options = Options(**given)
-    emit_or_csv(lambda: compute(options), options.out, options.as_json, "statics.csv" if options.as_csv else None)
+    def found() -> Study:
+        with stages(as_json or as_csv, "load cases"):
+            from flexapod.cli.studies.statics import Options, compute
+
+            return compute(Options(**given))
+
+    emit_or_csv(found, out, as_json, "statics.csv" if as_csv else None)

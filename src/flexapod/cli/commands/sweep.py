@@ -9,6 +9,7 @@ import click
 from flexapod.cli.options import common, figures
 from flexapod.cli.options.sweep import Options, machine_options, output_options, poses_options, reading_options
 from flexapod.cli.output.results import emit
+from flexapod.cli.output.stages import stages
 
 
 @click.command()
@@ -29,7 +30,9 @@ def command(**given: Any) -> None:
     flexapod sweep mukherjee-i --grid x=-0.1:0.3:81,y=0:0.4:81 --figure map.png
     flexapod sweep mukherjee-i --around 0.1 20 --points 100000000 --out map.zarr
     """
-    from flexapod.cli.studies.sweep import compute
-
     options = Options(**given)
-    emit(compute(options), None, options.as_json, listed="")
+    with stages(options.as_json, "" if options.streamed else "sweep") as report:  # a store has a bar of its own
+        from flexapod.cli.studies.sweep import compute
+
+        found = compute(options, report)
+    emit(found, None, options.as_json, listed="")

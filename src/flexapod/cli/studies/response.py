@@ -8,11 +8,10 @@ import click
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from rich.console import Console
-from rich.progress import Progress
 
 from flexapod.cli.options.given import needed
 from flexapod.cli.options.quantities import read
+from flexapod.cli.output.stages import Report
 from flexapod.cli.studies.shaking import read_shaking
 from flexapod.conventions import AXES, LEGS, ROTATIONS, Array
 from flexapod.design.hexapod import Hexapod
@@ -28,11 +27,8 @@ from flexapod.vibration.random_vibration import random_response
 from flexapod.vibration.stepped import stepped_sine
 
 
-def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) -> Study:
-    """The response to what the options say, and, where asked for, that of the non-linear machine and to random motion.
-
-    quiet: without progress.
-    """
+def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], report: Report) -> Study:
+    """The response, and where asked for that of the non-linear machine and to random motion."""
     _check(given)
     linear = linearise(hexapod, pose, joint=given["joint"])
     poles = complex_poles(linear, losses(hexapod, linear, given["loss_factor"]))
@@ -43,7 +39,7 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
         raise click.UsageError(f"--omega-min and --omega-max: {error}") from error
     options = {key: given[key] for key in ("point", "loss_factor", "joint")}
     response = transmissibility(hexapod, pose, omega=grid_around(poles, *ends, given["points"]), **options)
-    stepped = None if given["amplitude"] is None else _stepped(hexapod, pose, given, (low, high), quiet)
+    stepped = None if given["amplitude"] is None else _stepped(hexapod, pose, given, (low, high), report)
     shaking = read_shaking(given["psd"], given["loads"], given["at"])
     random = None if shaking is None else random_response(hexapod, pose, **shaking.given, **options)
     found = ResponseFindings(
@@ -96,21 +92,23 @@ def _variable(given: dict[str, Any]) -> str:
     return {"wrench": "compliance", "command": "command"}[given["source"]]
 
 
-def _stepped(hexapod: Hexapod, pose: Pose, given: dict[str, Any], ends: tuple[float, float], quiet: bool) -> xr.Dataset:
+def _stepped(
+    hexapod: Hexapod, pose: Pose, given: dict[str, Any], ends: tuple[float, float], report: Report
+) -> xr.Dataset:
     omega = np.geomspace(*ends, given["steps"])
     dimension = "angle" if _axis(given) in ROTATIONS else "length"
-    with Progress(console=Console(stderr=True), disable=quiet, transient=True) as bar:
-        task = bar.add_task(f"stepped sine, {omega.size} frequencies", total=1.0)
-        return stepped_sine(
-            hexapod,
-            pose,
-            omega=omega,
-            amplitude=read(given["amplitude"], dimension, "--amplitude", need="> 0"),
-            axis=_axis(given),
-            point=given["point"],
-            joint=given["joint"],
-            progress=lambda done: bar.update(task, completed=done),
-        )
+    stage = f"stepped sine, {omega.size} frequencies"
+    report(stage, 0.0)
+    return stepped_sine(
+        hexapod,
+        pose,
+        omega=omega,
+        amplitude=read(given["amplitude"], dimension, "--amplitude", need="> 0"),
+        axis=_axis(given),
+        point=given["point"],
+        joint=given["joint"],
+        progress=lambda share: report(stage, share),
+    )
 
 
 def _peaks(found: ResponseFindings, moving: NDArray[np.bool_], at_modes: xr.Dataset | None) -> Array:

@@ -8,12 +8,11 @@ from typing import Any
 
 import click
 import xarray as xr
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from flexapod.cli.options.drives import drives
 from flexapod.cli.options.given import needed
 from flexapod.cli.output.results import write
+from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import SimulationError
 from flexapod.mechanics.cautions import Caution
@@ -26,15 +25,15 @@ from flexapod.report.study import Study
 from flexapod.simulation.time_simulation import simulate
 
 
-def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) -> Study:
-    """The motion that the options ask for, and its moving picture. quiet: without progress."""
+def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], report: Report) -> Study:
+    """The motion that the options ask for, and its moving picture."""
     needed(given["random"], "random motion, which --random asks for", "seed")
     needed(given["animate"], "the moving picture, which --animate asks for", "exaggeration")
     if given["animate"] is not None:
         animation.check_path(given["animate"])
     began = time.perf_counter()
     try:
-        dataset = _simulate(hexapod, pose, given, quiet)
+        dataset = _simulate(hexapod, pose, given, report)
     except SimulationError as error:
         if error.result is not None and given["out"] is not None:
             write(study(hexapod, pose, error.result), make_directory(given["out"]))
@@ -42,13 +41,14 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) ->
         raise
     took = time.perf_counter() - began
     if given["animate"] is not None:
-        animation.animate_simulation(dataset, hexapod, given["animate"], exaggeration=given["exaggeration"])
+        told: dict[str, Any] = {"progress": lambda share: report("frames", share)}
+        animation.animate_simulation(dataset, hexapod, given["animate"], exaggeration=given["exaggeration"], **told)
     idle = "Nothing drives the machine: what moves is rounding. Give --harmonic, --shock or the like."
     driven = drives(given) or given["unloaded"]
     return study(hexapod, pose, dataset, took, [] if driven else [Caution("idle", idle)])
 
 
-def _simulate(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) -> xr.Dataset:
+def _simulate(hexapod: Hexapod, pose: Pose, given: dict[str, Any], report: Report) -> xr.Dataset:
     if given["duration"] is None and not given["recording"]:
         raise click.UsageError("Missing option '--duration': how long is simulated, as 0.5, 500ms or 2min.")
     settings: dict[str, Any] = {
@@ -64,15 +64,7 @@ def _simulate(hexapod: Hexapod, pose: Pose, given: dict[str, Any], quiet: bool) 
             if name in loads:
                 raise click.UsageError(f"--{name} and a drive of {name} were given; a {name} is constant or driven.")
             loads[name] = given[name]
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.percentage:.0f} %"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True), disable=quiet, transient=True) as bar:
-        task = bar.add_task("simulating", total=1.0)
-        settings["progress"] = lambda done: bar.update(task, completed=done)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # they are in the result, and shown with it
-            return simulate(hexapod, pose, duration=given["duration"], **loads, **settings)
+    settings["progress"] = lambda share: report("simulation", share)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)  # they are in the result, and shown with it
+        return simulate(hexapod, pose, duration=given["duration"], **loads, **settings)

@@ -55,9 +55,6 @@ class Options:
     reference: str | None
     point: PointGiven
     axes: Any
-    as_csv: bool
-    as_json: bool
-    out: Path | None
 
 
 class _Cases(NamedTuple):

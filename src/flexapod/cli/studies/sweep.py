@@ -18,6 +18,7 @@ from flexapod.cli.options.poses import box_of, grid_of, read_poses
 from flexapod.cli.options.sweep import DEFAULT_POINTS, Options
 from flexapod.cli.output.interrupt import CutShort, OutOfTime, Stopping
 from flexapod.cli.output.progress import PoseProgress
+from flexapod.cli.output.stages import Report
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
 from flexapod.plots import sweep as plots
@@ -42,7 +43,7 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-def compute(options: Options) -> Study:
+def compute(options: Options, report: Report) -> Study:
     """The sweep that the options ask for, its summary, its worst pose and its figure."""
     hexapod = common.load_design(options.design, options.changes)
     points, box = _points(hexapod, options)
@@ -82,6 +83,7 @@ def compute(options: Options) -> Study:
         summary = judged(lambda: summarise(found, options.at_least, all_poses=everywhere))
     if options.worst and box is not None:
         given: dict[str, Any] = {"joint": options.joint, "seed": options.seed, "threads": options.threads}
+        given["progress"] = lambda share: report("worst pose", share)
         worst = judged(lambda: worst_pose(hexapod, box, **given, all_poses=everywhere))
     notes = list(dict.fromkeys(notes))
     return study(hexapod, found, options.out, summary, worst, all_poses=everywhere, notes=notes)
