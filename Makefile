@@ -83,7 +83,8 @@ CORE_TESTS := $(addprefix tests/,core mechanics excitation simulation workspace/
                 vibration/test_stepped.py optimisation/test_optimise.py control/test_control.py)
 LONG       := thousand_periods or keeps_its_energy or progress_goes or settles_to or run_from_rest or better_design or \
               mean_over or angles_and_deflection or holds_up or bad_input or symmetric_family or pareto or number_of_each_leg or \
-              (in_the_proof and table) or boxes_outside_of_limits
+              (in_the_proof and table) or boxes_outside_of_limits or make_up_the_box or (condition_of_h and mukherjee) or \
+              (no_contradiction and (1 or 4 or 7)) or (inside_steps and (swing or floor))
 PRELOADED   = $(shell $(CXX) -print-file-name=libasan.so) $(shell $(CXX) -print-file-name=libstdc++.so)
 
 sanitized: $(SANITIZED)/.built ## the core compiled with them, so far
@@ -121,15 +122,18 @@ $(VENV)/.fuzz: $(VENV)/.built
 	$(BIN)/python -m pip install -q -c constraints.txt --no-build-isolation -e '.[fuzz]'
 	touch $@
 
-# By the same CMake as `build`: another one puts options in another order, and ccache finds nothing.
+# By the same CMake as `build`: another one puts options in another order, and ccache finds nothing. It finds all that
+# `build` compiled where ISOLATION=--no-isolation, and where CCACHE_BASEDIR was src/ then: the sources are under it here.
 dist: $(VENV)/.dist ## source distribution and wheel in dist/, checked, installed in a new environment and tried there
 	rm -rf dist build/dist
-	PATH=$(CURDIR)/$(BIN):$$PATH PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/python -m build
+	mkdir -p build/dist
+	TMPDIR=$(CURDIR)/build/dist CCACHE_BASEDIR=$(CURDIR)/build/dist PATH=$(CURDIR)/$(BIN):$$PATH \
+	  PIP_CONSTRAINT=$(CURDIR)/constraints.txt $(BIN)/python -m build $(ISOLATION)
 	$(BIN)/twine check --strict dist/*
 	$(BIN)/check-wheel-contents dist/*.whl
 	$(BIN)/python tests/helpers/distribution.py dist
 	$(PYTHON) -m venv build/dist/venv
-	build/dist/venv/bin/python -m pip install -q -c constraints.txt dist/*.whl
+	build/dist/venv/bin/python -m pip install -q --no-compile -c constraints.txt dist/*.whl
 	cd build/dist && venv/bin/python $(CURDIR)/tests/helpers/smoke.py
 
 $(VENV)/.dist: $(VENV)/.built
