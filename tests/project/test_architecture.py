@@ -2,6 +2,8 @@
 
 import ast
 import re
+from collections.abc import Iterable
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -73,13 +75,19 @@ def place(path: Path) -> str:
     return path.relative_to(SOURCE).parts[0].removesuffix(".py")
 
 
-def imported(tree: ast.Module) -> set[str]:
+@cache
+def nodes_of(path: Path) -> list[ast.AST]:
+    """All of a file's syntax tree, its root first."""
+    return list(ast.walk(ast.parse(path.read_text())))
+
+
+def imported(nodes: Iterable[ast.AST]) -> set[str]:
     """Names directly below flexapod that a file imports: also for types, inside functions, and by import_module.
 
     A module that imports flexapod itself can reach every name, and counts as one that imports the top.
     """
     names = set()
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names if alias.name.split(".")[0] == "flexapod"}
         elif isinstance(node, ast.ImportFrom) and node.module == "flexapod":
@@ -87,10 +95,20 @@ def imported(tree: ast.Module) -> set[str]:
         elif isinstance(node, ast.ImportFrom):
             assert node.level == 0, "imports are absolute"
             names |= {node.module} if node.module and node.module.startswith("flexapod.") else set()
-        elif isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] == "import_module":
+        elif isinstance(node, ast.Call) and _called(node.func) == "import_module":
             names |= {text for text in _strings(node.args[0]) if text.split(".")[0] == "flexapod"}
     below = {name.split(".")[1] if "." in name else "flexapod" for name in names}
     return below - {"__version__", "_version"}
+
+
+@cache
+def imported_by(path: Path) -> set[str]:
+    return imported(nodes_of(path))
+
+
+def _called(function: ast.expr) -> str | None:
+    """The last part of the name of what is called."""
+    return getattr(function, "attr", getattr(function, "id", None))
 
 
 def _strings(node: ast.expr) -> set[str]:
@@ -116,16 +134,16 @@ def test_imports_only_point_down(path):
     here = place(path)
     if here == "__init__":
         return  # it names everything, lazily, in its stub
-    above = {name for name in imported(ast.parse(path.read_text())) if name != here and floor(name) >= floor(here)}
+    above = {name for name in imported_by(path) if name != here and floor(name) >= floor(here)}
     assert not above, f"{here} imports {sorted(above)}, which do not lie below it"
 
 
 @pytest.mark.parametrize("name", [name for name in ORDER if (SOURCE / name).is_dir()])
 def test_a_package_says_what_it_imports(name):
     files = sorted((SOURCE / name).rglob("*.py"))
-    used = set().union(*(imported(ast.parse(path.read_text())) for path in files)) - {name}
+    used = set().union(*map(imported_by, files)) - {name}
     packages = [other for other in ORDER if other in used and (SOURCE / other).is_dir()]
-    doc = ast.get_docstring(ast.parse((SOURCE / name / "__init__.py").read_text()))
+    doc = ast.get_docstring(nodes_of(SOURCE / name / "__init__.py")[0])
     said = " ".join(doc.partition("May import: ")[2].split())
     assert said == f"{', '.join(packages) or 'no other package'}."
 
@@ -135,15 +153,14 @@ def test_the_rule_sees_a_wrong_import():
         "from flexapod import cli, errors\nimport flexapod.report.page\nfrom flexapod.pose import Pose\n"
         "def late():\n    import flexapod as fx\n    import_module(f'flexapod.web.{name}')\n"
     )
-    assert imported(ast.parse(code)) == {"cli", "errors", "report", "pose", "flexapod", "web"}
+    assert imported(ast.walk(ast.parse(code))) == {"cli", "errors", "report", "pose", "flexapod", "web"}
     assert floor("mechanics") < floor("workspace") < floor("cli") < floor("flexapod")
 
 
 @pytest.mark.parametrize("path", FILES, ids=IDS)
 def test_files_and_functions_are_small(path):
-    text = path.read_text()
-    assert len(text.splitlines()) <= 450
-    for node in ast.walk(ast.parse(text)):
+    assert len(path.read_text().splitlines()) <= 450
+    for node in nodes_of(path):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             first = node.body[1] if ast.get_docstring(node) and len(node.body) > 1 else node.body[0]
             lines = (node.end_lineno or 0) - first.lineno + 1
