@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from flexapod import _core
 from flexapod.checks import numbers
@@ -138,13 +138,18 @@ def states(hexapod: Hexapod, platform: MotionLike | None, base: MotionLike | Non
         raise PoseError(f"pose has batch axes {axes[0]}, base {axes[1]}; they must be equal or 1.") from None
     rows = [np.ascontiguousarray(_spread(rows, shape).reshape(-1, _core.motion_size)) for rows in given]
     length, sine = _core.leg_fit(hexapod.packed, *rows)
-    shortest = _core.shortest_leg(hexapod.packed)
-    good = np.all((length >= shortest) & (sine >= LEAST_SINE), axis=1, keepdims=True)
+    good = taken(hexapod, length, sine)
     if not good.all():
         if not shape:
-            _refuse(shortest, length[0], sine[0])
-        rows[0] = np.where(good, rows[0], np.nan)
+            _refuse(hexapod, length[0], sine[0])
+        rows[0] = np.where(good.all(axis=1, keepdims=True), rows[0], np.nan)
     return States(rows[0], rows[1], shape)
+
+
+def taken(hexapod: Hexapod, length: Array, sine: Array) -> NDArray[np.bool_]:
+    """Whether a leg of such length can be, and its universal joint can turn at such a sine (`_core.leg_fit`)."""
+    good: NDArray[np.bool_] = (length >= _core.shortest_leg(hexapod.packed)) & (sine >= LEAST_SINE)
+    return good
 
 
 def _numbers(state: Pose | Motion) -> Array:
@@ -155,10 +160,10 @@ def _numbers(state: Pose | Motion) -> Array:
     return np.concatenate([packed, np.zeros((*state.shape, _core.motion_size - packed.shape[-1]))], axis=-1)
 
 
-def _refuse(shortest: float, length: Array, sine: Array) -> None:
+def _refuse(hexapod: Hexapod, length: Array, sine: Array) -> None:
     """Raises PoseError for the first leg that has no length, or lies along its universal joint's axis."""
-    i = int(np.argmin((length >= shortest) & (sine >= LEAST_SINE)))
-    if length[i] < shortest:
+    i = int(np.argmin(taken(hexapod, length, sine)))
+    if length[i] < _core.shortest_leg(hexapod.packed):
         raise PoseError(
             f"leg {i + 1} has length {length[i]:.3g} m at this pose; its joints must not meet. Move the platform."
         )

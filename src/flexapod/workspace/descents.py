@@ -10,8 +10,6 @@ import numpy as np
 from flexapod.conventions import Array, JointModel
 from flexapod.design.hexapod import Hexapod
 from flexapod.errors import PoseError
-from flexapod.mechanics.inputs import states
-from flexapod.pose import Pose
 from flexapod.workspace.box import Box, Workspace
 from flexapod.workspace.box_minimum import apart, constrained_minimum, smooth_minimum
 from flexapod.workspace.coordinates import AtCoordinates
@@ -39,9 +37,7 @@ class SquaredFrequency:
 
     def __call__(self, six: Array) -> tuple[float, Array]:
         """omega^2 and its derivatives by the coordinates; zero at a pose that no leg can take, which it falls to."""
-        try:
-            states(self.hexapod, Pose.from_rpy(*six))
-        except PoseError:
+        if not (np.isfinite(six).all() and self._at.taken(six)):
             return 0.0, np.zeros(6)
         omega, slope = (found[0] for found in self._at(six).frequencies())
         self.scale = max(self.scale, float(omega[-1]))
