@@ -56,13 +56,13 @@ def revolved(radius, diameter, poisson, *, finer=1):
 
     def strain_of(wave):
         def strain(shape, along, over, r):
-            matrix = np.zeros((6, 27))
+            matrix, round_ = np.zeros((len(r), 6, 27)), shape / r[:, None]
             w, u, v = slice(0, 27, 3), slice(1, 27, 3), slice(2, 27, 3)
-            matrix[0, w], matrix[1, u] = along, over
-            matrix[2, u], matrix[2, v] = shape / r, wave * shape / r
-            matrix[3, w], matrix[3, u] = over, along
-            matrix[4, w], matrix[4, v] = -wave * shape / r, along
-            matrix[5, u], matrix[5, v] = -wave * shape / r, over - shape / r
+            matrix[:, 0, w], matrix[:, 1, u] = along, over
+            matrix[:, 2, u], matrix[:, 2, v] = round_, wave * round_
+            matrix[:, 3, w], matrix[:, 3, u] = over, along
+            matrix[:, 4, w], matrix[:, 4, v] = -wave * round_, along
+            matrix[:, 5, u], matrix[:, 5, v] = -wave * round_, over - round_
             return matrix
 
         return strain
@@ -89,9 +89,9 @@ def _plane_stress(poisson):
 
 
 def _plane_strain(shape, along, over, y):
-    matrix = np.zeros((3, 18))
-    matrix[0, ::2], matrix[1, 1::2] = along, over
-    matrix[2, ::2], matrix[2, 1::2] = over, along
+    matrix = np.zeros((len(y), 3, 18))
+    matrix[:, 0, ::2], matrix[:, 1, 1::2] = along, over
+    matrix[:, 2, ::2], matrix[:, 2, 1::2] = over, along
     return matrix
 
 
@@ -124,15 +124,13 @@ class _Mesh:
 
     def solve(self, kinds, law, strain, about, of, pull, held):
         """Displacements under that stress, and its loads."""
-        rows, columns, values = [], [], []
-        for i, j in product(range(0, self.x.shape[0] - 2, 2), range(0, self.x.shape[1] - 2, 2)):
-            nodes = self.number[i : i + 3, j : j + 3].ravel()
-            place = (kinds * nodes[:, None] + np.arange(kinds)).ravel()
-            rows.append(np.repeat(place, place.size))
-            columns.append(np.tile(place, place.size))
-            values.append(_element(self.x.ravel()[nodes], self.y.ravel()[nodes], law, strain, about).ravel())
+        firsts = product(range(0, self.x.shape[0] - 2, 2), range(0, self.x.shape[1] - 2, 2))
+        nodes = np.stack([self.number[i : i + 3, j : j + 3].ravel() for i, j in firsts])
+        place = (kinds * nodes[..., None] + np.arange(kinds)).reshape(len(nodes), -1)
+        values = _elements(self.x.ravel()[nodes], self.y.ravel()[nodes], law, strain, about)
+        rows, columns = (np.broadcast_to(p, values.shape).ravel() for p in (place[:, :, None], place[:, None]))
         load = self._load(kinds, about, of, pull)
-        stiffness = coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))).tocsc()
+        stiffness = coo_matrix((values.ravel(), (rows, columns))).tocsc()
         free, moved = ~held, np.zeros(load.size)
         moved[free] = spsolve(stiffness[free][:, free], load[free])
         return moved, load
@@ -148,15 +146,16 @@ class _Mesh:
         return load
 
 
-def _element(x, y, law, strain, about):
-    total = 0.0
+def _elements(x, y, law, strain, about):
+    """(elements, n, n): their stiffness, of nodes (elements, 9)."""
+    total, nodes = 0.0, np.stack([x, y], -1)
     for (one, first), (other, second) in product(zip(POINTS, WEIGHTS, strict=True), repeat=2):
         shape = np.outer(_line(one), _line(other)).ravel()
         slopes = np.stack([np.outer(_slope(one), _line(other)).ravel(), np.outer(_line(one), _slope(other)).ravel()])
-        jacobian = slopes @ np.stack([x, y], 1)
-        along, over = np.linalg.solve(jacobian, slopes)
-        matrix = strain(shape, along, over, shape @ y)
-        total = total + first * second * np.linalg.det(jacobian) * about(shape @ y) * matrix.T @ law @ matrix
+        jacobian, r = slopes @ nodes, y @ shape
+        along, over = np.moveaxis(np.linalg.inv(jacobian) @ slopes, 1, 0)
+        matrix, size = strain(shape, along, over, r), first * second * np.linalg.det(jacobian) * about(r)
+        total = total + size[:, None, None] * (matrix.swapaxes(1, 2) @ (law @ matrix))
     return total
 
 

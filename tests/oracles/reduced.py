@@ -48,7 +48,9 @@ def tangent(mechanism: Mechanism) -> Tangent:
     """The tangent about the start, in the coordinates of `flexapod.linearise`."""
     tree = mechanism.tree(mechanism.start)
     N = _allowed(mechanism, tree)
-    K = np.column_stack([-difference(lambda t, i=i: _force(mechanism, i, t), mechanism.steps[i]) for i in range(6)])
+    K = np.column_stack(
+        [-difference(lambda t, i=i: _force(mechanism, t * N[:, i]), mechanism.steps[i]) for i in range(6)]
+    )
     T = np.linalg.inv(tree.platform @ N)
     M, C = (T.T @ N.T @ matrix @ N @ T for matrix in (tree.mass, tree.damping))
     return Tangent(M, C, T.T @ K @ T, T.T @ N.T @ tree.force)
@@ -64,15 +66,16 @@ def _allowed(mechanism: Mechanism, tree: Tree) -> np.ndarray:
     return N
 
 
-def _force(mechanism: Mechanism, i: int, t: float) -> np.ndarray:
-    """Projected force after one chosen joint has moved by t and the others have closed the loops."""
-    tree = mechanism.tree(mechanism.start)
-    others = np.setdiff1d(np.arange(tree.mass.shape[0]), mechanism.chosen)
-    q = mechanism.moved(mechanism.start, t * _allowed(mechanism, tree)[:, i])
+def _force(mechanism: Mechanism, dv: np.ndarray) -> np.ndarray:
+    """Projected force after all joints have moved by dv and those that were not chosen have closed the loops."""
+    others = np.setdiff1d(np.arange(len(dv)), mechanism.chosen)
+    q = mechanism.moved(mechanism.start, dv)
     for _ in range(6):
         tree = mechanism.tree(q)
-        step = np.zeros(tree.mass.shape[0])
+        step = np.zeros(len(dv))
         step[others] = -np.linalg.solve(tree.closure[:, others], tree.gap)
         q = mechanism.moved(q, step)
+        if np.abs(step).max() < 1e-9:  # m or rad, of which Newton's method leaves no more than the square
+            break
     tree = mechanism.tree(q)
     return _allowed(mechanism, tree).T @ tree.force
