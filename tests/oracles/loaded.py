@@ -2,6 +2,7 @@
 
 import json
 import xml.etree.ElementTree as ET
+from functools import cached_property
 from pathlib import Path
 
 import mujoco
@@ -52,7 +53,7 @@ class Pinocchio:
     """A tree in Pinocchio, closed at points. `chosen`: the joints whose velocities stand for the mechanism's."""
 
     def __init__(self, model, chosen: list[str], size: float) -> None:
-        self.model, self.data = model, model.createData()
+        self.model = model
         self.springs: list[tuple[int, float, float]] = []  # joint, stiffness, rest
         self.closures: list[tuple[int, int, float, np.ndarray, np.ndarray]] = []  # frames, friction, springs
         first = [model.joints[model.getJointId(name)] for name in chosen]
@@ -76,9 +77,12 @@ class Pinocchio:
             frames.append(self.model.addFrame(pin.Frame(name, frame.parentJoint, placement, pin.OP_FRAME)))
         self.closures.append((*frames, friction, np.broadcast_to(stiffness, 3), np.broadcast_to(rest, 3)))
 
+    @cached_property
+    def data(self):
+        return self.model.createData()
+
     def tree(self, q) -> Tree:
-        model = self.model
-        data = self.data = model.createData()
+        model, data = self.model, self.data
         pin.computeJointJacobians(model, data, q)
         pin.updateFramePlacements(model, data)
         upper = np.triu(pin.crba(model, data, q))
