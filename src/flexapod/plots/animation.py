@@ -5,6 +5,7 @@ GIF needs nothing more; MP4 needs the extra "video" (imageio-ffmpeg).
 
 from __future__ import annotations
 
+import io
 from collections.abc import Callable
 from contextlib import nullcontext
 from pathlib import Path
@@ -38,6 +39,7 @@ __all__ = ["animate_mode", "animate_simulation"]
 _TRAVEL = 0.12  # of the machine's size: the largest joint motion shown, where no factor is given
 _WIDEST = 100.0  # sizes of the machine: motions shown larger than this are seen no more
 _FPS = 16
+_DPI = 100
 _PER_PERIOD = 16  # frames of a period that show a vibration
 
 
@@ -236,9 +238,10 @@ class _Film(NamedTuple):
             )
         figure, draw = _stage(self.top, self.feet, size + 2 * factor * travel)
         entitle(figure, title)
+        _as_picture(figure)
         caption = figure.text(0.5, 0.03, "", ha="center", color=ink(), fontsize=letters("axes.labelsize"))
         writer, settings = _writer(Path(path))
-        with completed(path) as making, settings, writer.saving(figure, str(making), dpi=100):
+        with completed(path) as making, settings, writer.saving(figure, str(making), dpi=_DPI):
             for i, (x, x_b) in enumerate(zip(factor * self.platform, factor * self.base, strict=True)):
                 draw(*self.joints(x, x_b))
                 caption.set_text(f"motion shown {factor:.6g} times larger; {notes[i]}")
@@ -304,6 +307,28 @@ def _stage(top: Array, feet: Array, width: float) -> tuple[Figure, Callable[[Arr
     return figure, draw
 
 
+def _as_picture(figure: Figure) -> None:
+    """The words of a figure as they are drawn, below its axes: to lay them out takes longer than to draw a machine."""
+    from matplotlib import rc_context
+
+    axes, words = figure.axes, list(figure.texts)
+    drawn = io.BytesIO()
+    for ax in axes:
+        ax.set_visible(False)
+    with rc_context({"savefig.bbox": None}):
+        figure.savefig(drawn, format="rgba", dpi=_DPI)
+    for ax in axes:
+        ax.set_visible(True)
+    for word in words:
+        word.remove()
+    width = int(figure.get_figwidth() * _DPI + 1e-8)
+    pixels = np.frombuffer(drawn.getvalue(), np.uint8).reshape(-1, width, 4)
+    covered = np.flatnonzero((pixels != pixels[0, 0]).any(axis=(1, 2)))
+    if covered.size:
+        first, last = covered[[0, -1]]
+        figure.figimage(pixels[first : last + 1], 0, len(pixels) - 1 - last, origin="upper", zorder=-1)
+
+
 def check_path(path: Path) -> None:
     """Raises ArgumentError, MissingExtraError or OutputError, before the work, for a file that cannot be one."""
     if path.suffix.lower() not in (".gif", ".mp4"):
@@ -319,11 +344,13 @@ def _ffmpeg() -> str:
 
 def _writer(path: Path) -> tuple[AbstractMovieWriter, Any]:
     from matplotlib import rc_context
-    from matplotlib.animation import FFMpegWriter, PillowWriter
+    from matplotlib.animation import FFMpegWriter
+
+    from flexapod.plots.gif import GifWriter
 
     check_path(path)
     if path.suffix.lower() == ".gif":
-        return PillowWriter(fps=_FPS), nullcontext()
+        return GifWriter(fps=_FPS), nullcontext()
     writer = FFMpegWriter(fps=_FPS, codec="libx264", extra_args=["-pix_fmt", "yuv420p"])
     return writer, rc_context({"animation.ffmpeg_path": _ffmpeg()})
 
