@@ -8,15 +8,18 @@ from typing import Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
+from flexapod import _core
 from flexapod.certificates.question import Question, known_poses, none_known, rotated
 from flexapod.conventions import Array
 from flexapod.design.hexapod import Hexapod
+from flexapod.design.strays import strayed_numbers
+from flexapod.mechanics.inputs import as_joint
 from flexapod.mechanics.joint_limits import check_limits
 from flexapod.workspace.box import Box, Workspace
 from flexapod.workspace.descents import BoxSearch, SquaredFrequency
 from flexapod.workspace.limit_margins import LimitMargins, margins_to_keep, none_within
 from flexapod.workspace.proof import Boxes, Place, six_of
-from flexapod.workspace.quantities import evaluate
+from flexapod.workspace.quantities import evaluate, kernel_limits
 from flexapod.workspace.worst import worst_pose
 
 _SAMPLES, _STARTS = 2**13, 12  # of a region; each of its boxes gets a part of them
@@ -61,8 +64,8 @@ def _most_adverse(
     return found
 
 
-def worse_of(quantity: Quantity, value: float, than: float) -> bool:
-    """Whether a value of a quantity is more adverse than another."""
+def worse_of(quantity: Quantity, value: Any, than: Any) -> Any:
+    """Whether a value of a quantity is more adverse than another, or each of some values."""
     return value < than if quantity == "omega_1" else value > than
 
 
@@ -73,21 +76,26 @@ def of_strays(question: Question, values: tuple[float, ...] = ()) -> Question:
 
 def strayed_from(question: Question, known: Known, quantity: Quantity) -> Known:
     """The same pose with the strays at the ends to which their slopes there point, if that is more adverse."""
-    signs = np.empty(len(question.strays))
-    for k in range(len(signs)):
-        ends = []
-        for side in (-1.0, 1.0):
-            values = np.array(known.strayed or np.zeros(len(signs)))
-            values[k] = side
-            ends.append(_value(question, tuple(values), known.pose, quantity))
-        signs[k] = 1.0 if worse_of(quantity, ends[1], ends[0]) else -1.0
-    value = _value(question, tuple(signs), known.pose, quantity)
-    return known._replace(value=value, strayed=tuple(signs)) if worse_of(quantity, value, known.value) else known
+    each, own = np.arange(len(question.strays)), np.array(known.strayed or np.zeros(len(question.strays)))
+    ends = np.tile(own, (2, len(own), 1))
+    ends[0, each, each], ends[1, each, each] = -1.0, 1.0
+    at_least, at_most = (_values(question, end, known.pose, quantity) for end in ends)
+    signs = tuple(np.where(worse_of(quantity, at_most, at_least), 1.0, -1.0).tolist())
+    value = _value(question, signs, known.pose, quantity)
+    return known._replace(value=value, strayed=signs) if worse_of(quantity, value, known.value) else known
 
 
 def _value(question: Question, values: tuple[float, ...], pose: Array, quantity: Quantity) -> float:
     design = question.design(values)
     return float(evaluate(design, pose[None], (quantity,), question.joint, 1)[quantity][0])
+
+
+def _values(question: Question, values: Array, pose: Array, quantity: Quantity) -> Array:
+    """The same of many designs, rows of values, which are not checked."""
+    designs = strayed_numbers(question.hexapod, question.strays, values, question.payload)
+    joint, asked, limits = as_joint(question.joint), _core.SWEEP_ARRAYS[quantity], kernel_limits(question.hexapod)
+    found = [_core.sweep(design, joint, pose[None], asked, limits, 1)[quantity][0] for design in designs]
+    return np.array(found)
 
 
 def _least_index(question: Question, threads: int) -> Known:

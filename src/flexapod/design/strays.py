@@ -12,7 +12,7 @@ from flexapod.conventions import TRANSLATIONS, Array
 from flexapod.design import layout
 from flexapod.design.form_numbers import with_numbers
 from flexapod.design.hexapod import Hexapod
-from flexapod.design.payload import with_payload
+from flexapod.design.payload import add_payload, with_payload
 
 #: Keys of the numbers that may stray.
 KEYS = ("base.joints", "platform.joints", "platform.mass_center")
@@ -59,6 +59,16 @@ def strayed(
         return hexapod
     mass, *place = payload
     return with_payload(hexapod, mass, np.array(place) + changes[list(AT_PAYLOAD)], np.zeros((3, 3)))
+
+
+def strayed_numbers(hexapod: Hexapod, strays: Sequence[Stray], values: Array, payload: Sequence[float] = ()) -> Array:
+    """`Hexapod.packed` of what `strayed` makes of each row of values (m, n), unchecked: (m, design_size)."""
+    changes = values @ rows_of(strays)
+    designs = np.asarray(hexapod.packed + changes[:, : _core.design_size])
+    if len(payload):
+        mass, *place = payload
+        add_payload(designs, np.full(len(designs), mass), np.array(place) + changes[:, AT_PAYLOAD])
+    return designs
 
 
 def data_of(strays: Sequence[Stray]) -> list[dict[str, Any]]:
