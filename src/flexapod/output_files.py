@@ -116,16 +116,21 @@ def write_figure(
 
 
 @contextmanager
-def drawn_once(figure: Figure) -> Iterator[None]:
-    """While a figure is saved: of the drawing that Matplotlib makes to lay it out, only the layout is made."""
+def drawn_once(figure: Figure, tight: bool = False) -> Iterator[None]:
+    """While a figure is saved: of the drawing that Matplotlib makes to lay it out, only the layout is made.
+
+    tight: it is cut to what is drawn, for which Matplotlib draws it first in any case.
+    """
     engine = figure.get_layout_engine()
-    if engine is None:
+    spatial = any(hasattr(ax, "get_zlabel") for ax in figure.axes)
+    if engine is None and (not tight or spatial):  # a drawing is what lays out axes of space
         yield
         return
 
     def lay_out(renderer: object) -> None:
         vars(figure).pop("draw")
-        engine.execute(figure)
+        if engine is not None:
+            engine.execute(figure)
 
     figure.draw = lay_out  # type: ignore[method-assign]
     try:

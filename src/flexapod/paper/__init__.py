@@ -98,15 +98,15 @@ def draw(name: str, settings: Settings) -> Part:
 
 def _ready(figure: Figure) -> None:
     """Laid out once for the files to come; lines of very many points as pixels, or vector files would be megabytes."""
-    import matplotlib
     from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    from flexapod.plots.shared import laid_out
 
     engine = figure.get_layout_engine()
     if isinstance(engine, ConstrainedLayoutEngine):
         engine.set(w_pad=_MARGIN, h_pad=_MARGIN)
     figure.draw_without_rendering()
-    with matplotlib.rc_context({"figure.autolayout": False, "figure.constrained_layout.use": False}):
-        figure.set_layout_engine(None)  # "none" would leave one that does nothing, for which each file is drawn twice
+    laid_out(figure)
     for ax in figure.axes:
         for line in ax.get_lines():
             line.set_rasterized(np.size(line.get_xdata()) > _MANY)

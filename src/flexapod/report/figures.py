@@ -14,6 +14,7 @@ from mpl_toolkits.mplot3d import proj3d
 
 from flexapod.output_files import drawn_once
 from flexapod.plots import style
+from flexapod.plots.shared import shared
 from flexapod.report.study import Drawing
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def drawn(draw: Callable[[], Drawn], prefix: str, words: str, tight: bool = Fals
     with matplotlib.rc_context(), style.unshown():
         matplotlib.rcdefaults()  # a page has a style of its own
         matplotlib.rcParams.update(_STYLE)
-        figure = style.figure_of(draw())
+        figure = style.figure_of(draw()) if tight else shared(draw)  # which stays as it is
         return _inline(figure, prefix, words, _extent(figure, figure.axes[0]) if tight else None)
 
 
@@ -61,7 +62,7 @@ def _inline(figure: Figure, prefix: str, words: str, box: Bbox | None = None) ->
     """The figure as an <svg> element with its own names, cut to what is drawn."""
     stream = io.StringIO()
     cut = "tight" if box is None else box
-    with drawn_once(figure):
+    with drawn_once(figure, tight=box is None):
         figure.savefig(
             stream, format="svg", transparent=True, bbox_inches=cut, pad_inches=0.05, metadata={"Date": None}
         )

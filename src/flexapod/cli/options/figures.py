@@ -114,7 +114,8 @@ def printed() -> AbstractContextManager[None]:
 def write(make: Callable[[], Drawn], path: Path, design: str = "") -> None:
     """Draw a figure as the options say, and write it. Raises OutputError."""
     from flexapod.plots.printing import save
+    from flexapod.plots.shared import shared
     from flexapod.plots.style import unshown
 
     with printed(), unshown():
-        save(make(), path, design=design)
+        save(shared(make), path, design=design)

@@ -50,22 +50,26 @@ def _shown(study: Study) -> OSError | SystemExit | None:
 
 def write(study: Study, directory: Path) -> list[Path]:
     """Write the study's files, each of the kind that its name ends with, figures as the options say."""
-    written = []
-    for name, make in study.files.items():
-        path = directory / name
-        if make is None:
-            from flexapod.report.html import page
+    from flexapod.plots.shared import drawn_for_all
 
-            write_file(path, page(study))
-        elif path.suffix == ".nc":
-            write_netcdf(make(), path)  # type: ignore[arg-type]
-        elif path.suffix in (".png", ".svg"):
-            path = figures.named(path)
-            figures.write(make, path, study.hexapod.name)  # type: ignore[arg-type]
-        else:
-            write_file(path, make())  # type: ignore[arg-type]
-        written.append(path)
-    return written
+    with drawn_for_all():
+        return [_written(study, directory / name) for name in study.files]
+
+
+def _written(study: Study, path: Path) -> Path:
+    make = study.files[path.name]
+    if make is None:
+        from flexapod.report.html import page
+
+        write_file(path, page(study))
+    elif path.suffix == ".nc":
+        write_netcdf(make(), path)  # type: ignore[arg-type]
+    elif path.suffix in (".png", ".svg"):
+        path = figures.named(path)
+        figures.write(make, path, study.hexapod.name)  # type: ignore[arg-type]
+    else:
+        write_file(path, make())  # type: ignore[arg-type]
+    return path
 
 
 def emit_or_csv(compute: Callable[[], Study], out: Path | None, as_json: bool, table: str | None) -> None:
