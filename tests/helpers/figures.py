@@ -10,7 +10,7 @@ import numpy as np
 import flexapod as fx
 from flexapod import plots
 
-_HELP = {"style", "printing", "animation", "sweep_axes", "results"}  # modules that draw nothing by themselves
+_HELP = {"style", "printing", "animation", "sweep_axes", "results", "shared"}  # modules that draw nothing by themselves
 
 
 def functions():

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 from matplotlib.text import Text
-from PIL import Image
+from PIL import Image, ImageSequence
 from tests.helpers.states import CENTER
 
 import flexapod as fx
@@ -84,6 +84,18 @@ def test_a_simulation_shows_its_displacements_and_its_base(paper, simulation, tm
         np.testing.assert_allclose(moved, expected, atol=0.02 * np.abs(expected).max())  # second order of 0.02 rad
     with Image.open(path) as picture:
         assert picture.n_frames == 5
+
+
+def test_pictures_have_one_title_and_the_colours_that_were_drawn(paper, tmp_path):
+    fx.animate_mode(paper, II, 1, tmp_path / "mode.gif")
+    with Image.open(tmp_path / "mode.gif") as picture:
+        frames = [np.asarray(frame.convert("RGB")) for frame in ImageSequence.Iterator(picture)]
+    heads = [frame[:50] for frame in frames]
+    assert all(np.array_equal(head, heads[0]) for head in heads)
+    assert (heads[0] < 100).any()  # ink
+    assert (heads[0][-1] == 255).all()
+    assert all((np.abs(frame - np.array([0x4A, 0x54, 0x60])).max(axis=-1) < 8).any() for frame in frames)  # legs
+    assert not np.array_equal(frames[0], frames[8])
 
 
 def test_the_default_window_shows_the_oscillation_and_not_its_aliases(paper, simulation, tmp_path, stills):

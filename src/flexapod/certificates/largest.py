@@ -144,7 +144,7 @@ def certified_box(
     Examples
     --------
     >>> machine = fx.load("motion-base")
-    >>> found = fx.certified_box(machine, fx.Workspace.about_home(0.05, 0.05), 26.0, tolerance=0.1)
+    >>> found = fx.certified_box(machine, fx.Workspace.about_home(0.05, 0.05), 28.0, tolerance=0.1)
     >>> found.certificate.status, found.scale < found.refuted
     ('proved', True)
     """
