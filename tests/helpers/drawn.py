@@ -1,5 +1,6 @@
 """Hypothesis strategies: machines that could be built, of any size, and states of motion about their middle."""
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -34,6 +35,7 @@ def machines(draw) -> fx.Hexapod:
     return _machine(np.random.default_rng(draw(seeds)), size, mass, height, ratio)
 
 
+@cache
 def machine(seed: int) -> fx.Hexapod:
     """One such machine, always the same for a seed."""
     rng = np.random.default_rng(seed)

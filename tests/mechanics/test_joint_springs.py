@@ -1,6 +1,6 @@
 """Springs in the joints, a suspension and springs in series: against Pinocchio, energies and limits."""
 
-from collections.abc import Iterator
+from functools import cache
 
 import numpy as np
 import pytest
@@ -21,18 +21,19 @@ def drawn_machine(seed: int) -> fx.Hexapod:
     return sprung(machine(seed), np.random.default_rng([seed, 14]))
 
 
-def twenty(block: int, suspension: bool = True, moving_base: bool = True) -> Iterator[tuple[fx.Hexapod, State]]:
+@cache
+def twenty(block: int, suspension: bool = True, moving_base: bool = True) -> list[tuple[fx.Hexapod, State]]:
     """Sprung machines, each with a state; those that stand near a singular pose at home are passed over."""
-    found, seed = 0, 100 * block
-    while found < 20:
+    found, seed = [], 100 * block
+    while len(found) < 20:
         hexapod = sprung(machine(seed), np.random.default_rng([seed, 14]), suspension)
         seed += 1
         try:
             state = draw_state(hexapod, np.random.default_rng([seed, 15]), moving_base)
         except AssertionError:
             continue
-        found += 1
-        yield hexapod, state
+        found.append((hexapod, state))
+    return found
 
 
 def free(hexapod: fx.Hexapod) -> fx.Hexapod:
