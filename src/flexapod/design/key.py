@@ -48,7 +48,7 @@ class Key:
 
     def takes(self, shape: tuple[int, ...]) -> bool:
         """Whether a value may have this shape."""
-        return any(
+        return shape in self.shapes or any(
             len(known) == len(shape) and all(n in (ANY, m) and m for n, m in zip(known, shape, strict=True))
             for known in self.shapes
         )

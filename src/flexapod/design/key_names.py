@@ -1,5 +1,7 @@
 """Names of keys as people write them: with a unit at the end, misspelt, or in another table."""
 
+from collections.abc import Sequence
+from functools import cache
 from typing import NoReturn
 
 from flexapod.design.key import Key
@@ -10,11 +12,12 @@ from flexapod.errors import DesignError
 LONGEST = 80  # characters of a key: names are compared letter by letter, and told
 
 
-def children(table: str) -> list[str]:
+@cache
+def children(table: str) -> tuple[str, ...]:
     """Names that may stand in a table of the file ("" is the file itself), tables included."""
     start = f"{table}." if table else ""
     known = {*KEYS, *TEXT_KEYS, *TABLES}
-    return sorted({key[len(start) :].split(".")[0] for key in known if key.startswith(start)})
+    return tuple(sorted({key[len(start) :].split(".")[0] for key in known if key.startswith(start)}))
 
 
 def resolve(table: str, key: str) -> tuple[str, str]:
@@ -85,7 +88,7 @@ def _elsewhere(key: str) -> list[str]:
     return list(dict.fromkeys(found))
 
 
-def _near(word: str, known: list[str]) -> list[str]:
+def _near(word: str, known: Sequence[str]) -> list[str]:
     from difflib import get_close_matches  # only a wrong key needs it
 
     return get_close_matches(word, known, n=2, cutoff=0.72)
