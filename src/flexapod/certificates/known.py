@@ -91,7 +91,7 @@ def _value(question: Question, values: tuple[float, ...], pose: Array, quantity:
 
 
 def _values(question: Question, values: Array, pose: Array, quantity: Quantity) -> Array:
-    """The same of many designs, rows of values, which are not checked."""
+    """(m,) a quantity of the designs whose strays have rows of values (m, n), unchecked."""
     designs = strayed_numbers(question.hexapod, question.strays, values, question.payload)
     joint, asked, limits = as_joint(question.joint), _core.SWEEP_ARRAYS[quantity], kernel_limits(question.hexapod)
     found = [_core.sweep(design, joint, pose[None], asked, limits, 1)[quantity][0] for design in designs]
