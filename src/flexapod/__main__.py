@@ -4,10 +4,10 @@ import gc
 import sys
 
 from flexapod.cli import main
+from flexapod.optional import ASKED_OF_ARRAYS, spare
 
-#: Packages that xarray and pandas load to ask every array whether it is one of theirs, which takes longer than most
-#: commands, and what the arguments of a command that needs them hold: only a cluster has arrays of Dask.
-_SPARED = {"dask": "--scheduler", "pint": "--scheduler", "pyarrow": ".parquet"}
+#: What the arguments of a command hold that needs one of these packages: only a cluster has arrays of Dask.
+_NEEDED_BY = {"pyarrow": ".parquet"}
 #: Objects made between two searches for garbage: what is loaded stays, so to look through it at every 700 is in vain.
 _BETWEEN_SEARCHES = 100_000
 
@@ -15,9 +15,8 @@ _BETWEEN_SEARCHES = 100_000
 def run() -> int:
     """What the shell starts: the command line. Returns its exit code."""
     gc.set_threshold(_BETWEEN_SEARCHES)
-    for name, needed_by in _SPARED.items():
-        if not any(needed_by in text.lower() for text in sys.argv[1:]):
-            sys.modules.setdefault(name, None)  # type: ignore[arg-type]  # so Python marks what is not to be had
+    line = " ".join(sys.argv[1:]).lower()
+    spare(name for name in ASKED_OF_ARRAYS if _NEEDED_BY.get(name, "--scheduler") not in line)
     try:
         return main()
     finally:

@@ -6,14 +6,18 @@ import os
 import signal
 import sys
 import time
+from multiprocessing import forkserver
 from pathlib import Path
 from random import Random
 from typing import NamedTuple
+from unittest.mock import patch
 
 LIMIT = 150  # s: far more than any of these commands needs
-_PROCESSES = None  # of a server that has imported everything already, so that an attack is not spent on imports
+_PROCESSES = multiprocessing.get_context("forkserver")
+_FORKED = forkserver.ForkServer()  # has imported everything already, so that an attack is not spent on imports
 _IMPORTED = ["flexapod.cli", "scipy.optimize", "scipy.signal", "scipy.stats", "xarray", "matplotlib.pyplot", "PIL.Image",
              "rich.progress", "rich.table", "control", "zarr", "optuna"]  # fmt: skip
+_FORKED.set_forkserver_preload(_IMPORTED)
 
 
 class Kill(NamedTuple):
@@ -58,8 +62,9 @@ class Running:
         self.kill, self.said = kill, folder.parent / f"{folder.name}.{time.monotonic_ns()}"
         begun, begins = multiprocessing.Pipe(duplex=False)
         given = (line, str(folder), str(self.said), kill, begins)
-        self.process = _server().Process(target=_command, args=given, daemon=True)
-        self.process.start()
+        self.process = _PROCESSES.Process(target=_command, args=given, daemon=True)
+        with patch.object(forkserver, "connect_to_new_process", _FORKED.connect_to_new_process):  # not that of the page
+            self.process.start()
         begins.close()
         begun.poll(LIMIT)
         begun.close()
@@ -99,14 +104,6 @@ def cut_short(ended: Ended, kill: Kill, as_json: bool) -> str:
         found = [json.loads(text) for text in told if text.startswith("{")]
         assert any(one.get("cut_short") is True for one in found), ended
     return "cut short"
-
-
-def _server():
-    global _PROCESSES
-    if _PROCESSES is None:
-        _PROCESSES = multiprocessing.get_context("forkserver")
-        _PROCESSES.set_forkserver_preload(_IMPORTED)
-    return _PROCESSES
 
 
 def _command(line, folder, said, kill, begins):

@@ -235,7 +235,7 @@ def outcome(route, found):
 def most_own(parent):
     """Bytes that the largest of the processes that compute shares with no other."""
     found = [0]
-    for child in parent.children():
+    for child in parent.children(recursive=True):
         with contextlib.suppress(psutil.NoSuchProcess):
             found.append(child.memory_full_info().uss)
     return max(found)

@@ -7,6 +7,8 @@ import signal
 import threading
 from collections.abc import Iterator
 from itertools import pairwise
+from multiprocessing.connection import wait
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
@@ -218,11 +220,11 @@ def test_a_job_whose_page_has_gone_ends_its_loop() -> None:
     assert not thread.is_alive()
 
 
-def kill(pids: list[int | None]) -> None:
-    for pid in pids:
-        assert pid is not None
-        os.kill(pid, signal.SIGKILL)
-        os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)  # gone, and still to be collected by its parent
+def kill(processes: list[BaseProcess]) -> None:
+    for process in processes:
+        assert process.pid is not None
+        os.kill(process.pid, signal.SIGKILL)
+        assert wait([process.sentinel], 60)  # gone, and nobody has asked for its end
 
 
 @pytest.mark.parametrize("when", ["idle", "at work"])
@@ -233,13 +235,13 @@ def test_a_process_that_dies_is_told_or_replaced(when: str) -> None:
     async def messages() -> list[bytes]:
         jobs, found = Jobs(), []
         await jobs.pool.warm()
-        pids = [worker.process.pid for worker in jobs.pool.idle]
+        processes = [worker.process for worker in jobs.pool.idle]
         try:
             if when == "idle":
-                kill(pids)
+                kill(processes)
             async for part in jobs.run(Client("127.0.0.1"), "cloud" if when == "idle" else "time", as_bytes(spec)):
                 if when == "at work" and len(found) == 1:  # it has begun to tell
-                    kill(pids)
+                    kill(processes)
                 found.append(part)
         finally:
             jobs.pool.close()

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-import multiprocessing
 import os
 import re
-import signal
 import sys
 import threading
-from collections.abc import Iterator
 from importlib import import_module
-from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from pathlib import Path
@@ -20,34 +16,18 @@ from typing import Any, NamedTuple
 import anyio
 from anyio.to_thread import run_sync
 
-from flexapod.web import limits, worker
-
-STARTING = 5  #: niceness of a process that starts, if it is to let others go first at all
-_SPAWN = multiprocessing.get_context("spawn")  # a fork of a server with threads may hang
+from flexapod.web import forks, limits, worker
 
 
-@contextlib.contextmanager
-def _interrupts_blocked() -> Iterator[None]:
-    """Block Ctrl-C for processes started in the block, from their start on: the server ends them itself."""
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
-        yield
-        return
-    resource_tracker.ensure_running()  # or the start does it, which unblocks the signal
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _serve(pipe: Connection, niceness: int, memory: int) -> None:
+def _serve(pipe: Connection, errors: Any, niceness: int, memory: int) -> None:
     """What a process does: it lets others go first, limits its memory, and answers until its pipe closes."""
-    if niceness > STARTING and hasattr(os, "nice"):
-        os.nice(niceness - STARTING)
+    if errors is not None:
+        os.dup2(errors.detach(), 2)
+    if hasattr(os, "nice"):
+        os.nice(niceness)
     limit_memory(memory)
-    threading.Thread(
-        target=import_module, args=("xarray",), daemon=True
-    ).start()  # slow: before the first response needs it
+    if not forks.FORKS:  # slow: before the first response needs it
+        threading.Thread(target=import_module, args=(forks.PRELOADED,), daemon=True).start()
     with contextlib.suppress(BrokenPipeError):  # the server has ended meanwhile
         pipe.send(({"type": "ready"}, b""))
         worker.serve(pipe)
@@ -74,13 +54,11 @@ class Process(NamedTuple):
 
     @classmethod
     def start(cls, niceness: int, memory: int) -> Process:
-        ours, theirs = _SPAWN.Pipe()
-        process = _SPAWN.Process(target=_serve, args=(theirs, niceness, memory), name="flexapod-job", daemon=True)
-        with _interrupts_blocked():
+        ours, theirs = forks.CONTEXT.Pipe()
+        given = (theirs, forks.errors(), niceness, memory)
+        process = forks.CONTEXT.Process(target=_serve, args=given, name="flexapod-job", daemon=True)
+        with forks.interrupts_blocked():
             process.start()
-        if niceness and hasattr(os, "setpriority"):  # its start takes longer than most work, and must come to its end
-            with contextlib.suppress(ProcessLookupError):  # it has died already
-                os.setpriority(os.PRIO_PROCESS, process.pid or 0, os.getpriority(os.PRIO_PROCESS, 0) + STARTING)
         theirs.close()
         return cls(process, ours)
 

@@ -31,6 +31,9 @@ def command(design: str | None, port: int, host: str, allow_host: tuple[str, ...
     It listens on this computer only unless --host says otherwise, and asks nothing of the network. Where others can
     reach it, the address that it prints holds a token, and only who has it is answered. Ctrl-C ends it.
     """
+    from flexapod.web import forks
+
+    forks.begin()
     start = None if design is None else _checked(design)
     why = "`flexapod serve` needs uvicorn and starlette"
     needed("uvicorn", "web", why), needed("starlette", "web", why)
