@@ -16,6 +16,7 @@ import flexapod as fx
 ROOT = Path(__file__).resolve().parents[2]
 nanobind = pytest.importorskip("nanobind", reason="the core is built with nanobind")
 COMPILER = shutil.which("clang++") or shutil.which("c++")  # without optimisation, Clang takes half of GCC's time
+CCACHE = shutil.which("ccache")  # has what was compiled from the same text, in whichever folder that was
 
 CORE = "src/core/model/design.hpp", 'FIELD(T, C_p, "legs.damping.prismatic"', 'FIELD(T, lead, "legs.lead", "m") \\\n  '
 SCHEMA = (
@@ -76,33 +77,44 @@ def line_added(folder: Path, place: tuple[str, str, str]) -> None:
     (folder / name).write_text(text.replace(before, line + before))
 
 
+def compile_in(folder: Path, command: list[str]) -> None:
+    """Run a compiler in a folder whose name does not matter to ccache, nor when its files were written."""
+    sloppy = "pch_defines,time_macros,include_file_mtime,include_file_ctime"
+    kept = {"CCACHE_BASEDIR": str(folder), "CCACHE_NOHASHDIR": "1", "CCACHE_DEPEND": "1", "CCACHE_SLOPPINESS": sloppy}
+    subprocess.run(command, cwd=folder, env={**os.environ, **kept}, check=True)
+
+
 def build(folder: Path) -> None:
     """The core for any processor, unoptimised; what all bindings include is compiled once."""
     package = Path(nanobind.__file__).parent
-    core = folder / "src" / "core"
+    core = Path("src", "core")  # within the folder
     include = [core, package / "include", package / "ext" / "robin_map" / "include", sysconfig.get_path("include")]
-    common = [COMPILER, "-std=c++20", "-O0", "-fPIC", "-fvisibility=hidden", *(f"-I{path}" for path in include)]
+    clang = "clang" in Path(COMPILER).name
+    common = [*filter(None, [CCACHE, COMPILER]), "-std=c++20", "-O0", "-fPIC", "-fvisibility=hidden", "-MD"]
+    common += [f"-I{path}" for path in include]
+    common += ["-Xclang", "-fno-pch-timestamp"] if clang else []
     kernel = ["-Dflexapod=flexapod_baseline", '-DFLEXAPOD_ISA="baseline"']
     binding = ["-DNDEBUG", '-DFLEXAPOD_COMPILER="a test"']
-    shared = folder / "shared.hpp"
-    shared.write_text('#include "bindings/arrays.hpp"\n#include "bindings/bind.hpp"\n')
-    ahead = shared.with_suffix(".hpp.pch" if "clang" in Path(COMPILER).name else ".hpp.gch")
-    subprocess.run([*common, *binding, "-x", "c++-header", str(shared), "-o", str(ahead)], check=True)
-    jobs = [(source, [*binding, "-include", str(shared)]) for source in core.glob("bindings/*.cpp")]
-    jobs += [(source, kernel) for source in core.glob("*/kernel.cpp")]
+    (folder / "shared.hpp").write_text('#include "bindings/arrays.hpp"\n#include "bindings/bind.hpp"\n')
+    ahead = f"shared.hpp.{'pch' if clang else 'gch'}"
+    compile_in(folder, [*common, *binding, "-x", "c++-header", "shared.hpp", "-o", ahead])
+    sources = {name: [core / path.relative_to(folder / core) for path in (folder / core).glob(name)]
+               for name in ("bindings/*.cpp", "*/kernel.cpp")}  # fmt: skip
+    jobs = [(source, [*binding, "-include", "shared.hpp"]) for source in sources["bindings/*.cpp"]]
+    jobs += [(source, kernel) for source in sources["*/kernel.cpp"]]
     jobs += [(package / "src" / "nb_combined.cpp", ["-DNDEBUG", "-fno-strict-aliasing"])]
 
     def compiled(job: tuple[Path, list[str]]) -> Path:
         source, options = job
-        target = folder / f"{source.parent.name}_{source.stem}.o"
-        subprocess.run([*common, *options, "-c", str(source), "-o", str(target)], check=True)
+        target = Path(f"{source.parent.name}_{source.stem}.o")
+        compile_in(folder, [*common, *options, "-c", str(source), "-o", str(target)])
         return target
 
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         objects = list(pool.map(compiled, jobs))
-    library = folder / "src" / "flexapod" / f"_core{sysconfig.get_config_var('EXT_SUFFIX')}"
+    library = Path("src", "flexapod") / f"_core{sysconfig.get_config_var('EXT_SUFFIX')}"
     undefined = ["-undefined", "dynamic_lookup"] if sys.platform == "darwin" else ["-pthread"]
-    subprocess.run([COMPILER, "-shared", *undefined, *map(str, objects), "-o", str(library)], check=True)
+    compile_in(folder, [COMPILER, "-shared", *undefined, *map(str, objects), "-o", str(library)])
 
 
 @pytest.mark.skipif(COMPILER is None or os.name != "posix", reason="no C++ compiler")
