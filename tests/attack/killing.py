@@ -16,7 +16,7 @@ LIMIT = 150  # s: far more than any of these commands needs
 _PROCESSES = multiprocessing.get_context("forkserver")
 _FORKED = forkserver.ForkServer()  # has imported everything already, so that an attack is not spent on imports
 _IMPORTED = ["flexapod.cli", "scipy.optimize", "scipy.signal", "scipy.stats", "xarray", "matplotlib.pyplot", "PIL.Image",
-             "rich.progress", "rich.table", "control", "zarr", "optuna"]  # fmt: skip
+             "rich.progress", "rich.table", "control", "zarr", "optuna", "dask.array", "pint"]  # fmt: skip
 _FORKED.set_forkserver_preload(_IMPORTED)
 
 

@@ -24,7 +24,9 @@ WORKER = """
 import sys, time
 import flexapod as fx
 from flexapod.optimisation import design_search as o
+from flexapod.optional import ASKED_OF_ARRAYS, spare
 
+spare(ASKED_OF_ARRAYS)
 pause, trials, file = float(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
 whole = o._one
 def slow(*given):
