@@ -131,7 +131,7 @@ def test_a_search_keeps_every_finished_trial_and_repeats_none(tmp_path):
         for _ in range(draw.randrange(1, 4)):
             as_json = draw.random() < 0.5
             kill = drawn_kill(draw, whole)
-            beside = Running([*SEARCH, NO_FIGURES], folder) if draw.random() < 0.3 else None  # another that shares the work
+            beside = Running([*SEARCH, NO_FIGURES], folder) if draw.random() < 0.3 else None  # shares the work
             ended = killed([*SEARCH, *(["--json"] if as_json else [])], folder, kill)
             kills += cut_short(ended, kill, as_json) == "cut short"
             if beside is not None:

@@ -4,12 +4,15 @@ import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from tests.attack.test_command_lines import RIGHT
 
 pytest.importorskip("optuna")
 pytest.importorskip("ompl")
+
+ROOT = Path(__file__).parents[2]
 
 #: Packages that take a tenth of a second or more to load.
 SLOW = {
@@ -100,7 +103,18 @@ def test_a_store_without_a_cluster_does_without_dask(tmp_path):
     assert [json.loads(line) for line in done.stdout.splitlines()] == [["sweep", 0, ["zarr"]]] * 2
 
 
-def test_the_server_leaves_tables_to_its_processes():
-    script = "import sys, flexapod.web.app; print(sorted({'xarray', 'pandas'} & set(sys.modules)))"
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60)
-    assert done.stdout == "[]\n"
+def test_the_server_leaves_tables_to_its_processes_and_they_do_without_dask():
+    script = """
+import json, sys, flexapod.web.app
+from flexapod.web import worker
+from tests.web.asked import ASKED
+print(sorted({"xarray", "pandas"} & set(sys.modules)))
+import flexapod.web.preloaded
+before = set(sys.modules)
+print(worker._answer("response", json.dumps({**ASKED, "quantity": "absolute"}).encode())[0]["status"])
+print(len(set(sys.modules) - before), [name for name in ("dask", "pint", "pyarrow") if sys.modules.get(name)])
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=True, timeout=60, cwd=ROOT
+    )
+    assert done.stdout == "[]\n200\n0 []\n"

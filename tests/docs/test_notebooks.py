@@ -88,14 +88,41 @@ def test_a_kernel_makes_a_page_of_it():
     assert not re.search(r"Traceback|Warning", text)
 
 
-def test_a_figure_that_a_cell_ends_with_is_shown_once():
+@pytest.fixture(scope="module")
+def kernel():
+    """The client of a kernel, which takes seconds to start."""
+    for package in KERNEL:
+        pytest.importorskip(package)
+    from jupyter_client.manager import start_new_kernel
+
+    manager, client = start_new_kernel(kernel_name="python3", startup_timeout=300)
+    yield client
+    client.stop_channels()
+    manager.shutdown_kernel(now=True)
+
+
+@pytest.fixture
+def shown_by_kernel(kernel):
+    """What a kernel shows of a cell: the messages that hold data. Names of the cells before are gone."""
+
+    def shown(text):
+        found = []
+        for cell in ("%reset -f", text):
+            reply = kernel.execute_interactive(cell, output_hook=found.append, timeout=300)
+            assert reply["content"]["status"] == "ok"
+        return [one for one in found if "data" in one["content"]]
+
+    return shown
+
+
+def test_a_figure_that_a_cell_ends_with_is_shown_once(shown_by_kernel):
     """Of several panels, too, which no call of pyplot made."""
-    messages = in_kernel("import flexapod as fx\nfx.plot(fx.transmissibility(fx.load('cubic-isolator')))")
+    messages = shown_by_kernel("import flexapod as fx\nfx.plot(fx.transmissibility(fx.load('cubic-isolator')))")
     assert [one["content"]["data"].get("image/png", "")[:4] for one in messages] == ["iVBO"]
 
 
-def test_a_kernel_shows_progress_and_takes_it_away():
-    messages = in_kernel(
+def test_a_kernel_shows_progress_and_takes_it_away(shown_by_kernel):
+    messages = shown_by_kernel(
         "import flexapod as fx\nfrom flexapod import progress\nprogress.AFTER = 0.0\n"
         "run = fx.simulate(fx.load('precision-positioner'), duration=0.05)"
     )
@@ -104,20 +131,3 @@ def test_a_kernel_shows_progress_and_takes_it_away():
     assert shown[-1] == ""
     places = {one["content"]["transient"]["display_id"] for one in messages}
     assert len(places) == 1
-
-
-def in_kernel(text):
-    """What a kernel shows of a cell: the messages that hold data."""
-    for package in KERNEL:
-        pytest.importorskip(package)
-    from jupyter_client.manager import start_new_kernel
-
-    manager, client = start_new_kernel(kernel_name="python3", startup_timeout=300)
-    found = []
-    try:
-        reply = client.execute_interactive(text, output_hook=found.append, timeout=300)
-    finally:
-        client.stop_channels()
-        manager.shutdown_kernel(now=True)
-    assert reply["content"]["status"] == "ok"
-    return [one for one in found if "data" in one["content"]]

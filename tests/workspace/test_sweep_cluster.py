@@ -49,7 +49,7 @@ def test_given_poses_travel_block_by_block(tmp_path, workers):
 
 
 def test_a_killed_worker_costs_nothing_but_time(tmp_path, workers):
-    poses = fx.random_poses(BOX, 300_000, seed=5)
+    poses = fx.random_poses(BOX, 120_000, seed=5)
     killed = threading.Event()
 
     def kill(share):
@@ -59,11 +59,11 @@ def test_a_killed_worker_costs_nothing_but_time(tmp_path, workers):
 
     with fx.workspace.cluster(workers) as crew:
         victim = next(iter(crew.client.run(os.getpid).values()))
-        store = fx.workspace.SweepStore.create(tmp_path / "cluster.zarr", I, poses, chunk=10_000)
+        store = fx.workspace.SweepStore.create(tmp_path / "cluster.zarr", I, poses, chunk=4_000)
         store.run(crew, progress=kill)
     assert killed.is_set()
     assert store.complete
-    stored(tmp_path / "threads.zarr", poses, chunk=10_000)
+    stored(tmp_path / "threads.zarr", poses, chunk=4_000)
     assert content(tmp_path / "cluster.zarr") == content(tmp_path / "threads.zarr")
 
 
@@ -83,7 +83,12 @@ def test_a_lost_scheduler_is_told_and_what_is_done_is_kept(tmp_path):
     from distributed import Client, LocalCluster
 
     path = tmp_path / "map.zarr"
-    own = LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="localhost:0")
+    where = {
+        "dashboard_address": "localhost:0",
+        "protocol": "tcp://",
+        "processes": False,
+    }  # the worker is no matter here
+    own = LocalCluster(n_workers=1, threads_per_worker=1, **where)
     with Client(own) as client:
         store = fx.workspace.SweepStore.create(path, I, POSES, chunk=500)
         with pytest.raises(fx.errors.ClusterError, match="connection to the scheduler was lost"):
