@@ -5,5 +5,6 @@ from importlib import import_module
 from flexapod.optional import ASKED_OF_ARRAYS, spare
 
 spare(ASKED_OF_ARRAYS)
-for _name in ("web.worker", "vibration.frequency_response", "simulation.time_simulation"):
-    import_module(f"flexapod.{_name}")
+import_module("flexapod.web.worker")
+import_module("flexapod.vibration.frequency_response")
+import_module("flexapod.simulation.time_simulation")
