@@ -83,8 +83,7 @@ def test_a_lost_scheduler_is_told_and_what_is_done_is_kept(tmp_path):
     from distributed import Client, LocalCluster
 
     path = tmp_path / "map.zarr"
-    where = {"dashboard_address": "localhost:0", "protocol": "tcp://", "processes": False}
-    own = LocalCluster(n_workers=1, threads_per_worker=1, **where)
+    own = LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="localhost:0")
     with Client(own) as client:
         store = fx.workspace.SweepStore.create(path, I, POSES, chunk=500)
         with pytest.raises(fx.errors.ClusterError, match="connection to the scheduler was lost"):
