@@ -1,6 +1,7 @@
 """A small command line of every command that writes, and what it finds and leaves in its folder."""
 
 import re
+import sys
 from contextlib import contextmanager
 
 import pytest
@@ -65,12 +66,17 @@ def same(found, whole):
 
 @contextmanager
 def small_files():
-    """No file may grow beyond 2 kB, as on a disk that is full; nor may the test runner's own log meanwhile."""
+    """No file may grow beyond 2 kB, as on a disk that is full; nor may the test runner's own log meanwhile.
+
+    Python would cut off what it compiles of a module that is first loaded in here, and other tests would read that.
+    """
     import resource  # POSIX only
 
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    before, compiled = resource.getrlimit(resource.RLIMIT_FSIZE), sys.dont_write_bytecode
     resource.setrlimit(resource.RLIMIT_FSIZE, (2048, before[1]))
+    sys.dont_write_bytecode = True
     try:
         yield
     finally:
+        sys.dont_write_bytecode = compiled
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
