@@ -31,12 +31,10 @@ def command(design: str | None, port: int, host: str, allow_host: tuple[str, ...
     It listens on this computer only unless --host says otherwise, and asks nothing of the network. Where others can
     reach it, the address that it prints holds a token, and only who has it is answered. Ctrl-C ends it.
     """
-    from flexapod.web import forks
-
-    forks.begin()
     start = None if design is None else _checked(design)
     why = "`flexapod serve` needs uvicorn and starlette"
     needed("uvicorn", "web", why), needed("starlette", "web", why)
+    from flexapod.web import forks
     from flexapod.web.app import application
     from flexapod.web.serving import Door, server
 
@@ -55,6 +53,7 @@ def command(design: str | None, port: int, host: str, allow_host: tuple[str, ...
             "in the address can compute here; nothing is encrypted on its way. Without --host, only this computer can.",
             err=True,
         )
+    forks.begin()
     if show:
         webbrowser.open(url)
     hosts = (host, *allow_host, *([socket.gethostname()] if open_to_others else []))
