@@ -17,12 +17,13 @@ from typing import Any
 FORKS = sys.platform == "linux"
 CONTEXT = multiprocessing.get_context("forkserver") if FORKS else multiprocessing.get_context("spawn")
 PRELOADED = "flexapod.web.preloaded"
-CONTEXT.set_forkserver_preload([PRELOADED])
+if FORKS:
+    CONTEXT.set_forkserver_preload([PRELOADED])
 
 
 def begin() -> None:
     """Let what is to be forked load, while this process goes on."""
-    if sys.platform == "linux":
+    if FORKS:
         from multiprocessing import forkserver
 
         with interrupts_blocked():
@@ -45,6 +46,4 @@ def interrupts_blocked() -> Iterator[None]:
 
 def errors() -> Any:
     """Where this process writes its errors, to be given to a new one: what is forked may write them elsewhere."""
-    if sys.platform != "linux" or sys.__stderr__ is None:
-        return None
-    return reduction.DupFd(sys.__stderr__.fileno())
+    return reduction.DupFd(sys.__stderr__.fileno()) if FORKS and sys.__stderr__ is not None else None

@@ -53,7 +53,7 @@ def command(design: str | None, port: int, host: str, allow_host: tuple[str, ...
             "in the address can compute here; nothing is encrypted on its way. Without --host, only this computer can.",
             err=True,
         )
-    forks.begin()
+    forks.begin()  # not before the address is told, which would come later
     if show:
         webbrowser.open(url)
     hosts = (host, *allow_host, *([socket.gethostname()] if open_to_others else []))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -53,22 +53,21 @@ def write(study: Study, directory: Path) -> list[Path]:
     from flexapod.plots.shared import drawn_for_all
 
     with drawn_for_all():
-        return [_written(study, directory / name) for name in study.files]
+        return [_written(study, make, directory / name) for name, make in study.files.items()]
 
 
-def _written(study: Study, path: Path) -> Path:
-    make = study.files[path.name]
+def _written(study: Study, make: Callable[[], Any] | None, path: Path) -> Path:
     if make is None:
         from flexapod.report.html import page
 
         write_file(path, page(study))
     elif path.suffix == ".nc":
-        write_netcdf(make(), path)  # type: ignore[arg-type]
+        write_netcdf(make(), path)
     elif path.suffix in (".png", ".svg"):
         path = figures.named(path)
-        figures.write(make, path, study.hexapod.name)  # type: ignore[arg-type]
+        figures.write(make, path, study.hexapod.name)
     else:
-        write_file(path, make())  # type: ignore[arg-type]
+        write_file(path, make())
     return path
 
 

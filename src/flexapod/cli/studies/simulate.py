@@ -41,8 +41,13 @@ def compute(hexapod: Hexapod, pose: Pose, given: dict[str, Any], report: Report)
         raise
     took = time.perf_counter() - began
     if given["animate"] is not None:
-        told: dict[str, Any] = {"progress": lambda share: report("frames", share)}
-        animation.animate_simulation(dataset, hexapod, given["animate"], exaggeration=given["exaggeration"], **told)
+        animation.animate_simulation(
+            dataset,
+            hexapod,
+            given["animate"],
+            exaggeration=given["exaggeration"],
+            progress=lambda share: report("frames", share),
+        )
     idle = "Nothing drives the machine: what moves is rounding. Give --harmonic, --shock or the like."
     driven = drives(given) or given["unloaded"]
     return study(hexapod, pose, dataset, took, [] if driven else [Caution("idle", idle)])

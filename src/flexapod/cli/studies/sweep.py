@@ -35,7 +35,7 @@ from flexapod.workspace.store.reading import open_sweep
 from flexapod.workspace.store.store import SweepStore
 from flexapod.workspace.summary import summarise
 from flexapod.workspace.sweeping import sweep
-from flexapod.workspace.worst import worst_pose
+from flexapod.workspace.worst import WorstPose, worst_pose
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -82,11 +82,21 @@ def compute(options: Options, report: Report) -> Study:
     if options.summary and "omega_1" in found:
         summary = judged(lambda: summarise(found, options.at_least, all_poses=everywhere))
     if options.worst and box is not None:
-        given: dict[str, Any] = {"joint": options.joint, "seed": options.seed, "threads": options.threads}
-        given["progress"] = lambda share: report("worst pose", share)
-        worst = judged(lambda: worst_pose(hexapod, box, **given, all_poses=everywhere))
+        worst = judged(lambda: _worst(hexapod, box, options, report))
     notes = list(dict.fromkeys(notes))
     return study(hexapod, found, options.out, summary, worst, all_poses=everywhere, notes=notes)
+
+
+def _worst(hexapod: Hexapod, box: Box, options: Options, report: Report) -> WorstPose:
+    return worst_pose(
+        hexapod,
+        box,
+        joint=options.joint,
+        seed=options.seed,
+        threads=options.threads,
+        all_poses=options.all_poses,
+        progress=lambda share: report("worst pose", share),
+    )
 
 
 def _draw(found: xr.Dataset, options: Options) -> None:
